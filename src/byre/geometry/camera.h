@@ -1,0 +1,47 @@
+#pragma once
+
+#include "byre/geometry/pose.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace byre {
+
+// Lens models as EuRoC, Kalibr and OpenCV define them.
+// radial_tangential: k1, k2, p1, p2, k3 (Brown-Conrady); equidistant: k1..k4 (Kannala-Brandt fisheye).
+enum class CameraModel : std::uint8_t { pinhole, radial_tangential, equidistant };
+
+std::string_view to_string(CameraModel model);
+
+// A camera as calibrated. Pixels: origin at the centre of the top-left pixel, u right, v down.
+struct Camera {
+  CameraModel model = CameraModel::pinhole;
+  int width = 0;                                  // pixels
+  int height = 0;                                 // pixels
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  // pixels
+  std::array<double, 5> distortion{};             // see CameraModel, unused ones zero
+
+  // The pixel of a point, also outside the image; empty behind the camera or beyond the model's valid field.
+  std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_in_camera) const;
+
+  // Unit direction of a pixel; inverts the distortion by Newton's method. Empty where it has no inverse.
+  std::optional<Eigen::Vector3d> bearing(const Eigen::Vector2d& pixel) const;
+
+  bool contains(const Eigen::Vector2d& pixel) const;  // inside the image, borders included
+};
+
+struct StereoPartner {
+  Camera camera;
+  Pose right_from_left;
+};
+
+// What a recording says of its cameras, before any rectification.
+struct Calibration {
+  Camera left;
+  std::optional<StereoPartner> right;
+  Pose body_from_left;  // identity where the recording knows no body
+};
+
+}  // namespace byre

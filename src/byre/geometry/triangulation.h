@@ -1,0 +1,16 @@
+#pragma once
+
+#include "byre/geometry/pose.h"
+
+#include <optional>
+
+namespace byre {
+
+// The point, in the first frame, nearest to both rays in the sense of the smaller angular errors
+// (midpoint weighted by inverse depth, Lee and Civera 2019). Bearings need not be of unit length.
+// Empty when the rays meet behind a camera or at less than min_angle (radians).
+std::optional<Eigen::Vector3d> triangulate(const Eigen::Vector3d& bearing_in_first,
+                                           const Eigen::Vector3d& bearing_in_second, const Pose& second_from_first,
+                                           double min_angle);
+
+}  // namespace byre

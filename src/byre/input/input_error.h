@@ -1,0 +1,26 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace byre {
+
+// Bad input found at an edge of the program: a file, an option, a calibration. Says what, where, why and
+// what to do about it; what() reads "place: reason (remedy)".
+class InputError : public std::runtime_error {
+ public:
+  // place: "file", "file:line" or "file: field"; reason: what is wrong; remedy: what the user can do, may be empty.
+  InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
+
+  const std::string& place() const { return place_; }
+  const std::string& reason() const { return reason_; }
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  std::string place_;
+  std::string reason_;
+  std::string remedy_;
+};
+
+}  // namespace byre
