@@ -1,0 +1,264 @@
+#include "byre/map/map.h"
+
+#include <algorithm>
+#include <cassert>
+#include <iterator>
+#include <utility>
+
+namespace byre {
+namespace {
+
+bool is_equal(const Pose& first, const Pose& second) {
+  return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
+}
+
+bool is_equal(const Rig& first, const Rig& second) {
+  return first.width == second.width && first.height == second.height && first.focal == second.focal &&
+         first.cx == second.cx && first.cy == second.cy && first.baseline == second.baseline &&
+         is_equal(first.body_from_camera, second.body_from_camera);
+}
+
+// The observation by a keyframe, or where it would stand.
+auto lower_bound_of(std::vector<Observation>& observations, KeyframeId keyframe) {
+  return std::ranges::lower_bound(observations, keyframe, {}, &Observation::keyframe);
+}
+
+bool is_seen_by(std::vector<Observation>& observations, KeyframeId keyframe) {
+  const auto place = lower_bound_of(observations, keyframe);
+  return place != observations.end() && place->keyframe == keyframe;
+}
+
+Sighting& sighting_of(Keyframe& keyframe, int feature) {
+  assert(feature >= 0 && static_cast<std::size_t>(feature) < keyframe.sightings.size());
+  return keyframe.sightings[static_cast<std::size_t>(feature)];
+}
+
+bool shares_more(const Covisible& first, const Covisible& second) {
+  if (first.shared_points != second.shared_points) return first.shared_points > second.shared_points;
+  return first.keyframe < second.keyframe;
+}
+
+}  // namespace
+
+int Map::add_rig(const Rig& rig) {
+  const auto known = std::ranges::find_if(rigs_, [&](const Rig& candidate) { return is_equal(candidate, rig); });
+  const auto index = static_cast<int>(known - rigs_.begin());
+  if (known == rigs_.end()) rigs_.push_back(rig);
+  return index;
+}
+
+KeyframeId Map::add_keyframe(Keyframe keyframe) {
+  const KeyframeId id{origin_, static_cast<std::uint32_t>(keyframes_.size())};
+  const int feature_count = keyframe.frame.features ? keyframe.frame.features->size() : 0;
+  const std::vector<Sighting> sightings = std::move(keyframe.sightings);
+  keyframe.sightings.assign(std::max(sightings.size(), static_cast<std::size_t>(feature_count)), Sighting{});
+  keyframe.parent = living_ancestor(keyframe.parent);
+
+  if (keyframe.parent) slot(*keyframe.parent).children.push_back(id);
+  keyframes_.emplace_back().keyframe = std::move(keyframe);
+  ++keyframe_count_;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (sightings[i].point) add_observation({id, static_cast<int>(i)}, sightings[i]);
+  }
+  return id;
+}
+
+PointId Map::add_point(const MapPoint& point) {
+  points_.emplace_back().point = point;
+  ++point_count_;
+  return {origin_, static_cast<std::uint32_t>(points_.size() - 1)};
+}
+
+bool Map::add_observation(const Observation& observation, const Sighting& sighting) {
+  assert(sighting.point);
+  Keyframe* keyframe = find_own_keyframe(observation.keyframe);
+  std::vector<Observation>* observers = find_observations(*sighting.point);
+  if (!keyframe || !observers) return false;
+  Sighting& place = sighting_of(*keyframe, observation.feature);
+  if (place.point || is_seen_by(*observers, observation.keyframe)) return false;
+
+  count_shared_point(*observers, observation.keyframe, 1);
+  observers->insert(lower_bound_of(*observers, observation.keyframe), observation);
+  place = sighting;
+  return true;
+}
+
+void Map::remove_observation(const Observation& observation) {
+  const std::optional<PointId> point = unlink(observation);
+  if (!point || point->origin != origin_) return;
+  if (observations(*point).empty()) {
+    remove_point(*point);
+  } else {
+    repair_reference(*point);
+  }
+}
+
+void Map::remove_point(PointId id) {
+  if (!find_point(id)) return;
+  const std::vector<Observation> observers = observations(id);
+  for (const Observation& observation : observers) unlink(observation);
+  points_[id.number].point.reset();
+  --point_count_;
+}
+
+void Map::remove_keyframe(KeyframeId id) {
+  const Keyframe* keyframe = find_keyframe(id);
+  if (!keyframe || !keyframe->parent) return;
+  const KeyframeId parent = *keyframe->parent;
+  const Pose camera_from_parent = keyframe->camera_from_world * inverse(camera_from_world(parent));
+  for (std::size_t i = 0; i < keyframe->sightings.size(); ++i) remove_observation({id, static_cast<int>(i)});
+
+  hand_children_to(id, parent);
+  slot(id).keyframe.reset();
+  slot(id).removed = RemovedKeyframe{parent, camera_from_parent};
+  --keyframe_count_;
+}
+
+void Map::fuse_points(PointId removed, PointId kept) {
+  if (removed == kept || !find_point(removed) || !find_observations(kept)) return;
+  const std::vector<Observation> observers = observations(removed);
+  for (const Observation& observation : observers) {
+    Sighting sighting = sighting_of(*slot(observation.keyframe).keyframe, observation.feature);
+    sighting.point = kept;
+    unlink(observation);
+    add_observation(observation, sighting);
+  }
+  remove_point(removed);
+}
+
+void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
+  Keyframe* keyframe = find_own_keyframe(id);
+  if (!keyframe) return;
+  keyframe->camera_from_world = camera_from_world;
+  keyframe->covariance = covariance;
+}
+
+void Map::update_point(PointId id, const MapPoint& point) {
+  if (!find_point(id)) return;
+  points_[id.number].point = point;
+  repair_reference(id);
+}
+
+const Keyframe* Map::find_keyframe(KeyframeId id) const {
+  if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
+  return &*slot(id).keyframe;
+}
+
+const MapPoint* Map::find_point(PointId id) const {
+  if (id.origin != origin_ || id.number >= points_.size() || !points_[id.number].point) return nullptr;
+  return &*points_[id.number].point;
+}
+
+std::vector<KeyframeId> Map::keyframe_ids() const {
+  std::vector<KeyframeId> ids;
+  ids.reserve(static_cast<std::size_t>(keyframe_count_));
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    if (keyframes_[i].keyframe) ids.push_back({origin_, i});
+  }
+  return ids;
+}
+
+std::vector<PointId> Map::point_ids() const {
+  std::vector<PointId> ids;
+  ids.reserve(static_cast<std::size_t>(point_count_));
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].point) ids.push_back({origin_, i});
+  }
+  return ids;
+}
+
+const std::vector<Observation>& Map::observations(PointId id) const {
+  static const std::vector<Observation> kNone;
+  if (id.origin == origin_) return id.number < points_.size() ? points_[id.number].observations : kNone;
+  return id.number < offline_observations_.size() ? offline_observations_[id.number] : kNone;
+}
+
+std::vector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
+  if (!find_keyframe(id)) return {};
+  std::vector<Covisible> covisible = slot(id).covisible;
+  const auto count = std::min(covisible.size(), static_cast<std::size_t>(std::max(max_count, 0)));
+  std::ranges::partial_sort(covisible, covisible.begin() + static_cast<std::ptrdiff_t>(count), shares_more);
+  covisible.resize(count);
+  return covisible;
+}
+
+Pose Map::camera_from_world(KeyframeId id) const {
+  assert(was_given_out(id));
+  Pose camera_from_ancestor;
+  while (!slot(id).keyframe) {
+    camera_from_ancestor = camera_from_ancestor * slot(id).removed->camera_from_parent;
+    id = slot(id).removed->parent;
+  }
+  return camera_from_ancestor * slot(id).keyframe->camera_from_world;
+}
+
+bool Map::was_given_out(KeyframeId id) const {
+  return id.origin == origin_ && id.number < keyframes_.size();
+}
+
+Keyframe* Map::find_own_keyframe(KeyframeId id) {
+  if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
+  return &*slot(id).keyframe;
+}
+
+std::vector<Observation>* Map::find_observations(PointId id) {
+  if (id.origin == origin_) return find_point(id) ? &points_[id.number].observations : nullptr;
+  if (origin_ == Origin::offline) return nullptr;
+  if (id.number >= offline_observations_.size()) offline_observations_.resize(id.number + std::size_t{1});
+  return &offline_observations_[id.number];
+}
+
+std::optional<KeyframeId> Map::living_ancestor(std::optional<KeyframeId> id) const {
+  if (!id || !was_given_out(*id)) return std::nullopt;
+  while (!slot(*id).keyframe) id = slot(*id).removed->parent;
+  return id;
+}
+
+std::optional<PointId> Map::unlink(const Observation& observation) {
+  Keyframe* keyframe = find_own_keyframe(observation.keyframe);
+  if (!keyframe) return std::nullopt;
+  Sighting& sighting = sighting_of(*keyframe, observation.feature);
+  if (!sighting.point) return std::nullopt;
+
+  const PointId point = *sighting.point;
+  std::vector<Observation>& observers = *find_observations(point);
+  observers.erase(lower_bound_of(observers, observation.keyframe));
+  count_shared_point(observers, observation.keyframe, -1);
+  sighting = Sighting{};
+  return point;
+}
+
+void Map::count_shared_point(const std::vector<Observation>& observers, KeyframeId with, int change) {
+  for (const Observation& observation : observers) {
+    add_shared_points(observation.keyframe, with, change);
+    add_shared_points(with, observation.keyframe, change);
+  }
+}
+
+void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
+  std::vector<Covisible>& covisible = slot(keyframe).covisible;
+  auto place = std::ranges::lower_bound(covisible, with, {}, &Covisible::keyframe);
+  if (place == covisible.end() || place->keyframe != with) place = covisible.insert(place, Covisible{with, 0});
+  place->shared_points += change;
+  if (place->shared_points == 0) covisible.erase(place);
+}
+
+void Map::repair_reference(PointId id) {
+  PointSlot& point_slot = points_[id.number];
+  const std::vector<Observation>& observers = point_slot.observations;
+  if (observers.empty() || std::ranges::binary_search(observers, point_slot.point->reference)) return;
+  point_slot.point->reference = observers.front();
+}
+
+void Map::hand_children_to(KeyframeId id, KeyframeId parent) {
+  std::vector<KeyframeId>& adopted = slot(id).children;
+  for (const KeyframeId child : adopted) slot(child).keyframe->parent = parent;
+
+  std::vector<KeyframeId> children;
+  std::ranges::set_union(slot(parent).children, adopted, std::back_inserter(children));
+  std::erase(children, id);
+  slot(parent).children = std::move(children);
+  adopted.clear();
+}
+
+}  // namespace byre

@@ -1,0 +1,149 @@
+#pragma once
+
+#include "byre/features/features.h"
+#include "byre/map/ids.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// One feature of one keyframe.
+struct Observation {
+  KeyframeId keyframe;
+  int feature = 0;
+  auto operator<=>(const Observation&) const = default;
+};
+
+struct MapPoint {
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();               // of the position, square metres
+  Eigen::Vector3f mean_viewing_direction = Eigen::Vector3f::UnitZ();  // unit length, camera to point
+  Descriptor descriptor{};                                            // the most central of its observations'
+  float min_distance = 0.0f;                                          // metres over which the descriptor holds
+  float max_distance = 0.0f;
+  Observation reference;  // the view whose patch defines the point in the image
+};
+
+// What a keyframe's feature has measured of a point: the keypoint, refined in the image against the point's reference.
+struct Sighting {
+  std::optional<PointId> point;                     // may be offline
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // full-resolution pixels
+  float pixel_sigma = 1.0f;                         // pixels
+};
+
+struct Keyframe {
+  Frame frame;
+  int rig = 0;  // index into Map::rigs()
+  Pose camera_from_world;
+  Matrix6 covariance =
+      Matrix6::Zero();               // of delta in exp_pose(delta) * camera_from_world, relative to the map's origin
+  std::vector<Sighting> sightings;   // one per feature
+  std::optional<KeyframeId> parent;  // the keyframe of the same map it was tracked from; empty for the first
+};
+
+// Where a removed keyframe was: a fixed pose relative to its parent, so that frames tracked from it keep theirs.
+struct RemovedKeyframe {
+  KeyframeId parent;
+  Pose camera_from_parent;
+};
+
+// A keyframe that sees some of the same points.
+struct Covisible {
+  KeyframeId keyframe;
+  int shared_points = 0;
+};
+
+// A plain value: copy it, change the copy, save it. Keeps both ends of every observation in step.
+// Dense containers indexed by id number; numbers are never used twice. Ids handed in must be of this map's origin
+// unless said otherwise. A look-up of a removed or foreign thing gives nullptr, and a change to one does nothing.
+// Pointers and references handed out are valid until the next change.
+class Map {
+ public:
+  explicit Map(Origin origin) : origin_(origin) {}
+
+  Origin origin() const { return origin_; }
+
+  int add_rig(const Rig& rig);  // its index; an equal rig is not stored twice
+  const std::vector<Rig>& rigs() const { return rigs_; }
+
+  // Adds the keyframe with the observations its sightings name. Sightings of points that are gone, and second sightings
+  // of the same point, are dropped; missing ones are filled up with empty ones. A parent that was removed is replaced
+  // by its own parent, one that never was in this map is dropped.
+  KeyframeId add_keyframe(Keyframe keyframe);
+  PointId add_point(const MapPoint& point);
+
+  // The feature's sighting becomes this one. Does nothing (false) when keyframe or point is gone, the feature already
+  // sees a point, or the keyframe already sees this point. An offline point may be seen by an online keyframe.
+  bool add_observation(const Observation& observation, const Sighting& sighting);
+  // A point left without observations goes too; one that loses its reference gets its lowest observation instead.
+  void remove_observation(const Observation& observation);
+
+  void remove_point(PointId id);
+  // Its children are handed to its parent, and its pose is kept relative to it. A keyframe without a parent stays:
+  // the poses of the others hang from it.
+  void remove_keyframe(KeyframeId id);
+  // All observations of removed become observations of kept, except where a keyframe sees both. kept may be offline;
+  // what it is (position, descriptor, reference) stays.
+  void fuse_points(PointId removed, PointId kept);
+
+  void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
+  // A reference that does not observe the point is replaced by the point's lowest observation.
+  void update_point(PointId id, const MapPoint& point);
+
+  const Keyframe* find_keyframe(KeyframeId id) const;
+  const MapPoint* find_point(PointId id) const;
+  std::vector<KeyframeId> keyframe_ids() const;  // ascending
+  std::vector<PointId> point_ids() const;        // ascending
+  int keyframe_count() const { return keyframe_count_; }
+  int point_count() const { return point_count_; }
+
+  // By this map's keyframes, ascending; of an offline point too. Empty for an unknown point.
+  const std::vector<Observation>& observations(PointId id) const;
+  // Keyframes that share points with this one, most shared first (ties: lower id first); maintained, not computed.
+  std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+
+  // The pose of a keyframe now, also of a removed one, through its parents. Precondition: the id was once given out.
+  Pose camera_from_world(KeyframeId id) const;
+
+ private:
+  struct KeyframeSlot {
+    std::optional<Keyframe> keyframe;
+    std::optional<RemovedKeyframe> removed;
+    std::vector<Covisible> covisible;  // by id, ascending
+    std::vector<KeyframeId> children;  // ascending
+  };
+  struct PointSlot {
+    std::optional<MapPoint> point;
+    std::vector<Observation> observations;  // ascending
+  };
+
+  bool was_given_out(KeyframeId id) const;
+  Keyframe* find_own_keyframe(KeyframeId id);
+  KeyframeSlot& slot(KeyframeId id) { return keyframes_[id.number]; }
+  const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
+  // Where the observations of a point are kept, of an offline point too; nullptr for one that is gone.
+  std::vector<Observation>* find_observations(PointId id);
+  std::optional<KeyframeId> living_ancestor(std::optional<KeyframeId> id) const;
+
+  // Takes the observation out at both ends and returns its point, whose slot stays even when nothing is left in it.
+  std::optional<PointId> unlink(const Observation& observation);
+  void count_shared_point(const std::vector<Observation>& observers, KeyframeId with, int change);
+  void add_shared_points(KeyframeId keyframe, KeyframeId with, int change);
+  void repair_reference(PointId id);
+  void hand_children_to(KeyframeId id, KeyframeId parent);
+
+  Origin origin_;
+  std::vector<Rig> rigs_;
+  std::vector<KeyframeSlot> keyframes_;
+  std::vector<PointSlot> points_;
+  std::vector<std::vector<Observation>> offline_observations_;  // by an online map's keyframes, per offline point
+  int keyframe_count_ = 0;
+  int point_count_ = 0;
+};
+
+// Every broken invariant, in words. Empty for a sound map.
+std::vector<std::string> find_faults(const Map& map);
+
+}  // namespace byre

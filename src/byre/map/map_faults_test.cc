@@ -1,0 +1,89 @@
+// What callers can still get wrong: the values themselves. The links between them the map keeps sound on its own.
+
+#include "byre/map/map.h"
+
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Keyframe sound_keyframe() {
+  Keyframe keyframe;
+  keyframe.frame.features = std::make_shared<Features>(640, 480, std::vector<Keypoint>(1, Keypoint{{1.0f, 1.0f}}),
+                                                       std::vector<Descriptor>(1), std::vector<Patch>{});
+  return keyframe;
+}
+
+std::vector<std::string> faults_of(const Keyframe& keyframe) {
+  Map map(Origin::online);
+  map.add_rig({});
+  map.add_keyframe(keyframe);
+  return find_faults(map);
+}
+
+std::vector<std::string> faults_of_point(const std::function<void(MapPoint&)>& spoil) {
+  Map map(Origin::online);
+  map.add_rig({});
+  const KeyframeId keyframe = map.add_keyframe(sound_keyframe());
+  MapPoint point;
+  point.reference = {keyframe, 0};
+  spoil(point);
+  map.add_observation({keyframe, 0}, {map.add_point(point)});
+  return find_faults(map);
+}
+
+TEST(FindFaults, FindsNoneInASoundMap) {
+  EXPECT_THAT(find_faults(Map(Origin::online)), IsEmpty());
+  EXPECT_THAT(faults_of(sound_keyframe()), IsEmpty());
+  EXPECT_THAT(faults_of_point([](MapPoint&) {}), IsEmpty());
+}
+
+TEST(FindFaults, NamesAKeyframeWithoutRig) {
+  Keyframe keyframe = sound_keyframe();
+  keyframe.rig = 1;
+  EXPECT_THAT(faults_of(keyframe), ElementsAre("keyframe online 0 has no rig"));
+}
+
+TEST(FindFaults, NamesAKeyframeWithoutProperPose) {
+  Keyframe stretched = sound_keyframe();
+  stretched.camera_from_world.rotation.coeffs() *= 2.0;
+  EXPECT_THAT(faults_of(stretched), ElementsAre(HasSubstr("no proper pose")));
+  Keyframe nowhere = sound_keyframe();
+  nowhere.camera_from_world.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(faults_of(nowhere), ElementsAre(HasSubstr("no proper pose")));
+}
+
+TEST(FindFaults, NamesAKeyframeWithMoreSightingsThanFeatures) {
+  Keyframe keyframe = sound_keyframe();
+  keyframe.sightings.resize(2);
+  EXPECT_THAT(faults_of(keyframe), ElementsAre(HasSubstr("one sighting per feature")));
+}
+
+TEST(FindFaults, NamesAPointThatNobodySees) {
+  Map map(Origin::offline);
+  map.add_point({});
+  EXPECT_THAT(find_faults(map), Contains("point offline 0 is seen by no keyframe"));
+}
+
+TEST(FindFaults, NamesAPointWithSpoiltValues) {
+  EXPECT_THAT(
+      faults_of_point([](MapPoint& point) { point.position_in_world.y() = std::numeric_limits<double>::infinity(); }),
+      ElementsAre(HasSubstr("no finite position")));
+  EXPECT_THAT(faults_of_point([](MapPoint& point) { point.mean_viewing_direction.setZero(); }),
+              ElementsAre(HasSubstr("no unit viewing direction")));
+  EXPECT_THAT(faults_of_point([](MapPoint& point) { point.min_distance = 2.0f; }),
+              ElementsAre(HasSubstr("no proper range of distances")));
+  EXPECT_THAT(faults_of_point([](MapPoint& point) { point.reference.feature = 5; }),
+              ElementsAre(HasSubstr("a reference that does not see it")));
+}
+
+}  // namespace
+}  // namespace byre
