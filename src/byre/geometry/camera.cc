@@ -30,12 +30,12 @@ Lens lens_of(const Camera& camera) {
   return {};
 }
 
-// The five coefficients are of a Bernstein polynomial: it lies in their hull, so if all are positive so is it.
-// Otherwise de Casteljau's halving decides, to an interval of 2^-halvings.
+// The five coefficients are of a Bernstein polynomial: it lies in their hull, so if all are positive, so is it on [0,
+// 1]. Otherwise de Casteljau's halving decides, to an interval of 2^-halvings.
 bool is_positive(const std::array<double, 5>& bernstein, int halvings) {
   if (std::all_of(bernstein.begin(), bernstein.end(), [](double value) { return value > 0.0; })) return true;
   if (!(bernstein.front() > 0.0 && bernstein.back() > 0.0) || halvings == 0) return false;
-  std::array<double, 5> left, right = bernstein;
+  std::array<double, 5> left{}, right = bernstein;
   for (int kept = 0; kept < 5; ++kept) {
     left[kept] = right[0];
     for (int i = 0; i < 4 - kept; ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
