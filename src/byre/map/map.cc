@@ -50,8 +50,9 @@ int Map::add_rig(const Rig& rig) {
 KeyframeId Map::add_keyframe(Keyframe keyframe) {
   const KeyframeId id{origin_, static_cast<std::uint32_t>(keyframes_.size())};
   const int feature_count = keyframe.frame.features ? keyframe.frame.features->size() : 0;
-  const std::vector<Sighting> sightings = std::move(keyframe.sightings);
-  keyframe.sightings.assign(std::max(sightings.size(), static_cast<std::size_t>(feature_count)), Sighting{});
+  keyframe.sightings.resize(std::max(keyframe.sightings.size(), static_cast<std::size_t>(feature_count)));
+  const std::vector<Sighting> sightings = keyframe.sightings;
+  for (Sighting& sighting : keyframe.sightings) sighting.point.reset();
   keyframe.parent = living_ancestor(keyframe.parent);
 
   if (keyframe.parent) slot(*keyframe.parent).children.push_back(id);
@@ -224,7 +225,7 @@ std::optional<PointId> Map::unlink(const Observation& observation) {
   std::vector<Observation>& observers = *find_observations(point);
   observers.erase(lower_bound_of(observers, observation.keyframe));
   count_shared_point(observers, observation.keyframe, -1);
-  sighting = Sighting{};
+  sighting.point.reset();
   return point;
 }
 

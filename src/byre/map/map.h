@@ -37,8 +37,8 @@ struct Keyframe {
   Frame frame;
   int rig = 0;  // index into Map::rigs()
   Pose camera_from_world;
-  Matrix6 covariance =
-      Matrix6::Zero();               // of delta in exp_pose(delta) * camera_from_world, relative to the map's origin
+  // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin.
+  Matrix6 covariance = Matrix6::Zero();
   std::vector<Sighting> sightings;   // one per feature
   std::optional<KeyframeId> parent;  // the keyframe of the same map it was tracked from; empty for the first
 };
@@ -68,9 +68,9 @@ class Map {
   int add_rig(const Rig& rig);  // its index; an equal rig is not stored twice
   const std::vector<Rig>& rigs() const { return rigs_; }
 
-  // Adds the keyframe with the observations its sightings name. Sightings of points that are gone, and second sightings
-  // of the same point, are dropped; missing ones are filled up with empty ones. A parent that was removed is replaced
-  // by its own parent, one that never was in this map is dropped.
+  // Adds the keyframe with the observations its sightings name. Points that are gone, and second sightings of the same
+  // point, are dropped from the sightings; missing sightings are filled up with empty ones. A parent that was removed
+  // is replaced by its own parent, one that never was in this map is dropped.
   KeyframeId add_keyframe(Keyframe keyframe);
   PointId add_point(const MapPoint& point);
 

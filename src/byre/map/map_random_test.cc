@@ -235,7 +235,7 @@ class MapUnderRandomOperations : public ::testing::TestWithParam<std::uint64_t> 
 
 TEST_P(MapUnderRandomOperations, EqualsItsModelAndStaysSound) {
   RandomOperations operations(GetParam());
-  for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+  for (int i = 0; i < 1000 && !HasFailure(); ++i) {
     SCOPED_TRACE("step " + std::to_string(i));
     operations.step();
     expect_same_keyframes(operations.map, operations.model);

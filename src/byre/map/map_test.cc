@@ -1,5 +1,6 @@
 #include "byre/map/map.h"
 
+#include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_view.h"
 
 #include <gmock/gmock.h>
@@ -15,11 +16,6 @@ constexpr int kAll = 1000;
 
 MATCHER_P2(SharesPoints, keyframe, count, "") {
   return arg.keyframe == keyframe && arg.shared_points == count;
-}
-
-MATCHER_P(PoseNear, expected, "") {
-  const Pose difference = arg * inverse(expected);
-  return difference.translation.norm() < 1e-9 && angle_between(arg.rotation, expected.rotation) < 1e-8;
 }
 
 Keyframe keyframe_with(int feature_count, std::optional<KeyframeId> parent = {}) {
@@ -90,6 +86,13 @@ TEST_F(SmallMap, KeepsWhatASightingMeasured) {
   EXPECT_TRUE(map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f}));
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel, Eigen::Vector2f(3.5f, 4.5f));
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel_sigma, 0.7f);
+}
+
+TEST_F(SmallMap, KeepsWhereAFeatureIsWhenItLosesItsPoint) {
+  map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f});
+  map.remove_observation({first, 2});
+  EXPECT_EQ(seen_by(first, 2), std::nullopt);
+  EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel, Eigen::Vector2f(3.5f, 4.5f));
 }
 
 TEST_F(SmallMap, RefusesAnObservationThatContradictsAnother) {
@@ -271,12 +274,12 @@ TEST(CameraFromWorld, FollowsRemovedKeyframesToTheirMovedAncestor) {
   const Pose last_from_root = map.camera_from_world(last) * inverse(map.camera_from_world(root));
   map.remove_keyframe(last);
   map.remove_keyframe(middle);
-  EXPECT_THAT(map.camera_from_world(last), PoseNear(motion(2.0, 0.7)));
+  EXPECT_THAT(map.camera_from_world(last), PoseNear(motion(2.0, 0.7), 1e-9, 1e-8));
 
   const Pose corrected = motion(-3.0, 1.1);
   map.move_keyframe(root, corrected, Matrix6::Zero());
-  EXPECT_THAT(map.camera_from_world(last), PoseNear(last_from_root * corrected));
-  EXPECT_THAT(map.camera_from_world(middle), PoseNear(middle_from_root * corrected));
+  EXPECT_THAT(map.camera_from_world(last), PoseNear(last_from_root * corrected, 1e-9, 1e-8));
+  EXPECT_THAT(map.camera_from_world(middle), PoseNear(middle_from_root * corrected, 1e-9, 1e-8));
 }
 
 TEST(AddRig, StoresEqualRigsOnce) {
@@ -318,11 +321,26 @@ TEST(MapView, ReadsBothMapsAsOne) {
   EXPECT_EQ(view.rig_of(*view.find_keyframe(new_keyframe), new_keyframe).width, 222);
 }
 
+TEST(MapView, VisitsTheObservationsOfAnOfflinePointInBothMaps) {
+  Map offline(Origin::offline);
+  Map online(Origin::online);
+  const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with(1));
+  const KeyframeId new_keyframe = online.add_keyframe(keyframe_with(2));
+  const PointId old_point = add_seen_point(offline, {old_keyframe, 0});
+  online.add_observation({new_keyframe, 1}, {old_point});
+
+  std::vector<Observation> visited;
+  const auto collect = [&](const Observation& observation) { visited.push_back(observation); };
+  MapView(&offline, online).visit_observations(old_point, collect);
+  EXPECT_THAT(visited, ElementsAre(Observation{old_keyframe, 0}, Observation{new_keyframe, 1}));
+}
+
 TEST(MapView, FindsNothingInAnAbsentOfflineMap) {
   const Map online(Origin::online);
   const MapView view(nullptr, online);
   EXPECT_EQ(view.find_point({Origin::offline, 0}), nullptr);
   EXPECT_EQ(view.find_keyframe({Origin::offline, 0}), nullptr);
+  EXPECT_THAT(view.covisible_keyframes({Origin::offline, 0}, kAll), IsEmpty());
 }
 
 }  // namespace

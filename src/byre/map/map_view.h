@@ -2,6 +2,9 @@
 
 #include "byre/map/map.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace byre {
 
 // Reads the offline and the online map as one. Borrows both; the offline map may be absent (nullptr).
@@ -15,6 +18,16 @@ class MapView {
   const MapPoint* find_point(PointId id) const;        // nullptr when it is gone
   const Keyframe* find_keyframe(KeyframeId id) const;  // nullptr when it is gone
   const Rig& rig_of(const Keyframe& keyframe, KeyframeId id) const;
+
+  // Calls visit(observation) for every keyframe, of both maps, that sees the point.
+  template <typename Visitor>
+  void visit_observations(PointId id, Visitor visit) const {
+    if (offline_ != nullptr) std::ranges::for_each(offline_->observations(id), visit);
+    std::ranges::for_each(online_->observations(id), visit);
+  }
+
+  // Keyframes of the same map that share points with this one, most shared first.
+  std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
  private:
   const Map* of(Origin origin) const { return origin == Origin::offline ? offline_ : online_; }
