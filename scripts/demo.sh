@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Shows byre at work: maps a stereo recording and, where the recording holds ground truth, says how exact the result is.
+# Usage: demo.sh [RECORDING]
+# RECORDING is a folder in EuRoC or KITTI format; without one a small recording of a made-up room is rendered first.
+# Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
+set -euo pipefail
+
+if (($# > 1)) || [[ ${1:-} == -* ]]; then
+  echo "usage: demo.sh [RECORDING]" >&2
+  exit 2
+fi
+recording=${1:-}
+if [[ -n $recording ]]; then
+  [[ -d $recording ]] || { echo "demo.sh: $recording: no such folder" >&2; exit 1; }
+  recording=$(cd "$recording" && pwd)
+fi
+results=${BYRE_DEMO_DIR:-$HOME/.cache/byre/demo}
+mkdir -p "$results"
+results=$(cd "$results" && pwd)
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+scripts/build.sh release byre_cli render_room
+byre=build/release/src/byre/cli/byre
+
+if [[ -z $recording ]]; then
+  recording=$results/room
+  rm -rf "$recording" # always ours: rendered below
+  echo "Rendering a recording of a made-up room"
+  build/release/examples/render_room "$recording"
+fi
+
+echo "Mapping $recording"
+"$byre" map "$recording" --trajectory "$results/trajectory.txt" \
+  --causal-trajectory "$results/causal_trajectory.txt" --stats "$results/stats.json"
+
+# EuRoC keeps the ground truth inside a recording, KITTI beside its sequences.
+has_truth=false
+for truth in "$recording"/{mav0/,}state_groundtruth_estimate0/data.csv "$recording/../../poses/${recording##*/}.txt"; do
+  [[ ! -f $truth ]] || has_truth=true
+done
+if $has_truth; then
+  echo "Comparing with the ground truth"
+  "$byre" evaluate --estimate "$results/trajectory.txt" --truth "$recording" --frames-of "$recording" --label final |
+    tee "$results/evaluation.txt"
+fi
+
+echo
+echo "Trajectory, after all corrections:  $results/trajectory.txt"
+echo "Trajectory, as known at the time:   $results/causal_trajectory.txt"
+echo "Statistics of the run:              $results/stats.json"
+! $has_truth || echo "Accuracy:                           $results/evaluation.txt"

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Checks the house rules that the compiler does not: which room may include what, and what no library code may do.
+
+Usage: check_floors.py [SOURCE]        SOURCE is the folder of rooms, src/byre of this project unless given.
+
+A room may include rooms on lower floors only. Some headers and calls are fenced in, see KEPT_IN and FORBIDDEN.
+Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 nothing to check.
+"""
+import pathlib
+import re
+import sys
+from typing import Iterator, NamedTuple
+
+# From the ground up; ARCHITECTURE.md says what each room is for.
+FLOORS = [
+    {"input"},
+    {"geometry"},
+    {"features", "optimise", "evaluation"},
+    {"dataset"},
+    {"map"},
+    {"place", "simulation"},
+    {"slam"},
+    {"session"},
+    {"viewer"},
+    {"cli"},
+]
+FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
+EVERY_ROOM = frozenset(FLOOR)
+
+# Headers that only some rooms may include. Tests are free to.
+KEPT_IN = {
+    r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
+        "session", "simulation", "viewer", "cli"},
+    r"mutex|shared_mutex": {"session", "viewer"},
+    r"filesystem|fstream": {"evaluation", "dataset", "map", "place", "simulation", "viewer", "cli"},
+    r"iostream|CLI/.*": {"cli"},
+    r"spdlog/.*": {"session", "viewer", "cli"},
+    r"ceres/.*": {"optimise"},
+    r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
+    r"yaml-cpp/.*|nlohmann/.*": {"dataset", "viewer", "cli"},
+}
+
+
+class Rule(NamedTuple):
+    pattern: str
+    rooms: frozenset  # where the rule does not hold
+    reason: str
+
+
+# Calls that library code does without. Tests keep to these too.
+FORBIDDEN = [
+    Rule(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(std::)?(printf|fprintf|puts|fputs|putchar|perror)\s*\(",
+         frozenset({"cli"}), "only cli prints: return what is to be told, or throw InputError"),
+    Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
+         "only cli ends the program: throw InputError for bad input, assert what cannot be"),
+    Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
+         "the same seed must give the same result: take the seed as an option"),
+]
+
+
+class Fault(NamedTuple):
+    path: pathlib.Path
+    line: int  # from 1
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.message}"
+
+
+def listing(rooms) -> str:
+    return ", ".join(sorted(rooms, key=lambda room: (FLOOR[room], room)))
+
+
+TOKEN = re.compile(
+    r"""R"(?P<mark>\w*)\(.*?\)(?P=mark)"    # raw string
+      | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])'  # string, character
+      | //[^\n]* | /\*.*?\*/                         # comments
+    """, re.DOTALL | re.VERBOSE)
+
+
+def without_comments(text: str) -> str:
+    """The code with comments and raw strings blanked out; line numbers stay, and so do other literals."""
+    def kept(found: re.Match) -> str:
+        is_literal = found[0][0] in "\"'"
+        return found[0] if is_literal else "\n" * found[0].count("\n")
+    return TOKEN.sub(kept, text)
+
+
+def without_strings(line: str) -> str:
+    return re.sub(r'"(?:\\.|[^"\\])*"', '""', line)
+
+
+def room_fault(room: str, other: str) -> str | None:
+    if other == room:
+        return None
+    if other not in FLOOR:
+        return f"there is no room '{other}'; the rooms are {listing(FLOOR)}"
+    if FLOOR[other] == FLOOR[room]:
+        return f"{room} must not include {other}: both are on floor {FLOOR[room]}"
+    if FLOOR[other] > FLOOR[room]:
+        return f"{room} (floor {FLOOR[room]}) must not include {other} (floor {FLOOR[other]}): only lower floors"
+    return None
+
+
+def fence_fault(room: str, header: str) -> str | None:
+    for pattern, rooms in KEPT_IN.items():
+        if re.fullmatch(pattern, header) and room not in rooms:
+            return f"{room} must not include <{header}>: it is kept in {listing(rooms)}"
+    return None
+
+
+def include_fault(room: str, header: str, is_test: bool) -> str | None:
+    if found := re.match(r"byre/(\w+)/", header):
+        return room_fault(room, found[1])
+    return None if is_test else fence_fault(room, header)
+
+
+def line_messages(room: str, line: str, is_test: bool) -> Iterator[str]:
+    if found := re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line):
+        if message := include_fault(room, found[1], is_test):
+            yield message
+        return
+    for rule in FORBIDDEN:
+        if room not in rule.rooms and (call := re.search(rule.pattern, without_strings(line))):
+            yield f"'{call[0].rstrip('( ')}' in {room}: {rule.reason}"
+
+
+def file_faults(path: pathlib.Path, room: str) -> Iterator[Fault]:
+    is_test = path.stem.endswith("_test")
+    for number, line in enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1):
+        for message in line_messages(room, line, is_test):
+            yield Fault(path, number, message)
+
+
+def source_files(source: pathlib.Path) -> list[pathlib.Path]:
+    return sorted(path for path in source.rglob("*") if path.suffix in {".h", ".cc"} and path.is_file())
+
+
+def faults(source: pathlib.Path) -> Iterator[Fault]:
+    for path in source_files(source):
+        room = path.relative_to(source).parts[0]
+        if room == path.name:
+            yield Fault(path, 1, f"lies in no room; the rooms are {listing(FLOOR)}")
+        elif room not in EVERY_ROOM:
+            yield Fault(path, 1, f"'{room}' has no floor; the rooms are {listing(FLOOR)}")
+        else:
+            yield from file_faults(path, room)
+
+
+def main(arguments: list[str]) -> int:
+    if len(arguments) > 1 or any(argument.startswith("-") for argument in arguments):
+        print(__doc__, file=sys.stderr)
+        return 2
+    default = pathlib.Path(__file__).resolve().parent.parent / "src" / "byre"
+    source = pathlib.Path(arguments[0]) if arguments else default
+    files = source_files(source)
+    if not files:
+        print(f"{source}: no .h or .cc file in it", file=sys.stderr)
+        return 2
+    found = list(faults(source))
+    for fault in found:
+        print(fault)
+    print(f"{len(files)} files, {len(found)} faults" if found else f"floors hold in {len(files)} files")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
