@@ -1,0 +1,51 @@
+#include "byre/features/align.h"
+
+#include "byre/features/align_window.h"
+
+namespace byre {
+namespace {
+
+constexpr int kTemplateSize = 8;
+
+// The reference as it would look in the current view. Empty where the warped template leaves the patch.
+std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch& reference,
+                                                                     const Eigen::Vector2f& reference_pixel,
+                                                                     const Eigen::Matrix2f& reference_from_current) {
+  std::array<float, kTemplateSize * kTemplateSize> values;
+  constexpr float kHalf = 0.5f * (kTemplateSize - 1);
+  // The warped square lies inside when its corners do.
+  const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
+  const Eigen::Vector2f low = reference_pixel - reach;
+  const Eigen::Vector2f high = reference_pixel + reach;
+  constexpr float kSlack = 0.01f;  // for the rounding of the walk along a row
+  if (!(low.minCoeff() >= kSlack && high.maxCoeff() <= Patch::kSize - 1 - kSlack)) return std::nullopt;
+  const Eigen::Vector2f along_row = reference_from_current.col(0);
+  for (int y = 0; y < kTemplateSize; ++y) {
+    Eigen::Vector2f at =
+        reference_pixel + reference_from_current * Eigen::Vector2f(-kHalf, static_cast<float>(y) - kHalf);
+    for (int x = 0; x < kTemplateSize; ++x, at += along_row) {
+      const int column = static_cast<int>(at.x());
+      const int row = static_cast<int>(at.y());
+      const float fx = at.x() - static_cast<float>(column);
+      const float fy = at.y() - static_cast<float>(row);
+      const std::uint8_t* const p = reference.pixels.data() + row * Patch::kSize + column;
+      const float upper = p[0] + fx * static_cast<float>(p[1] - p[0]);
+      const float lower = p[Patch::kSize] + fx * static_cast<float>(p[Patch::kSize + 1] - p[Patch::kSize]);
+      values[static_cast<std::size_t>(y * kTemplateSize + x)] = upper + fy * (lower - upper);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<Alignment> align_patches(const Patch& reference, const Eigen::Vector2f& reference_pixel,
+                                       const Patch& current, const Eigen::Matrix2f& reference_from_current,
+                                       const Eigen::Vector2f& start, const AlignOptions& options) {
+  const auto grey = warp(reference, reference_pixel, reference_from_current);
+  if (!grey) return std::nullopt;
+  const GreyWindow window{current.pixels.data(), Patch::kSize, Patch::kSize, Patch::kSize};
+  return align_window<kTemplateSize>(CentredTemplate<kTemplateSize>(*grey), window, start, options);
+}
+
+}  // namespace byre

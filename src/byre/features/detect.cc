@@ -1,0 +1,106 @@
+#include "byre/features/detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <opencv2/features2d.hpp>
+
+namespace byre {
+namespace {
+
+constexpr int kFastRadius = 3;
+
+// The part of the level in which corners may lie, widened by what FAST itself cuts off.
+cv::Rect searched_area(const cv::Mat& level, int border) {
+  const int margin = border - kFastRadius;
+  return {margin, margin, level.cols - 2 * margin, level.rows - 2 * margin};
+}
+
+void append_corners(const cv::Mat& level, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
+  thread_local std::vector<cv::KeyPoint> found;
+  cv::FAST(level(area), found, threshold, true);
+  for (const cv::KeyPoint& keypoint : found) {
+    corners.push_back(
+        {static_cast<int>(keypoint.pt.x) + area.x, static_cast<int>(keypoint.pt.y) + area.y, keypoint.response});
+  }
+}
+
+// Looks again, with the lower threshold, into the cells that have no corner yet.
+void search_empty_cells(const cv::Mat& level, const DetectOptions& options, std::vector<Corner>& corners) {
+  const cv::Rect whole = searched_area(level, options.border);
+  const cv::Rect inner(options.border, options.border, level.cols - 2 * options.border,
+                       level.rows - 2 * options.border);
+  const int columns = (inner.width + options.cell_size - 1) / options.cell_size;
+  const int rows = (inner.height + options.cell_size - 1) / options.cell_size;
+  std::vector<bool> occupied(static_cast<std::size_t>(columns * rows), false);
+  for (const Corner& corner : corners) {
+    const int cell = (corner.y - inner.y) / options.cell_size * columns + (corner.x - inner.x) / options.cell_size;
+    occupied[static_cast<std::size_t>(cell)] = true;
+  }
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      if (occupied[static_cast<std::size_t>(row * columns + column)]) continue;
+      const cv::Rect cell(inner.x + column * options.cell_size - kFastRadius,
+                          inner.y + row * options.cell_size - kFastRadius, options.cell_size + 2 * kFastRadius,
+                          options.cell_size + 2 * kFastRadius);
+      const cv::Rect area = cell & whole;
+      if (std::min(area.width, area.height) <= 2 * kFastRadius) continue;
+      append_corners(level, area, options.min_fast_threshold, corners);
+    }
+  }
+}
+
+struct RankedCorner {
+  Corner corner;
+  int square = 0;
+  int rank = 0;  // within its square, strongest first
+};
+
+std::vector<RankedCorner> rank_in_squares(const std::vector<Corner>& corners, const cv::Size& size, int max_corners) {
+  const double area = static_cast<double>(size.width) * size.height;
+  const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
+  const int columns = static_cast<int>(size.width / side) + 1;
+  std::vector<RankedCorner> ranked;
+  ranked.reserve(corners.size());
+  for (const Corner& corner : corners) {
+    ranked.push_back({corner, static_cast<int>(corner.y / side) * columns + static_cast<int>(corner.x / side), 0});
+  }
+  std::sort(ranked.begin(), ranked.end(), [](const RankedCorner& a, const RankedCorner& b) {
+    return std::tuple(a.square, -a.corner.response, a.corner.y, a.corner.x) <
+           std::tuple(b.square, -b.corner.response, b.corner.y, b.corner.x);
+  });
+  for (std::size_t i = 1; i < ranked.size(); ++i) {
+    if (ranked[i].square == ranked[i - 1].square) ranked[i].rank = ranked[i - 1].rank + 1;
+  }
+  return ranked;
+}
+
+}  // namespace
+
+std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+  const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
+  if (std::min(area.width, area.height) <= 2 * kFastRadius) return {};
+  std::vector<Corner> corners;
+  append_corners(level, area, options.fast_threshold, corners);
+  search_empty_cells(level, options, corners);
+
+  std::vector<RankedCorner> ranked = rank_in_squares(corners, level.size(), max_corners);
+  const std::size_t wanted = std::min(ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
+  const auto by_rank = [](const RankedCorner& a, const RankedCorner& b) {
+    return std::tuple(a.rank, -a.corner.response, a.square) < std::tuple(b.rank, -b.corner.response, b.square);
+  };
+  if (wanted < ranked.size()) {
+    std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(wanted), ranked.end(), by_rank);
+  }
+  ranked.resize(wanted);
+  std::sort(ranked.begin(), ranked.end(), [](const RankedCorner& a, const RankedCorner& b) {
+    return std::tuple(a.square, a.rank) < std::tuple(b.square, b.rank);
+  });
+  std::vector<Corner> spread;
+  spread.reserve(ranked.size());
+  for (const RankedCorner& candidate : ranked) spread.push_back(candidate.corner);
+  return spread;
+}
+
+}  // namespace byre

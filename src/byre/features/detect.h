@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace byre {
+
+struct Corner {
+  int x = 0;  // octave pixels
+  int y = 0;
+  float response = 0.0f;
+};
+
+struct DetectOptions {
+  int fast_threshold = 20;     // grey values
+  int min_fast_threshold = 7;  // used where a cell has no corner at fast_threshold
+  int cell_size = 32;          // octave pixels: of the cells that are looked at again
+  int border = 19;             // octave pixels kept free of corners
+};
+
+// FAST-9 corners (Rosten 2006) of one octave, at most max_corners, spread evenly: the image is divided into about as
+// many squares as corners are wanted, each gives its strongest, then its second, until there are enough. Ordered by row
+// of squares; the same image gives the same corners.
+std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,152 @@
+#include "byre/features/extract.h"
+
+#include "byre/features/descriptor.h"
+#include "byre/features/detect.h"
+#include "byre/features/pyramid.h"
+#include "byre/features/rectify.h"
+#include "byre/features/stereo.h"
+#include "byre/input/input_error.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+namespace byre {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+// A header over the image's own pixels; nothing writes through it.
+cv::Mat as_matrix(const Image& image, const Rig& rig) {
+  if (image.width != rig.width || image.height != rig.height) {
+    throw InputError("image",
+                     "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                         " pixels, the calibration says " + std::to_string(rig.width) + " x " +
+                         std::to_string(rig.height),
+                     "use the calibration of this camera at this resolution");
+  }
+  return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// How many features each octave gets: in proportion to its side, finer octaves more.
+std::array<int, kOctaves> share_out(int max_features) {
+  double sum = 0.0;
+  for (const float scale : kScaleOfOctave) sum += 1.0 / scale;
+  std::array<int, kOctaves> quota{};
+  int rest = max_features;
+  for (std::size_t octave = 0; octave + 1 < kOctaves; ++octave) {
+    quota[octave] = static_cast<int>(std::lround(max_features / (kScaleOfOctave[octave] * sum)));
+    rest -= quota[octave];
+  }
+  quota.back() = std::max(0, rest);
+  return quota;
+}
+
+Patch cut_patch(const cv::Mat& level, int x, int y) {
+  constexpr int kHalf = Patch::kSize / 2;
+  Patch patch;
+  for (int row = 0; row < Patch::kSize; ++row) {
+    const std::uint8_t* const source = level.ptr<std::uint8_t>(y - kHalf + row) + x - kHalf;
+    std::copy_n(source, Patch::kSize, patch.pixels.data() + row * Patch::kSize);
+  }
+  patch.centre = Eigen::Vector2f::Constant(kHalf);
+  return patch;
+}
+
+struct Described {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  std::vector<Patch> patches;
+};
+
+}  // namespace
+
+struct Extractor::State {
+  Rectifier rectifier;
+  ExtractOptions options;
+  Pyramid left;
+  Pyramid right;
+  cv::Mat blurred;
+
+  void describe_octave(int octave, int quota, Described& described);
+  Described describe_all();
+};
+
+void Extractor::State::describe_octave(int octave, int quota, Described& described) {
+  const cv::Mat& level = left.levels[static_cast<std::size_t>(octave)];
+  const DetectOptions detect{options.fast_threshold, options.min_fast_threshold, 32, kDescriptorRadius};
+  const std::vector<Corner> corners = detect_corners(level, quota, detect);
+  if (corners.empty()) return;
+  cv::GaussianBlur(level, blurred, cv::Size(7, 7), 2.0, 2.0, cv::BORDER_REFLECT_101);
+  for (const Corner& corner : corners) {
+    Keypoint keypoint;
+    keypoint.pixel = full_from_octave({static_cast<float>(corner.x), static_cast<float>(corner.y)}, octave);
+    keypoint.octave = static_cast<std::uint8_t>(octave);
+    keypoint.response = corner.response;
+    keypoint.angle = orientation(level.ptr<std::uint8_t>(corner.y) + corner.x, static_cast<std::ptrdiff_t>(level.step));
+    described.descriptors.push_back(describe(blurred.ptr<std::uint8_t>(corner.y) + corner.x,
+                                             static_cast<std::ptrdiff_t>(blurred.step), keypoint.angle));
+    described.patches.push_back(cut_patch(level, corner.x, corner.y));
+    described.keypoints.push_back(keypoint);
+  }
+}
+
+Described Extractor::State::describe_all() {
+  const std::array<int, kOctaves> quota = share_out(options.max_features);
+  Described described;
+  described.keypoints.reserve(static_cast<std::size_t>(options.max_features));
+  described.descriptors.reserve(static_cast<std::size_t>(options.max_features));
+  described.patches.reserve(static_cast<std::size_t>(options.max_features));
+  for (int octave = 0; octave < kOctaves; ++octave) {
+    describe_octave(octave, quota[static_cast<std::size_t>(octave)], described);
+  }
+  return described;
+}
+
+Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
+    : state_(new State{Rectifier(calibration), options, {}, {}, {}}) {}
+Extractor::~Extractor() = default;
+Extractor::Extractor(Extractor&&) noexcept = default;
+Extractor& Extractor::operator=(Extractor&&) noexcept = default;
+
+const Rig& Extractor::rig() const {
+  return state_->rectifier.rig();
+}
+
+Extraction Extractor::extract(const ImageFrame& images) {
+  const Clock::time_point start = Clock::now();
+  const bool stereo = rig().is_stereo() && images.right.has_value();
+  const cv::Mat left = state_->rectifier.left(as_matrix(images.left, rig()));
+  const cv::Mat right = stereo ? state_->rectifier.right(as_matrix(*images.right, rig())) : cv::Mat();
+  const Clock::time_point rectified = Clock::now();
+
+  build_pyramid(left, state_->left);
+  Described described = state_->describe_all();
+  const Clock::time_point extracted = Clock::now();
+
+  if (stereo) {
+    build_pyramid(right, state_->right);
+    const auto matches = match_stereo(state_->left, state_->right, rig(), described.keypoints, {});
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (!matches[i]) continue;
+      described.keypoints[i].disparity = matches[i]->disparity;
+      described.keypoints[i].disparity_sigma = matches[i]->sigma;
+    }
+  }
+  Extraction extraction;
+  extraction.frame.time = images.time;
+  extraction.frame.features =
+      std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
+                                       std::move(described.descriptors), std::move(described.patches));
+  extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),
+                      seconds_between(extracted, Clock::now())};
+  return extraction;
+}
+
+}  // namespace byre

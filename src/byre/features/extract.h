@@ -1,0 +1,50 @@
+#pragma once
+
+#include "byre/features/features.h"
+#include "byre/features/image.h"
+#include "byre/geometry/camera.h"
+
+#include <memory>
+
+namespace byre {
+
+struct ExtractOptions {
+  int max_features = 1000;
+  int fast_threshold = 20;     // grey values
+  int min_fast_threshold = 7;  // used where the image is dull
+};
+
+// Wall time of the stages of one extraction, seconds.
+struct ExtractTimes {
+  double rectify = 0.0;
+  double extract = 0.0;  // pyramid, corners, descriptors, patches
+  double stereo = 0.0;
+};
+
+struct Extraction {
+  Frame frame;
+  ExtractTimes times;
+};
+
+// The front end of one camera rig: pixels in, an immutable Frame out. Keeps its working memory between calls;
+// use one from one thread at a time.
+class Extractor {
+ public:
+  // Throws InputError when the calibration cannot be rectified.
+  Extractor(const Calibration& calibration, const ExtractOptions& options);
+  ~Extractor();
+  Extractor(Extractor&&) noexcept;
+  Extractor& operator=(Extractor&&) noexcept;
+
+  const Rig& rig() const;  // the ideal rig whose pixels the features are given in
+
+  // Rectifies, detects, describes and, where there is a right image, matches left to right. A frame of a stereo rig
+  // without a right image has no disparities. Throws InputError when an image's size is not the calibration's.
+  Extraction extract(const ImageFrame& images);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace byre

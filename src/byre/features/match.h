@@ -1,0 +1,23 @@
+#pragma once
+
+#include "byre/features/features.h"
+
+#include <vector>
+
+namespace byre {
+
+struct Match {
+  int first = 0;  // feature index
+  int second = 0;
+  int distance = 0;  // Hamming bits
+};
+
+struct MatchOptions {
+  int max_distance = 60;   // bits
+  float max_ratio = 0.8f;  // best over second best
+};
+
+// Every feature of first against every one of second; only pairs that are each other's best. Ordered by first.
+std::vector<Match> match_features(const Features& first, const Features& second, const MatchOptions& options);
+
+}  // namespace byre

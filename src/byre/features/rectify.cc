@@ -1,0 +1,160 @@
+#include "byre/features/rectify.h"
+
+#include "byre/input/input_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <opencv2/imgproc.hpp>
+
+namespace byre {
+namespace {
+
+// One camera and how it must be turned.
+struct View {
+  const Camera* camera;
+  Eigen::Quaterniond rectified_from_camera;
+};
+
+// Part of the plane z = 1 of the rectified camera.
+struct Field {
+  double left = -std::numeric_limits<double>::infinity();
+  double right = std::numeric_limits<double>::infinity();
+  double top = -std::numeric_limits<double>::infinity();
+  double bottom = std::numeric_limits<double>::infinity();
+};
+
+// The direction of a border pixel; of the outermost pixel towards it that the lens model can invert.
+Eigen::Vector3d outermost_bearing(const Camera& camera, const Eigen::Vector2d& border) {
+  const Eigen::Vector2d centre(camera.cx, camera.cy);
+  for (double fraction = 1.0; fraction > 0.1; fraction -= 0.02) {
+    const auto bearing = camera.bearing(centre + fraction * (border - centre));
+    if (bearing && bearing->z() > 0.1) return *bearing;
+  }
+  throw InputError("calibration", "the distortion cannot be inverted near the image centre",
+                   "check intrinsics and distortion coefficients");
+}
+
+Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3d ray = view.rectified_from_camera * outermost_bearing(*view.camera, pixel);
+  if (ray.z() < 0.05) {
+    throw InputError("calibration", "the cameras look in directions too far apart to be rectified",
+                     "check the extrinsic calibration of the pair");
+  }
+  return ray.head<2>() / ray.z();
+}
+
+// Shrinks the field to the largest upright rectangle inside this view's own.
+void clip_to_view(const View& view, Field& field) {
+  const double last_u = view.camera->width - 1;
+  const double last_v = view.camera->height - 1;
+  constexpr int kSamples = 32;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double u = last_u * i / kSamples;
+    const double v = last_v * i / kSamples;
+    field.left = std::max(field.left, on_rectified_plane(view, {0.0, v}).x());
+    field.right = std::min(field.right, on_rectified_plane(view, {last_u, v}).x());
+    field.top = std::max(field.top, on_rectified_plane(view, {u, 0.0}).y());
+    field.bottom = std::min(field.bottom, on_rectified_plane(view, {u, last_v}).y());
+  }
+}
+
+// Both images turned so that their rows run along the baseline and both look along the mean of the optical axes.
+Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
+  const Pose left_from_right = inverse(partner.right_from_left);
+  const Eigen::Vector3d x_axis = left_from_right.translation.normalized();
+  if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < 0.5) {
+    throw InputError("calibration", "the right camera does not lie to the right of the left one",
+                     "check the extrinsic calibration; left and right may be swapped");
+  }
+  const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d z_axis = (mean_axis - mean_axis.dot(x_axis) * x_axis).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << x_axis.transpose(), z_axis.cross(x_axis).transpose(), z_axis.transpose();
+  return Eigen::Quaterniond(rotation);
+}
+
+bool is_ideal(const Camera& camera) {
+  return camera.model == CameraModel::pinhole && camera.fx == camera.fy;
+}
+
+bool is_rectified(const Calibration& calibration) {
+  if (!is_ideal(calibration.left)) return false;
+  if (!calibration.right) return true;
+  const Camera& left = calibration.left;
+  const Camera& right = calibration.right->camera;
+  const Pose& right_from_left = calibration.right->right_from_left;
+  return is_ideal(right) && left.fx == right.fx && left.cx == right.cx && left.cy == right.cy &&
+         right_from_left.rotation.vec().norm() < 1e-12 && right_from_left.translation.tail<2>().norm() < 1e-9 &&
+         right_from_left.translation.x() < 0.0;
+}
+
+// The camera that shows the whole field, and nothing beyond it, at the source's resolution.
+Rig rig_of_field(const Field& field, const Camera& source) {
+  const double width = field.right - field.left;
+  const double height = field.bottom - field.top;
+  if (!(width > 0.0) || !(height > 0.0)) {
+    throw InputError("calibration", "the cameras' fields of view do not overlap",
+                     "check the extrinsic calibration of the pair");
+  }
+  // A very wide lens is cropped rather than squeezed: at most this many times coarser than the source's centre.
+  constexpr double kMaxShrink = 2.0;
+  const double filling = std::max((source.width - 1) / width, (source.height - 1) / height);
+  Rig rig;
+  rig.width = source.width;
+  rig.height = source.height;
+  rig.focal = std::max(filling, 0.5 * (source.fx + source.fy) / kMaxShrink);
+  rig.cx = 0.5 * (rig.width - 1) - rig.focal * 0.5 * (field.left + field.right);
+  rig.cy = 0.5 * (rig.height - 1) - rig.focal * 0.5 * (field.top + field.bottom);
+  return rig;
+}
+
+}  // namespace
+
+cv::Mat Rectifier::Maps::apply(const cv::Mat& image) const {
+  if (whole.empty()) return image;
+  cv::remap(image, rectified, whole, fraction, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return rectified;
+}
+
+Rectifier::Maps Rectifier::make_maps(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified,
+                                     const Rig& rig) {
+  cv::Mat columns(rig.height, rig.width, CV_32F);
+  cv::Mat rows(rig.height, rig.width, CV_32F);
+  for (int v = 0; v < rig.height; ++v) {
+    for (int u = 0; u < rig.width; ++u) {
+      const auto pixel = camera.project(camera_from_rectified * rig.ray({u, v}));
+      columns.at<float>(v, u) = pixel ? static_cast<float>(pixel->x()) : -1.0f;
+      rows.at<float>(v, u) = pixel ? static_cast<float>(pixel->y()) : -1.0f;
+    }
+  }
+  Maps maps;
+  cv::convertMaps(columns, rows, maps.whole, maps.fraction, CV_16SC2);
+  return maps;
+}
+
+Rectifier::Rectifier(const Calibration& calibration) {
+  const Camera& left = calibration.left;
+  const double baseline = calibration.right ? calibration.right->right_from_left.translation.norm() : 0.0;
+  if (is_rectified(calibration)) {
+    rig_ = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};
+    return;
+  }
+  const Eigen::Quaterniond turned_left =
+      calibration.right ? rectified_from_left(*calibration.right) : Eigen::Quaterniond::Identity();
+  Field field;
+  clip_to_view({&left, turned_left}, field);
+  Eigen::Quaterniond turned_right = turned_left;
+  if (calibration.right) {
+    turned_right = turned_left * calibration.right->right_from_left.rotation.conjugate();
+    clip_to_view({&calibration.right->camera, turned_right}, field);
+  }
+  rig_ = rig_of_field(field, left);
+  rig_.baseline = baseline;
+  rig_.body_from_camera = calibration.body_from_left * Pose{turned_left.conjugate(), Eigen::Vector3d::Zero()};
+  left_ = make_maps(left, turned_left.conjugate(), rig_);
+  if (calibration.right) right_ = make_maps(calibration.right->camera, turned_right.conjugate(), rig_);
+}
+
+}  // namespace byre

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "byre/geometry/camera.h"
+#include "byre/geometry/rig.h"
+
+#include <optional>
+
+#include <opencv2/core.hpp>
+
+namespace byre {
+
+// Turns images of a calibrated camera or stereo pair into those of an ideal rig: no distortion, one focal length,
+// rows aligned. The rig's field of view is the largest in which every pixel of both images is defined.
+class Rectifier {
+ public:
+  // Throws InputError when no rectification exists: the right camera is not to the right of the left one, the cameras
+  // look in directions too far apart, or their fields do not overlap.
+  explicit Rectifier(const Calibration& calibration);
+
+  const Rig& rig() const { return rig_; }
+
+  // Images that are rectified already are handed on without a copy.
+  cv::Mat left(const cv::Mat& image) const { return left_.apply(image); }
+  cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: rig().is_stereo()
+
+ private:
+  struct Maps {
+    cv::Mat whole;              // integer part of the source pixel
+    cv::Mat fraction;           // interpolation table index; both empty for the identity
+    mutable cv::Mat rectified;  // filled anew by each call
+
+    cv::Mat apply(const cv::Mat& image) const;
+  };
+
+  static Maps make_maps(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified, const Rig& rig);
+
+  Rig rig_;
+  Maps left_;
+  Maps right_;
+};
+
+}  // namespace byre

@@ -1,0 +1,124 @@
+#include "byre/features/stereo.h"
+
+#include "byre/features/align_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace byre {
+namespace {
+
+// The block that is compared: kColumns wide, so that a row is one vector register.
+constexpr int kColumns = 16;
+constexpr int kRows = 11;
+constexpr int kLeftReach = kColumns / 2;       // columns left of the middle
+constexpr int kRightReach = kColumns / 2 - 1;  // and right of it
+constexpr int kRowReach = kRows / 2;
+constexpr int kAlignSize = 10;
+
+int absolute_differences(const std::uint8_t* a, std::ptrdiff_t stride_a, const std::uint8_t* b,
+                         std::ptrdiff_t stride_b) {
+  int sum = 0;
+  for (int row = 0; row < kRows; ++row, a += stride_a, b += stride_b) {
+    for (int column = 0; column < kColumns; ++column) sum += std::abs(int(a[column]) - int(b[column]));
+  }
+  return sum;
+}
+
+const std::uint8_t* block(const cv::Mat& level, int x, int y) {
+  return level.ptr<std::uint8_t>(y - kRowReach) + x - kLeftReach;
+}
+
+struct RowMatch {
+  int x = -1;
+  int cost = std::numeric_limits<int>::max();
+  int second_cost = std::numeric_limits<int>::max();  // the best that is more than one pixel away
+};
+
+// The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
+RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
+  thread_local std::vector<int> costs;
+  costs.clear();
+  const std::uint8_t* const wanted = block(from, x, y);
+  RowMatch match;
+  for (int candidate = first; candidate <= last; ++candidate) {
+    const int cost = absolute_differences(wanted, static_cast<std::ptrdiff_t>(from.step), block(to, candidate, y),
+                                          static_cast<std::ptrdiff_t>(to.step));
+    costs.push_back(cost);
+    if (cost < match.cost) {
+      match.cost = cost;
+      match.x = candidate;
+    }
+  }
+  for (int candidate = first; candidate <= last; ++candidate) {
+    if (std::abs(candidate - match.x) <= 1) continue;
+    match.second_cost = std::min(match.second_cost, costs[static_cast<std::size_t>(candidate - first)]);
+  }
+  return match;
+}
+
+GreyWindow window_of(const cv::Mat& level) {
+  return {level.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(level.step), level.cols, level.rows};
+}
+
+// Columns of the right (or left) octave that hold the whole block.
+int clamp_column(const cv::Mat& level, int x) {
+  return std::clamp(x, kLeftReach, level.cols - 1 - kRightReach);
+}
+
+// The right column of a left pixel, whole octave pixels, when the match is unique and mutual.
+std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x, int y, int max_disparity,
+                                const StereoOptions& options) {
+  const RowMatch there = search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x));
+  if (there.x < 0 || static_cast<float>(there.cost) > options.max_ratio * static_cast<float>(there.second_cost)) {
+    return std::nullopt;
+  }
+  const RowMatch back =
+      search_row(right, there.x, y, left, clamp_column(left, there.x), clamp_column(left, there.x + max_disparity));
+  if (std::abs(back.x - x) > 1) return std::nullopt;
+  return there.x;
+}
+
+std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
+                                     double max_disparity, const StereoOptions& options) {
+  const float scale = kScaleOfOctave[keypoint.octave];
+  const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
+  const int x = static_cast<int>(std::lround(centre.x()));
+  const int y = static_cast<int>(std::lround(centre.y()));
+  if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
+  const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
+  if (!right_x) return std::nullopt;
+
+  const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+  const auto grey = sample<kAlignSize>(window_of(left), pixel);
+  if (!grey) return std::nullopt;
+  AlignOptions align;
+  align.max_shift = 2.0f;
+  align.min_similarity = options.min_similarity;
+  align.min_sigma = options.min_sigma;
+  const auto aligned = align_window<kAlignSize>(CentredTemplate<kAlignSize>(*grey), window_of(right),
+                                                {static_cast<float>(*right_x), pixel.y()}, align);
+  if (!aligned || std::abs(aligned->pixel.y() - pixel.y()) > options.max_vertical_error) return std::nullopt;
+  const float disparity = (pixel.x() - aligned->pixel.x()) * scale;
+  if (!(disparity > 0.0f)) return std::nullopt;
+  return StereoMatch{disparity, aligned->sigma * scale};
+}
+
+}  // namespace
+
+std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
+                                                     const std::vector<Keypoint>& keypoints,
+                                                     const StereoOptions& options) {
+  const double max_disparity =
+      std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
+  std::vector<std::optional<StereoMatch>> matches;
+  matches.reserve(keypoints.size());
+  for (const Keypoint& keypoint : keypoints) {
+    matches.push_back(
+        match_one(left.levels[keypoint.octave], right.levels[keypoint.octave], keypoint, max_disparity, options));
+  }
+  return matches;
+}
+
+}  // namespace byre

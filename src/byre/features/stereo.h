@@ -1,0 +1,31 @@
+#pragma once
+
+#include "byre/features/pyramid.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct StereoOptions {
+  double min_depth = 0.3;           // metres: nearer points are not looked for
+  double max_width_share = 0.25;    // largest disparity as a share of the image's width
+  float max_ratio = 0.85f;          // best over second best sum of absolute differences, elsewhere on the row
+  float max_vertical_error = 1.2f;  // octave pixels that rectification may be off
+  float min_similarity = 0.85f;     // of the refined match, see Alignment
+  float min_sigma = 0.08f;          // octave pixels
+};
+
+struct StereoMatch {
+  float disparity = 0.0f;  // full-resolution pixels
+  float sigma = 0.0f;      // full-resolution pixels
+};
+
+// Finds each keypoint in the right image: a search along its row with the sum of absolute differences, unique and
+// the same from right to left, then refined to sub-pixel in the image. One entry per keypoint, empty where unmatched.
+// The keypoints lie on whole octave pixels. Pyramids are those of a rectified pair.
+std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
+                                                     const std::vector<Keypoint>& keypoints,
+                                                     const StereoOptions& options);
+
+}  // namespace byre

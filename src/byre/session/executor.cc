@@ -1,0 +1,88 @@
+#include "byre/session/executor.h"
+
+#include <cassert>
+#include <chrono>
+#include <future>
+#include <utility>
+
+namespace byre {
+namespace {
+
+FinishedJob run(const MappingJob& job) {
+  const auto start = std::chrono::steady_clock::now();
+  MapDelta delta = job();
+  return {std::move(delta), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+class InlineExecutor final : public Executor {
+ public:
+  void submit(MappingJob job) override {
+    assert(idle());
+    finished_ = run(job);
+  }
+  std::optional<FinishedJob> collect() override { return std::exchange(finished_, std::nullopt); }
+  std::optional<FinishedJob> finish() override { return collect(); }
+  bool idle() const override { return !finished_; }
+
+ private:
+  std::optional<FinishedJob> finished_;
+};
+
+class PacedExecutor final : public Executor {
+ public:
+  explicit PacedExecutor(int latency) : latency_(latency) { assert(latency > 0); }
+
+  void submit(MappingJob job) override {
+    assert(idle());
+    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
+    frames_left_ = latency_;
+  }
+  std::optional<FinishedJob> collect() override {
+    if (idle() || --frames_left_ > 0) return std::nullopt;
+    return result_.get();
+  }
+  std::optional<FinishedJob> finish() override {
+    if (idle()) return std::nullopt;
+    return result_.get();
+  }
+  bool idle() const override { return !result_.valid(); }
+
+ private:
+  const int latency_;  // frames
+  int frames_left_ = 0;
+  std::future<FinishedJob> result_;
+};
+
+class LiveExecutor final : public Executor {
+ public:
+  void submit(MappingJob job) override {
+    assert(idle());
+    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
+  }
+  std::optional<FinishedJob> collect() override {
+    if (idle() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+    return result_.get();
+  }
+  std::optional<FinishedJob> finish() override {
+    if (idle()) return std::nullopt;
+    return result_.get();
+  }
+  bool idle() const override { return !result_.valid(); }
+
+ private:
+  std::future<FinishedJob> result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_inline_executor() {
+  return std::make_unique<InlineExecutor>();
+}
+std::unique_ptr<Executor> make_paced_executor(int latency) {
+  return std::make_unique<PacedExecutor>(latency);
+}
+std::unique_ptr<Executor> make_live_executor() {
+  return std::make_unique<LiveExecutor>();
+}
+
+}  // namespace byre

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "byre/map/map_view.h"
+#include "byre/slam/tracking.h"
+
+#include <optional>
+
+namespace byre {
+
+struct KeyframeOptions {
+  double min_tracked_share = 0.75;  // of the points that the reference keyframe has: fewer ask for a keyframe
+  int min_tracked = 100;            // points: fewer ask for one too
+  double max_turn = 0.25;           // radians of rotation since the last keyframe
+  double max_shift_share = 0.15;    // of the median depth, translation since the last keyframe
+  int min_frames = 2;               // between keyframes, unless tracking is about to fail
+  int max_pending = 3;              // keyframes that wait for mapping; more are not made
+};
+
+// What speaks for or against a new keyframe, apart from the tracked frame itself.
+struct KeyframeEvidence {
+  int reference_points = 0;   // points the reference keyframe sees
+  int frames_since_last = 0;  // frames since the last keyframe was made
+  int pending = 0;            // keyframes mapping has not worked on yet
+  double turn = 0.0;          // radians, rotation since the last keyframe
+  double shift_share = 0.0;   // translation since the last keyframe over the median depth of the tracked points
+};
+
+bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options);
+
+double median_depth(const TrackedFrame& tracked, const MapView& map);  // metres, zero when nothing is tracked
+
+// The keyframe a tracked frame becomes: its inliers are its sightings, its reference is its parent.
+Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig);
+
+// Adds a point for every feature of the keyframe that has a trustworthy disparity and sees no point yet, so that the
+// very next frame can be tracked on them. Returns how many.
+int add_stereo_points(Map& map, KeyframeId id);
+
+// A point as its reference view describes it; reference.keyframe must see it at the reference feature's pixel.
+MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matrix3d& covariance,
+                    const Observation& reference, const Features& features, const Pose& camera_from_world);
+
+// A first map from one stereo frame. Empty when it has fewer than min_points trustworthy disparities.
+std::optional<Map> initialise_stereo(const Frame& frame, const Rig& rig, int min_points);
+
+}  // namespace byre

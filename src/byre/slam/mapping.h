@@ -1,0 +1,24 @@
+#pragma once
+
+#include "byre/optimise/bundle_adjustment.h"
+#include "byre/slam/delta.h"
+
+namespace byre {
+
+struct MappingOptions {
+  WindowOptions window;
+  int triangulation_neighbours = 6;         // keyframes searched for new points
+  int fusion_neighbours = 10;               // keyframes searched for points seen twice
+  double max_relative_depth_sigma = 0.1;    // a new point's depth must be known to this share of itself
+  double max_squared_error_mono = 5.991;    // squared sigmas: 95 % of chi-square, two degrees of freedom
+  double max_squared_error_stereo = 7.815;  // 95 %, three degrees
+  double redundant_share = 0.9;             // of a keyframe's points seen by at least three others: it is redundant
+  int first_bundle_iterations = 5;          // before outliers are taken out
+  int second_bundle_iterations = 8;         // after
+};
+
+// One mapping job: new points between the new keyframes and their neighbours, points seen twice fused, local bundle
+// adjustment, weak points and redundant keyframes removed. Pure: the window in, what is to change out.
+MapDelta extend_map(const MapWindow& window, const MappingOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,108 @@
+#include "byre/slam/mapping_steps.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+// A bundle problem and which window observation each of its observations is.
+struct WindowBundle {
+  BundleProblem problem;
+  std::vector<WindowObservation> observations;
+};
+
+bool is_offline(const WindowPoint& point) {
+  return point.id && point.id->origin == Origin::offline;
+}
+
+WindowBundle make_bundle(const MapWindow& window) {
+  WindowBundle bundle;
+  bundle.problem.rigs = window.rigs;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    bundle.problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, !keyframe.movable});
+  }
+  for (std::size_t p = 0; p < window.points.size(); ++p) {
+    const WindowPoint& point = window.points[p];
+    bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});
+    if (point.removed) continue;
+    for (const WindowObservation& seen : point.observations) {
+      BundleObservation observation =
+          bundle_observation(window.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
+      observation.pose = seen.keyframe;
+      observation.point = static_cast<int>(p);
+      bundle.problem.observations.push_back(observation);
+      bundle.observations.push_back(seen);
+    }
+  }
+  return bundle;
+}
+
+bool is_outlier(const BundleObservation& observation, double squared_error, const MappingOptions& options) {
+  return !(squared_error <=
+           (observation.is_stereo() ? options.max_squared_error_stereo : options.max_squared_error_mono));
+}
+
+void take_over(MapWindow& window, const BundleResult& result) {
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    if (window.keyframes[i].movable) window.keyframes[i].keyframe.camera_from_world = result.camera_from_world[i];
+  }
+  for (std::size_t i = 0; i < window.points.size(); ++i) {
+    if (!is_offline(window.points[i])) window.points[i].point.position_in_world = result.points_in_world[i];
+  }
+}
+
+// A point whose reference has gone is given the first of the views that are left.
+void repair_reference(MapWindow& window, int index) {
+  WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+  const auto is_reference = [&](const WindowObservation& seen) {
+    return window.keyframes[static_cast<std::size_t>(seen.keyframe)].id == point.point.reference.keyframe;
+  };
+  if (point.observations.empty() || std::ranges::any_of(point.observations, is_reference)) return;
+  const WindowObservation& first = point.observations.front();
+  point.point.reference = {window.keyframes[static_cast<std::size_t>(first.keyframe)].id, first.feature};
+}
+
+void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result,
+                     const MappingOptions& options) {
+  for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
+    const BundleObservation& observation = bundle.problem.observations[i];
+    if (!is_outlier(observation, result.squared_errors[i], options)) continue;
+    remove_observation(window, bundle.observations[i]);
+    WindowPoint& point = window.points[static_cast<std::size_t>(observation.point)];
+    if (point.observations.empty() && point.observations_elsewhere == 0) {
+      remove_point(window, observation.point);
+    } else if (point.observations_elsewhere == 0) {
+      repair_reference(window, observation.point);
+    }
+  }
+}
+
+}  // namespace
+
+BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature) {
+  const Sighting& sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(feature)];
+  const Keypoint& keypoint = keyframe.keyframe.frame.features->keypoint(feature);
+  BundleObservation observation;
+  observation.measured << sighting.pixel.cast<double>(), keypoint.disparity;
+  observation.pixel_sigma = sighting.pixel_sigma;
+  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
+  return observation;
+}
+
+void adjust_bundle(MapWindow& window, const MappingOptions& options) {
+  const bool can_move = std::ranges::any_of(window.keyframes, &WindowKeyframe::movable);
+  if (!can_move) return;
+  BundleOptions bundle_options;
+  for (const bool last_round : {false, true}) {
+    bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
+    bundle_options.covariance_of_pose = last_round && window.keyframes.front().movable ? 0 : -1;
+    const WindowBundle bundle = make_bundle(window);
+    const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
+    if (!result.usable) return;
+    take_over(window, result);
+    if (result.pose_covariance) window.keyframes.front().keyframe.covariance = *result.pose_covariance;
+    remove_outliers(window, bundle, result, options);
+  }
+}
+
+}  // namespace byre

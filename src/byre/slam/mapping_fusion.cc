@@ -1,0 +1,130 @@
+#include "byre/slam/guided_matching.h"
+#include "byre/slam/mapping_steps.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+constexpr SearchOptions kSearch{3.0f, 50, 0.9f};
+
+// A point found at a feature of a keyframe.
+struct Meeting {
+  int point = 0;
+  WindowObservation seen;
+};
+
+int find_keyframe(const MapWindow& window, KeyframeId id) {
+  const auto found = std::ranges::find(window.keyframes, id, &WindowKeyframe::id);
+  return found == window.keyframes.end() ? -1 : static_cast<int>(found - window.keyframes.begin());
+}
+
+bool sees(const WindowPoint& point, int keyframe) {
+  return std::ranges::any_of(point.observations,
+                             [&](const WindowObservation& observation) { return observation.keyframe == keyframe; });
+}
+
+std::vector<int> points_seen_by(const MapWindow& window, const std::vector<int>& keyframes) {
+  std::vector<int> points;
+  for (const int keyframe : keyframes) {
+    for (const int point : window.keyframes[static_cast<std::size_t>(keyframe)].point_of_feature) {
+      if (point >= 0) points.push_back(point);
+    }
+  }
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+std::vector<Meeting> look_for(const MapWindow& window, const std::vector<int>& points, int keyframe) {
+  const CameraView view = view_of(window, keyframe);
+  const Eigen::Vector3d camera_in_world = inverse(view.camera_from_world).translation;
+  std::vector<Meeting> meetings;
+  for (const int index : points) {
+    const WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+    if (sees(point, keyframe)) continue;
+    const auto projection = project_point(point.point, view.camera_from_world, camera_in_world, view.rig);
+    if (!projection) continue;
+    const auto found = find_feature(view.features, point.point.descriptor, *projection, kSearch);
+    if (found) meetings.push_back({index, {keyframe, found->feature}});
+  }
+  return meetings;
+}
+
+bool is_offline(const WindowPoint& point) {
+  return point.id && point.id->origin == Origin::offline;
+}
+
+// Which of two points that are one is kept: an offline one, else the one seen more often, else the older.
+int better_point(const MapWindow& window, int a, int b) {
+  const WindowPoint& first = window.points[static_cast<std::size_t>(a)];
+  const WindowPoint& second = window.points[static_cast<std::size_t>(b)];
+  if (is_offline(first) != is_offline(second)) return is_offline(first) ? a : b;
+  const auto count = [](const WindowPoint& point) {
+    return static_cast<int>(point.observations.size()) + point.observations_elsewhere;
+  };
+  if (count(first) != count(second)) return count(first) > count(second) ? a : b;
+  return std::min(a, b);
+}
+
+// The views of the point that goes are measured anew against the reference of the one that stays: two corners of one
+// place may lie a pixel apart.
+void fuse(MapWindow& window, int removed, int kept) {
+  const std::vector<WindowObservation> observations = window.points[static_cast<std::size_t>(removed)].observations;
+  remove_point(window, removed);
+  for (const WindowObservation& observation : observations) {
+    if (sees(window.points[static_cast<std::size_t>(kept)], observation.keyframe)) continue;
+    add_observation(window, kept, observation,
+                    measure_in_window(window, kept, observation.keyframe, observation.feature));
+  }
+}
+
+void settle(MapWindow& window, const Meeting& meeting) {
+  const WindowPoint& point = window.points[static_cast<std::size_t>(meeting.point)];
+  if (point.removed || sees(point, meeting.seen.keyframe)) return;
+  const int other = window.keyframes[static_cast<std::size_t>(meeting.seen.keyframe)]
+                        .point_of_feature[static_cast<std::size_t>(meeting.seen.feature)];
+  if (other == kPointElsewhere) return;
+  if (other == kNoPoint) {
+    add_observation(window, meeting.point, meeting.seen,
+                    measure_in_window(window, meeting.point, meeting.seen.keyframe, meeting.seen.feature));
+    return;
+  }
+  const int kept = better_point(window, meeting.point, other);
+  const int removed = kept == other ? meeting.point : other;
+  if (!is_offline(window.points[static_cast<std::size_t>(removed)])) fuse(window, removed, kept);
+}
+
+}  // namespace
+
+Sighting measure_in_window(const MapWindow& window, int point, int keyframe, int feature) {
+  const MapPoint& value = window.points[static_cast<std::size_t>(point)].point;
+  const CameraView current = view_of(window, keyframe);
+  PixelMeasurement measured = corner_measurement(current.features.keypoint(feature));
+  const int reference = find_keyframe(window, value.reference.keyframe);
+  if (reference >= 0) {
+    const CameraView view = view_of(window, reference);
+    const Sighting& sighting = window.keyframes[static_cast<std::size_t>(reference)]
+                                   .keyframe.sightings[static_cast<std::size_t>(value.reference.feature)];
+    measured =
+        measure_pixel({view, value.reference.feature, sighting.pixel}, value.position_in_world, current, feature);
+  }
+  return {window.points[static_cast<std::size_t>(point)].id, measured.pixel, measured.sigma};
+}
+
+void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options) {
+  std::vector<int> neighbours;
+  for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
+    if (i == keyframe || static_cast<int>(neighbours.size()) >= options.fusion_neighbours) continue;
+    neighbours.push_back(i);
+  }
+  for (const Meeting& meeting : look_for(window, points_seen_by(window, neighbours), keyframe)) {
+    settle(window, meeting);
+  }
+  const std::vector<int> own_points = points_seen_by(window, {keyframe});
+  for (const int neighbour : neighbours) {
+    for (const Meeting& meeting : look_for(window, own_points, neighbour)) settle(window, meeting);
+  }
+}
+
+}  // namespace byre

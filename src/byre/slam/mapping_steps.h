@@ -1,0 +1,43 @@
+#pragma once
+
+#include "byre/slam/mapping.h"
+#include "byre/slam/measurement.h"
+
+#include <vector>
+
+// The steps of extend_map, each on a window. Keyframes and points are named by their index in the window.
+namespace byre {
+
+inline CameraView view_of(const MapWindow& window, int keyframe) {
+  const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
+  return {*entry.keyframe.frame.features, window.rig_of(entry), entry.keyframe.camera_from_world};
+}
+
+// The measurement of a point by a feature of a window's keyframe, against the point's reference where it is in the
+// window; by the corner alone where it is not.
+Sighting measure_in_window(const MapWindow& window, int point, int keyframe, int feature);
+
+// Observation of the window as bundle adjustment takes it; pose and point are left to the caller.
+BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature);
+
+// New points between a keyframe and its nearest neighbours from features that see none yet: matched along the epipolar
+// line, triangulated, refined in the image, kept when the depth is known well enough and both views agree.
+void triangulate_new_points(MapWindow& window, int keyframe, const MappingOptions& options);
+
+// Points of the neighbours looked for in the keyframe and its points in the neighbours: found at a free feature they
+// are observed once more, found at another point the one with fewer observations gives way.
+void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options);
+
+// Local bundle adjustment in two rounds, with observations that disagree removed after each.
+void adjust_bundle(MapWindow& window, const MappingOptions& options);
+
+// Position covariance, descriptor, viewing direction and distances of the window's points, from their observations.
+void refresh_points(MapWindow& window);
+
+// Points that later keyframes should have confirmed and did not.
+void remove_weak_points(MapWindow& window);
+
+// Keyframes that add nothing: nearly all of their points are seen by three others at least.
+void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options);
+
+}  // namespace byre

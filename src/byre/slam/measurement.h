@@ -1,0 +1,40 @@
+#pragma once
+
+#include "byre/features/features.h"
+#include "byre/geometry/rig.h"
+
+namespace byre {
+
+// One camera's view for the duration of a call; borrows features and rig.
+struct CameraView {
+  const Features& features;
+  const Rig& rig;
+  Pose camera_from_world;
+};
+
+// A feature of a view and the pixel in it that stands for the point.
+struct ViewedFeature {
+  const CameraView& view;
+  int feature = 0;
+  Eigen::Vector2f pixel;  // full-resolution pixels
+};
+
+struct PixelMeasurement {
+  Eigen::Vector2f pixel;  // full-resolution pixels
+  float sigma = 1.0f;     // pixels, of u and of v
+  bool aligned = false;   // refined in the image, not just the corner's place
+};
+
+// Where the current view's feature shows the very point that the reference shows: the reference's patch, warped by the
+// poses (a plane that faces the reference camera), is aligned with the feature's patch. Without patches, or when they
+// cannot be aligned, the corner itself with its larger sigma.
+PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vector3d& point_in_world,
+                               const CameraView& current, int feature);
+
+// The measurement a detected corner is by itself.
+PixelMeasurement corner_measurement(const Keypoint& keypoint);
+
+// The precision of a point's own reference pixel, which defines it.
+float reference_sigma(const Keypoint& keypoint);
+
+}  // namespace byre

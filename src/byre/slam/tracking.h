@@ -1,0 +1,49 @@
+#pragma once
+
+#include "byre/map/map_view.h"
+#include "byre/optimise/pose_refinement.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct TrackedFeature {
+  int feature = 0;
+  PointId point;
+  Eigen::Vector2f pixel;  // refined, full-resolution pixels
+  float pixel_sigma = 1.0f;
+};
+
+struct TrackedFrame {
+  Pose camera_from_world;
+  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * camera_from_world, given the map
+  KeyframeId reference;                  // the keyframe that shares most points
+  std::vector<TrackedFeature> features;  // inliers only, ascending
+  int expected = 0;                      // map points in the frustum
+  int matches = 0;                       // of those, matched before outliers were taken out
+};
+
+struct TrackOptions {
+  float search_radius = 12.0f;  // pixels at octave 0, about the predicted pixel
+  float wide_radius = 40.0f;    // pixels, when the first search finds too little
+  float narrow_radius = 4.0f;   // pixels, once a first pose is known
+  int min_matches = 30;         // below it the wider search is tried
+  int min_inliers = 20;
+  PoseRefinementOptions refinement;
+};
+
+// Points seen by a keyframe and by those most covisible with it; ascending, bounded whatever the map's size.
+std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
+
+// Projects the candidates from the predicted pose, matches them nearby, refines the pose, matches the rest around it,
+// refines all matches in the image, and the pose again on those. Empty when fewer than min_inliers remain.
+std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
+                                  const MapView& map, const std::vector<PointId>& candidates,
+                                  const TrackOptions& options);
+
+// Where prediction has failed: matches descriptors with one keyframe's points wherever they are in the image, and
+// finds the pose from three points at a time. The result is a prediction for track().
+std::optional<Pose> pose_from_keyframe(const Frame& frame, const Rig& rig, const MapView& map, KeyframeId keyframe);
+
+}  // namespace byre
