@@ -2,10 +2,10 @@
 include(CMakePackageConfigHelpers)
 
 # The headers of all rooms but those that name a foreign library other than Eigen, or a header that does: these are the
-# rooms' own affair, and whoever uses byre needs nothing but Eigen to compile.
+# rooms' own affair, and whoever uses byre needs nothing but Eigen to compile. Nor the scenes that tests are built on.
 function(byre_public_headers result)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/*.h)
-  list(FILTER headers EXCLUDE REGEX "/src/byre/cli/")
+  list(FILTER headers EXCLUDE REGEX "/src/byre/cli/|_scene\\.h$")
   set(internal "<(ceres|opencv2|yaml-cpp|nlohmann|spdlog|gtest|gmock)/")
   set(count_before 0)
   list(LENGTH headers count)

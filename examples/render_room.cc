@@ -3,7 +3,7 @@
 
 #include "byre/input/input_error.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_trajectory.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -16,23 +16,11 @@ struct Options {
   std::filesystem::path folder;
   int frames = 200;
   double frame_rate_hz = 20.0;
-  double radius_m = 1.2;
+  double length_m = 3.0;
   double laps = 1.0;
   int divisor = 2;
   std::uint64_t seed = 1;
 };
-
-// The left camera flies in a circle; the ground truth is where that puts the body.
-byre::Trajectory body_trajectory(const Options& options, const byre::Calibration& calibration) {
-  const byre::Pose camera_from_body = byre::inverse(calibration.body_from_left);
-  byre::Trajectory trajectory =
-      byre::circling_trajectory(options.frames, options.frame_rate_hz, options.radius_m, options.laps);
-  for (byre::StampedPose& sample : trajectory) {
-    const byre::Pose world_from_camera = sample.world_from_body;
-    sample.world_from_body = world_from_camera * camera_from_body;
-  }
-  return trajectory;
-}
 
 void show_progress(int done, int total) {
   std::fprintf(stderr, "\r%d of %d stereo pairs%s", done, total, done == total ? "\n" : "");
@@ -42,8 +30,9 @@ void render(const Options& options) {
   byre::RenderedRoomOptions room;
   room.seed = options.seed;
   const byre::Calibration calibration = byre::euroc_like_calibration(options.divisor);
-  byre::write_euroc_recording(byre::RenderedRoom(room), calibration, body_trajectory(options, calibration),
-                              options.folder, show_progress);
+  const byre::Trajectory truth = byre::figure_eight_trajectory(options.frames, options.frame_rate_hz, options.length_m,
+                                                               options.laps, calibration.body_from_left);
+  byre::write_euroc_recording(byre::RenderedRoom(room), calibration, truth, options.folder, show_progress);
 }
 
 }  // namespace
@@ -56,10 +45,10 @@ int main(int argc, char** argv) {
   app.add_option("--rate", options.frame_rate_hz, "Stereo pairs a second")
       ->check(CLI::Range(1.0, 200.0))
       ->capture_default_str();
-  app.add_option("--radius", options.radius_m, "Of the circle the camera flies, metres")
-      ->check(CLI::Range(0.0, 2.5))
+  app.add_option("--length", options.length_m, "Of the figure of eight that the camera flies, metres")
+      ->check(CLI::Range(0.1, 5.0))
       ->capture_default_str();
-  app.add_option("--laps", options.laps, "Of that circle")->capture_default_str();
+  app.add_option("--laps", options.laps, "Of that figure")->capture_default_str();
   app.add_option("--divisor", options.divisor, "Of EuRoC's resolution of 752 x 480")
       ->check(CLI::Range(1, 4))
       ->capture_default_str();
