@@ -13,12 +13,12 @@ std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch
                                                                      const Eigen::Matrix2f& reference_from_current) {
   std::array<float, kTemplateSize * kTemplateSize> values;
   constexpr float kHalf = 0.5f * (kTemplateSize - 1);
-  // The warped square lies inside when its corners do.
+  // The warped square lies inside when its corners do. Each coordinate by itself: minCoeff() may pass over a NaN.
   const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
-  const Eigen::Vector2f low = reference_pixel - reach;
-  const Eigen::Vector2f high = reference_pixel + reach;
+  const Eigen::Array2f low = reference_pixel - reach;
+  const Eigen::Array2f high = reference_pixel + reach;
   constexpr float kSlack = 0.01f;  // for the rounding of the walk along a row
-  if (!(low.minCoeff() >= kSlack && high.maxCoeff() <= Patch::kSize - 1 - kSlack)) return std::nullopt;
+  if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return std::nullopt;
   const Eigen::Vector2f along_row = reference_from_current.col(0);
   for (int y = 0; y < kTemplateSize; ++y) {
     Eigen::Vector2f at =

@@ -2,8 +2,10 @@
 
 #include "byre/features/align.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace byre {
@@ -21,10 +23,13 @@ template <int Size>
 std::optional<std::array<float, Size * Size>> sample(const GreyWindow& window, const Eigen::Vector2f& centre) {
   const float left = centre.x() - 0.5f * (Size - 1);
   const float top = centre.y() - 0.5f * (Size - 1);
+  // Before the conversion to int, which is defined only for what fits.
   if (!(left >= 0.0f && top >= 0.0f)) return std::nullopt;
+  if (!(left < static_cast<float>(window.width - Size) && top < static_cast<float>(window.height - Size))) {
+    return std::nullopt;
+  }
   const int column = static_cast<int>(left);
   const int row = static_cast<int>(top);
-  if (column + Size >= window.width || row + Size >= window.height) return std::nullopt;
   const float fx = left - static_cast<float>(column);
   const float fy = top - static_cast<float>(row);
   const float w00 = (1.0f - fx) * (1.0f - fy), w01 = fx * (1.0f - fy), w10 = (1.0f - fx) * fy, w11 = fx * fy;

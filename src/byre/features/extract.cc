@@ -23,13 +23,17 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
 }
 
 // A header over the image's own pixels; nothing writes through it.
-cv::Mat as_matrix(const Image& image, const Rig& rig) {
-  if (image.width != rig.width || image.height != rig.height) {
+cv::Mat as_matrix(const Image& image, const Camera& camera) {
+  if (image.width != camera.width || image.height != camera.height) {
     throw InputError("image",
                      "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                         " pixels, the calibration says " + std::to_string(rig.width) + " x " +
-                         std::to_string(rig.height),
+                         " pixels, the calibration says " + std::to_string(camera.width) + " x " +
+                         std::to_string(camera.height),
                      "use the calibration of this camera at this resolution");
+  }
+  if (image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
+    throw InputError("image", "holds " + std::to_string(image.pixels.size()) + " bytes, not width times height",
+                     "give 8-bit grey pixels, row after row without padding");
   }
   return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
 }
@@ -68,6 +72,7 @@ struct Described {
 }  // namespace
 
 struct Extractor::State {
+  Calibration calibration;
   Rectifier rectifier;
   ExtractOptions options;
   Pyramid left;
@@ -110,7 +115,7 @@ Described Extractor::State::describe_all() {
 }
 
 Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
-    : state_(new State{Rectifier(calibration), options, {}, {}, {}}) {}
+    : state_(new State{calibration, Rectifier(calibration), options, {}, {}, {}}) {}
 Extractor::~Extractor() = default;
 Extractor::Extractor(Extractor&&) noexcept = default;
 Extractor& Extractor::operator=(Extractor&&) noexcept = default;
@@ -122,8 +127,10 @@ const Rig& Extractor::rig() const {
 Extraction Extractor::extract(const ImageFrame& images) {
   const Clock::time_point start = Clock::now();
   const bool stereo = rig().is_stereo() && images.right.has_value();
-  const cv::Mat left = state_->rectifier.left(as_matrix(images.left, rig()));
-  const cv::Mat right = stereo ? state_->rectifier.right(as_matrix(*images.right, rig())) : cv::Mat();
+  const Calibration& calibration = state_->calibration;
+  const cv::Mat left = state_->rectifier.left(as_matrix(images.left, calibration.left));
+  const cv::Mat right =
+      stereo ? state_->rectifier.right(as_matrix(*images.right, calibration.right->camera)) : cv::Mat();
   const Clock::time_point rectified = Clock::now();
 
   build_pyramid(left, state_->left);

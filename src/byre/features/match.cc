@@ -40,7 +40,7 @@ std::vector<Match> match_features(const Features& first, const Features& second,
   for (int i = 0; i < first.size(); ++i) {
     const Nearest& nearest = nearest_of_first[static_cast<std::size_t>(i)];
     if (nearest.index < 0 || nearest.distance > options.max_distance) continue;
-    if (static_cast<float>(nearest.distance) > options.max_ratio * static_cast<float>(nearest.second_distance))
+    if (static_cast<float>(nearest.distance) >= options.max_ratio * static_cast<float>(nearest.second_distance))
       continue;
     if (nearest_of_second[static_cast<std::size_t>(nearest.index)].index != i) continue;
     matches.push_back({i, nearest.index, nearest.distance});

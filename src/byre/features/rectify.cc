@@ -85,9 +85,9 @@ bool is_rectified(const Calibration& calibration) {
   const Camera& left = calibration.left;
   const Camera& right = calibration.right->camera;
   const Pose& right_from_left = calibration.right->right_from_left;
-  return is_ideal(right) && left.fx == right.fx && left.cx == right.cx && left.cy == right.cy &&
-         right_from_left.rotation.vec().norm() < 1e-12 && right_from_left.translation.tail<2>().norm() < 1e-9 &&
-         right_from_left.translation.x() < 0.0;
+  return is_ideal(right) && left.width == right.width && left.height == right.height && left.fx == right.fx &&
+         left.cx == right.cx && left.cy == right.cy && right_from_left.rotation.vec().norm() < 1e-12 &&
+         right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
 }
 
 // The camera that shows the whole field, and nothing beyond it, at the source's resolution.

@@ -71,7 +71,7 @@ int clamp_column(const cv::Mat& level, int x) {
 std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x, int y, int max_disparity,
                                 const StereoOptions& options) {
   const RowMatch there = search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x));
-  if (there.x < 0 || static_cast<float>(there.cost) > options.max_ratio * static_cast<float>(there.second_cost)) {
+  if (there.x < 0 || static_cast<float>(there.cost) >= options.max_ratio * static_cast<float>(there.second_cost)) {
     return std::nullopt;
   }
   const RowMatch back =
