@@ -25,24 +25,25 @@ struct Field {
   double bottom = std::numeric_limits<double>::infinity();
 };
 
-// The direction of a border pixel; of the outermost pixel towards it that the lens model can invert.
-Eigen::Vector3d outermost_bearing(const Camera& camera, const Eigen::Vector2d& border) {
-  const Eigen::Vector2d centre(camera.cx, camera.cy);
+// Where a border pixel lies on the plane z = 1; or, if the lens model cannot invert it or it lies to the side of the
+// rectified camera, the outermost pixel towards it.
+Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& border) {
+  constexpr double kMinForward = 0.1;  // cosine of the angle off the rectified axis
+  const Eigen::Vector2d centre(view.camera->cx, view.camera->cy);
+  bool invertible = false;
   for (double fraction = 1.0; fraction > 0.1; fraction -= 0.02) {
-    const auto bearing = camera.bearing(centre + fraction * (border - centre));
-    if (bearing && bearing->z() > 0.1) return *bearing;
+    const auto bearing = view.camera->bearing(centre + fraction * (border - centre));
+    if (!bearing) continue;
+    invertible = true;
+    const Eigen::Vector3d ray = view.rectified_from_camera * *bearing;
+    if (ray.z() > kMinForward) return ray.head<2>() / ray.z();
   }
-  throw InputError("calibration", "the distortion cannot be inverted near the image centre",
-                   "check intrinsics and distortion coefficients");
-}
-
-Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector3d ray = view.rectified_from_camera * outermost_bearing(*view.camera, pixel);
-  if (ray.z() < 0.05) {
+  if (invertible) {
     throw InputError("calibration", "the cameras look in directions too far apart to be rectified",
                      "check the extrinsic calibration of the pair");
   }
-  return ray.head<2>() / ray.z();
+  throw InputError("calibration", "the distortion cannot be inverted near the image centre",
+                   "check intrinsics and distortion coefficients");
 }
 
 // Shrinks the field to the largest upright rectangle inside this view's own.
@@ -90,6 +91,11 @@ bool is_rectified(const Calibration& calibration) {
          right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
 }
 
+// The value between two that is nearest to zero. Not std::clamp: rounding may swap the bounds of a single value.
+double nearest_to_axis(double low, double high) {
+  return std::min(std::max(0.0, low), high);
+}
+
 // The camera that shows the whole field, and nothing beyond it, at the source's resolution.
 Rig rig_of_field(const Field& field, const Camera& source) {
   const double width = field.right - field.left;
@@ -105,8 +111,13 @@ Rig rig_of_field(const Field& field, const Camera& source) {
   rig.width = source.width;
   rig.height = source.height;
   rig.focal = std::max(filling, 0.5 * (source.fx + source.fy) / kMaxShrink);
-  rig.cx = 0.5 * (rig.width - 1) - rig.focal * 0.5 * (field.left + field.right);
-  rig.cy = 0.5 * (rig.height - 1) - rig.focal * 0.5 * (field.top + field.bottom);
+  // Of a field larger than the image, the part nearest to the axis is shown.
+  const double half_width = 0.5 * (rig.width - 1);
+  const double half_height = 0.5 * (rig.height - 1);
+  const double middle_x = nearest_to_axis(field.left + half_width / rig.focal, field.right - half_width / rig.focal);
+  const double middle_y = nearest_to_axis(field.top + half_height / rig.focal, field.bottom - half_height / rig.focal);
+  rig.cx = half_width - rig.focal * middle_x;
+  rig.cy = half_height - rig.focal * middle_y;
   return rig;
 }
 
