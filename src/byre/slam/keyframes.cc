@@ -27,10 +27,11 @@ Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world,
 }  // namespace
 
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options) {
+  if (evidence.pending >= options.max_pending) return false;
   const int inliers = static_cast<int>(tracked.features.size());
   const bool weak = inliers < options.min_tracked;
   if (weak) return true;
-  if (evidence.pending > options.max_pending || evidence.frames_since_last < options.min_frames) return false;
+  if (evidence.frames_since_last < options.min_frames) return false;
   return inliers < options.min_tracked_share * evidence.reference_points || evidence.turn > options.max_turn ||
          evidence.shift_share > options.max_shift_share;
 }
@@ -70,7 +71,7 @@ MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matri
   const float distance = static_cast<float>(ray.norm());
   MapPoint point;
   point.position_in_world = position_in_world;
-  point.covariance = covariance.cast<float>();
+  point.covariance = covariance;
   point.mean_viewing_direction = (ray / ray.norm()).cast<float>();
   point.descriptor = features.descriptor(reference.feature);
   point.max_distance = distance * kScaleOfOctave[features.keypoint(reference.feature).octave];

@@ -15,9 +15,10 @@ const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservati
   return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
 }
 
-// From all views in the window, their poses taken as exact. Unchanged where they do not determine the point.
-Eigen::Matrix3f position_covariance(const MapWindow& window, const WindowPoint& point) {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+// From all views in the window, their poses taken as exact.
+Eigen::Matrix3d position_covariance(const MapWindow& window, const WindowPoint& point) {
+  constexpr double kPriorSigma = 10.0;  // metres: keeps directions that no view determines finite
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kPriorSigma * kPriorSigma);
   for (const WindowObservation& seen : point.observations) {
     const WindowKeyframe& keyframe = keyframe_of(window, seen);
     const BundleObservation observation = bundle_observation(keyframe, seen.feature);
@@ -32,10 +33,15 @@ Eigen::Matrix3f position_covariance(const MapWindow& window, const WindowPoint& 
     const Eigen::Vector3d weights(pixel_weight, pixel_weight, disparity_weight);
     information += jacobian.transpose() * weights.asDiagonal() * jacobian;
   }
-  bool invertible = false;
-  Eigen::Matrix3d covariance;
-  information.computeInverseWithCheck(covariance, invertible, 1e-9);
-  return invertible ? covariance.cast<float>() : point.point.covariance;
+  const Eigen::Matrix3d covariance = information.inverse();
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+// A single view without a disparity tells a direction, not a place.
+bool is_undetermined(const MapWindow& window, const WindowPoint& point) {
+  if (times_seen(point) != 1 || point.observations.empty()) return false;
+  const WindowObservation& seen = point.observations.front();
+  return !keyframe_of(window, seen).keyframe.frame.features->keypoint(seen.feature).has_disparity();
 }
 
 // The descriptor with the smallest median distance to the others.
@@ -119,7 +125,8 @@ void remove_weak_points(MapWindow& window) {
     if (point.removed || offline) continue;
     const bool had_its_chance = newest >= point.point.reference.keyframe.number + kKeyframesToConfirm;
     const bool alone = !point.id && times_seen(point) < 2;  // one made here, and refuted at once
-    if (alone || (had_its_chance && times_seen(point) < 2)) remove_point(window, i);
+    const bool unconfirmed = had_its_chance && times_seen(point) < 2;
+    if (alone || unconfirmed || is_undetermined(window, point)) remove_point(window, i);
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 PoseObservation pose_observation(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
   PoseObservation observation;
   observation.point_in_world = point.position_in_world;
-  observation.point_covariance = point.covariance.cast<double>();
+  observation.point_covariance = point.covariance;
   observation.measured << pixel.pixel.cast<double>(), keypoint.disparity;
   observation.pixel_sigma = pixel.sigma;
   observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
