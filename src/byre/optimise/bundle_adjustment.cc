@@ -1,0 +1,230 @@
+#include "byre/optimise/bundle_adjustment.h"
+
+#include "byre/optimise/bundle_cost.h"
+#include "byre/optimise/bundle_covariance.h"
+
+#include <algorithm>
+#include <cassert>
+#include <deque>
+#include <limits>
+#include <utility>
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+namespace byre {
+
+namespace {
+
+// What takes part in the solution.
+struct Roles {
+  std::vector<bool> pose_moves;
+  std::vector<bool> point_moves;
+  std::vector<int> observations;  // indices: in front of the camera, and not between two fixed things
+
+  bool moves(const BundleObservation& observation) const {
+    return pose_moves[observation.pose] || point_moves[observation.point];
+  }
+};
+
+Eigen::Vector3d point_in_camera(const BundleProblem& problem, const BundleObservation& observation) {
+  return problem.poses[observation.pose].camera_from_world * problem.points[observation.point].position_in_world;
+}
+
+std::vector<int> observations_in_front(const BundleProblem& problem) {
+  std::vector<int> indices;
+  indices.reserve(problem.observations.size());
+  for (int i = 0; i < static_cast<int>(problem.observations.size()); ++i) {
+    if (point_in_camera(problem, problem.observations[i]).z() >= kNearestDepth) indices.push_back(i);
+  }
+  return indices;
+}
+
+bool has_anchor(const BundleProblem& problem) {
+  return std::ranges::any_of(problem.poses, &BundlePose::fixed) ||
+         std::ranges::any_of(problem.points, &BundlePoint::fixed);
+}
+
+Roles choose_roles(const BundleProblem& problem) {
+  Roles roles{std::vector<bool>(problem.poses.size(), false), std::vector<bool>(problem.points.size(), false),
+              observations_in_front(problem)};
+  for (const int i : roles.observations) {
+    const BundleObservation& observation = problem.observations[i];
+    roles.pose_moves[observation.pose] = !problem.poses[observation.pose].fixed;
+    roles.point_moves[observation.point] = !problem.points[observation.point].fixed;
+  }
+  if (!has_anchor(problem)) {
+    const auto first = std::ranges::find(roles.pose_moves, true);
+    if (first != roles.pose_moves.end()) *first = false;
+  }
+  std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
+  return roles;
+}
+
+// Ceres' view of a problem: blocks of parameters and the costs between them. Lives for one call.
+class CeresBundle {
+ public:
+  CeresBundle(const BundleProblem& problem, const Roles& roles, double huber_width)
+      : roles_(roles), loss_(huber_width), ceres_(ceres_options()) {
+    for (const BundlePose& pose : problem.poses) poses_.push_back(pose.camera_from_world);
+    for (const BundlePoint& point : problem.points) points_.push_back(point.position_in_world);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (roles.pose_moves[i]) ceres_.AddParameterBlock(rotation(i), 4, &manifold_);
+    }
+    for (const int i : roles.observations) {
+      const BundleObservation& observation = problem.observations[i];
+      add(observation, problem.rigs[problem.poses[observation.pose].rig]);
+    }
+  }
+
+  ceres::Solver::Summary solve(const BundleOptions& options) {
+    ceres::Solver::Options how;
+    how.linear_solver_type = linear_solver();
+    how.linear_solver_ordering.reset(points_before_poses());
+    how.max_num_iterations = options.max_iterations;
+    how.num_threads = options.threads;
+    how.jacobi_scaling = false;  // the damping is in proportion to the diagonal anyway
+    how.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(how, &ceres_, &summary);
+    return summary;
+  }
+
+  const Pose& camera_from_world(std::size_t pose) const { return poses_[pose]; }
+  const Eigen::Vector3d& point_in_world(std::size_t point) const { return points_[point]; }
+
+ private:
+  static ceres::Problem::Options ceres_options() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  double* rotation(std::size_t pose) { return poses_[pose].rotation.coeffs().data(); }
+  double* translation(std::size_t pose) { return poses_[pose].translation.data(); }
+  double* position(std::size_t point) { return points_[point].data(); }
+
+  void add(const BundleObservation& observation, const Rig& rig) {
+    assert(rig.is_stereo() || !observation.is_stereo());
+    const Reprojection reprojection(rig, observation.measured, observation.pixel_sigma, observation.disparity_sigma);
+    const auto [pose, point] = std::pair(observation.pose, observation.point);
+    if (!roles_.point_moves[point]) {
+      auto& cost = pose_costs_.emplace_back(reprojection, points_[point]);
+      ceres_.AddResidualBlock(&cost, &loss_, rotation(pose), translation(pose));
+    } else if (!roles_.pose_moves[pose]) {
+      auto& cost = point_costs_.emplace_back(reprojection, poses_[pose]);
+      ceres_.AddResidualBlock(&cost, &loss_, position(point));
+    } else {
+      auto& cost = pose_and_point_costs_.emplace_back(reprojection);
+      ceres_.AddResidualBlock(&cost, &loss_, rotation(pose), translation(pose), position(point));
+    }
+  }
+
+  // The Schur complement needs both kinds; with one kind alone the normal matrix is sparse as it stands.
+  ceres::LinearSolverType linear_solver() const {
+    constexpr int kMaxDensePoses = 60;
+    const auto poses = std::ranges::count(roles_.pose_moves, true);
+    const auto points = std::ranges::count(roles_.point_moves, true);
+    if (poses == 0 || points == 0) return ceres::SPARSE_NORMAL_CHOLESKY;
+    return poses <= kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  }
+
+  ceres::ParameterBlockOrdering* points_before_poses() {
+    auto* const order = new ceres::ParameterBlockOrdering;  // the solver's options own it
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (roles_.point_moves[i]) order->AddElementToGroup(position(i), 0);
+    }
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (!roles_.pose_moves[i]) continue;
+      order->AddElementToGroup(rotation(i), 1);
+      order->AddElementToGroup(translation(i), 1);
+    }
+    return order;
+  }
+
+  const Roles& roles_;       // owned by the caller, constant
+  std::vector<Pose> poses_;  // written by Ceres, as are the points
+  std::vector<Eigen::Vector3d> points_;
+  ceres::HuberLoss loss_;
+  RotationManifold manifold_;
+  // Deques, for Ceres holds the costs' addresses.
+  std::deque<PoseAndPointCost> pose_and_point_costs_;
+  std::deque<PoseCost> pose_costs_;
+  std::deque<PointCost> point_costs_;
+  ceres::Problem ceres_;  // last: refers to all of the above
+};
+
+BundleResult unmoved(const BundleProblem& problem) {
+  BundleResult result;
+  for (const BundlePose& pose : problem.poses) result.camera_from_world.push_back(pose.camera_from_world);
+  for (const BundlePoint& point : problem.points) result.points_in_world.push_back(point.position_in_world);
+  result.usable = true;
+  return result;
+}
+
+BundleResult solve(const BundleProblem& problem, const Roles& roles, const BundleOptions& options) {
+  BundleResult result = unmoved(problem);
+  if (roles.observations.empty()) return result;
+  CeresBundle bundle(problem, roles, options.huber_width);
+  const ceres::Solver::Summary summary = bundle.solve(options);
+  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
+  result.usable = summary.IsSolutionUsable();
+  if (!result.usable) return result;
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (roles.pose_moves[i]) result.camera_from_world[i] = bundle.camera_from_world(i);
+  }
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    if (roles.point_moves[i]) result.points_in_world[i] = bundle.point_in_world(i);
+  }
+  return result;
+}
+
+// The problem at its solution, with the pose held for want of an anchor fixed.
+BundleProblem moved(BundleProblem problem, const BundleResult& result, const Roles& roles) {
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    problem.poses[i].camera_from_world = result.camera_from_world[i];
+    problem.poses[i].fixed = !roles.pose_moves[i];
+  }
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    problem.points[i].position_in_world = result.points_in_world[i];
+  }
+  return problem;
+}
+
+double squared_error(const BundleObservation& observation, const Rig& rig, const Eigen::Vector3d& point_in_camera) {
+  if (point_in_camera.z() <= 0.0) return std::numeric_limits<double>::infinity();
+  const StereoPixel error = rig.project(point_in_camera) - observation.measured;
+  const double pixels = error.head<2>().squaredNorm() / (observation.pixel_sigma * observation.pixel_sigma);
+  if (!observation.is_stereo()) return pixels;
+  return pixels + error.z() * error.z() / (observation.disparity_sigma * observation.disparity_sigma);
+}
+
+std::vector<double> squared_errors(const BundleProblem& problem, const BundleResult& result) {
+  std::vector<double> errors;
+  errors.reserve(problem.observations.size());
+  for (const BundleObservation& observation : problem.observations) {
+    const Rig& rig = problem.rigs[problem.poses[observation.pose].rig];
+    errors.push_back(squared_error(
+        observation, rig, result.camera_from_world[observation.pose] * result.points_in_world[observation.point]));
+  }
+  return errors;
+}
+
+}  // namespace
+
+BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options) {
+  const Roles roles = choose_roles(problem);
+  BundleResult result = solve(problem, roles, options);
+  result.squared_errors = squared_errors(problem, result);
+  if (options.covariance_of_pose >= 0 && result.usable) {
+    result.pose_covariance =
+        marginal_covariance(moved(problem, result, roles), options.covariance_of_pose, options.huber_width);
+  }
+  return result;
+}
+
+}  // namespace byre

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "byre/geometry/rig.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct BundlePose {
+  Pose camera_from_world;
+  int rig = 0;         // index into BundleProblem::rigs
+  bool fixed = false;  // an anchor
+};
+
+struct BundlePoint {
+  Eigen::Vector3d position_in_world;
+  bool fixed = false;  // an offline point: trusted, never moved
+};
+
+// A point seen in a rectified image; without a disparity when disparity_sigma is negative.
+struct BundleObservation {
+  int pose = 0;                   // index into BundleProblem::poses
+  int point = 0;                  // index into BundleProblem::points
+  StereoPixel measured;           // u, v, disparity; pixels
+  double pixel_sigma = 1.0;       // pixels, of u and of v
+  double disparity_sigma = -1.0;  // pixels
+
+  bool is_stereo() const { return disparity_sigma > 0.0; }
+};
+
+// Everything the solver needs, by value; knows nothing of maps.
+struct BundleProblem {
+  std::vector<Rig> rigs;
+  std::vector<BundlePose> poses;
+  std::vector<BundlePoint> points;
+  std::vector<BundleObservation> observations;
+};
+
+struct BundleOptions {
+  int max_iterations = 10;
+  double huber_width = 2.0;     // sigmas
+  int threads = 1;              // one keeps the order of sums, hence the result, reproducible
+  int covariance_of_pose = -1;  // index of the pose whose marginal covariance is wanted, or -1
+};
+
+struct BundleResult {
+  std::vector<Pose> camera_from_world;           // one per pose
+  std::vector<Eigen::Vector3d> points_in_world;  // one per point
+  std::vector<double> squared_errors;            // one per observation, squared sigmas, before the robust loss;
+                                                 // infinite for a point at or behind the camera
+  // Of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones. Empty when
+  // none was asked for, the pose did not move, or its observations do not determine it.
+  std::optional<Matrix6> pose_covariance;
+  int iterations = 0;
+  bool usable = false;  // false when the solver failed: then poses and points are as given
+};
+
+// Minimises the robust reprojection error over poses and points (Triggs 2000) with Ceres' Schur complement.
+// Observations that start at or behind the camera have no say. Poses or points without any other stay where they are.
+// With nothing fixed the first observed pose is held.
+BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,216 @@
+#include "byre/optimise/bundle_adjustment.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/optimise/bundle_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+using testing::Each;
+using testing::Lt;
+
+BundleOptions patient() {
+  BundleOptions options;
+  options.max_iterations = 50;
+  return options;
+}
+
+void expect_recovered(const BundleResult& result, const BundleProblem& truth, double tolerance) {
+  ASSERT_TRUE(result.usable);
+  for (std::size_t i = 0; i < truth.poses.size(); ++i) {
+    EXPECT_THAT(result.camera_from_world[i], PoseNear(truth.poses[i].camera_from_world, tolerance, tolerance))
+        << "pose " << i;
+  }
+  for (std::size_t i = 0; i < truth.points.size(); ++i) {
+    EXPECT_THAT(result.points_in_world[i], PointNear(truth.points[i].position_in_world, tolerance)) << "point " << i;
+  }
+}
+
+bool identical(const Pose& first, const Pose& second) {
+  return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of every third point that five poses see or more.
+std::vector<int> one_observation_of_well_seen_points(const BundleProblem& problem) {
+  std::vector<int> indices;
+  for (int point = 0; point < static_cast<int>(problem.points.size()); point += 3) {
+    const auto first = std::ranges::find(problem.observations, point, &BundleObservation::point);
+    if (std::ranges::count(problem.observations, point, &BundleObservation::point) < 5) continue;
+    indices.push_back(static_cast<int>(first - problem.observations.begin()));
+  }
+  return indices;
+}
+
+TEST(BundleAdjust, RecoversCleanStereoExactly) {
+  const BundleScene scene = make_scene(1, {});
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  expect_recovered(result, scene.truth, 1e-6);
+  EXPECT_THAT(result.squared_errors, Each(Lt(1e-6)));
+}
+
+TEST(BundleAdjust, RecoversCleanMonoBetweenTwoAnchors) {
+  const BundleScene scene = make_scene(2, {.mono_fraction = 1.0, .start_position = 0.02, .start_rotation = 0.01});
+  expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-5);
+}
+
+TEST(BundleAdjust, RecoversMorePosesThanTheDenseSolverTakes) {
+  const BundleScene scene = make_scene(3, {.moving_poses = 70, .points = 400});
+  expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-6);
+}
+
+TEST(BundleAdjust, RecoversPosesFromFixedPointsAlone) {
+  const BundleScene scene = make_scene(4, {.fixed_poses = 0, .fixed_points = 80});
+  expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-7);
+}
+
+TEST(BundleAdjust, RecoversPointsFromFixedPosesAlone) {
+  const BundleScene scene = make_scene(5, {.fixed_poses = 4, .moving_poses = 0});
+  expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-6);
+}
+
+TEST(BundleAdjust, AnswersNoiseWithSmallErrors) {
+  const BundleScene scene = make_scene(6, {.points = 300, .noise = 1.0});
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  ASSERT_TRUE(result.usable);
+  for (std::size_t i = 0; i < scene.truth.poses.size(); ++i) {
+    EXPECT_THAT(result.camera_from_world[i], PoseNear(scene.truth.poses[i].camera_from_world, 0.01, 0.004));
+  }
+  EXPECT_GT(median(result.squared_errors), 0.5);
+  EXPECT_LT(median(result.squared_errors), 2.5);
+}
+
+TEST(BundleAdjust, ShowsOutliersInTheirErrorsAndResistsThem) {
+  BundleScene scene = make_scene(7, {.points = 200, .noise = 1.0});
+  const std::vector<int> outliers = one_observation_of_well_seen_points(scene.problem);
+  ASSERT_GT(outliers.size(), 30u);
+  for (const int i : outliers) scene.problem.observations[i].measured.head<2>() += Eigen::Vector2d(40.0, -30.0);
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  ASSERT_TRUE(result.usable);
+  for (const int i : outliers) EXPECT_GT(result.squared_errors[i], 100.0) << "observation " << i;
+  EXPECT_LT(median(result.squared_errors), 2.5);
+  for (std::size_t i = 0; i < scene.truth.poses.size(); ++i) {
+    EXPECT_THAT(result.camera_from_world[i], PoseNear(scene.truth.poses[i].camera_from_world, 0.02, 0.008));
+  }
+}
+
+TEST(BundleAdjust, LeavesFixedThingsBitIdentical) {
+  const BundleScene scene = make_scene(8, {.fixed_points = 40, .noise = 1.0});
+  const BundleResult result = bundle_adjust(scene.problem, {});
+  for (std::size_t i = 0; i < scene.problem.poses.size(); ++i) {
+    const BundlePose& pose = scene.problem.poses[i];
+    EXPECT_EQ(identical(result.camera_from_world[i], pose.camera_from_world), pose.fixed) << "pose " << i;
+  }
+  for (std::size_t i = 0; i < scene.problem.points.size(); ++i) {
+    const BundlePoint& point = scene.problem.points[i];
+    EXPECT_EQ(result.points_in_world[i] == point.position_in_world, point.fixed) << "point " << i;
+  }
+}
+
+TEST(BundleAdjust, LeavesUnobservedThingsBitIdentical) {
+  BundleScene scene = make_scene(9, {.noise = 1.0});
+  scene.problem.poses.push_back({exp_pose(Vector6::Constant(0.3)), 0, false});
+  scene.problem.points.push_back({Eigen::Vector3d(1.0, 2.0, 3.0), false});
+  const BundleResult result = bundle_adjust(scene.problem, {});
+  EXPECT_TRUE(identical(result.camera_from_world.back(), scene.problem.poses.back().camera_from_world));
+  EXPECT_EQ(result.points_in_world.back(), scene.problem.points.back().position_in_world);
+}
+
+TEST(BundleAdjust, HoldsTheFirstObservedPoseWhenNothingIsFixed) {
+  BundleScene scene = make_scene(10, {.fixed_poses = 0, .noise = 1.0});
+  std::erase_if(scene.problem.observations, [](const BundleObservation& observation) { return observation.pose == 0; });
+  const BundleResult result = bundle_adjust(scene.problem, {});
+  EXPECT_TRUE(identical(result.camera_from_world[1], scene.problem.poses[1].camera_from_world));
+  EXPECT_FALSE(identical(result.camera_from_world[2], scene.problem.poses[2].camera_from_world));
+}
+
+TEST(BundleAdjust, RepeatsBitForBit) {
+  const BundleScene scene = make_scene(11, {.fixed_points = 20, .noise = 1.0});
+  BundleOptions options;
+  options.covariance_of_pose = 5;
+  const BundleResult first = bundle_adjust(scene.problem, options);
+  const BundleResult second = bundle_adjust(scene.problem, options);
+  EXPECT_TRUE(std::ranges::equal(first.camera_from_world, second.camera_from_world, identical));
+  EXPECT_EQ(first.points_in_world, second.points_in_world);
+  EXPECT_EQ(first.squared_errors, second.squared_errors);
+  ASSERT_TRUE(first.pose_covariance && second.pose_covariance);
+  EXPECT_EQ(*first.pose_covariance, *second.pose_covariance);
+}
+
+TEST(BundleAdjust, TakesAnEmptyProblem) {
+  const BundleResult result = bundle_adjust({}, {});
+  EXPECT_TRUE(result.usable);
+  EXPECT_TRUE(result.camera_from_world.empty());
+  EXPECT_TRUE(result.squared_errors.empty());
+}
+
+TEST(BundleAdjust, OnlyMeasuresWhenNothingMoves) {
+  const BundleScene scene = make_scene(12, {.fixed_poses = 4, .moving_poses = 0, .points = 30, .fixed_points = 30});
+  const BundleResult result = bundle_adjust(scene.problem, {});
+  EXPECT_TRUE(result.usable);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.squared_errors.size(), scene.problem.observations.size());
+  EXPECT_THAT(result.squared_errors, Each(Lt(1e-12)));
+}
+
+TEST(BundleAdjust, GivesInfiniteErrorToAPointBehindTheCameraWhichHasNoSay) {
+  BundleScene scene = make_scene(13, {});
+  const int behind = static_cast<int>(scene.problem.points.size());
+  const Pose world_from_camera = inverse(scene.truth.poses[3].camera_from_world);
+  scene.problem.points.push_back({world_from_camera * Eigen::Vector3d(0.2, 0.1, -3.0), false});
+  scene.problem.observations.push_back(
+      {.pose = 3, .point = behind, .measured = {300.0, 200.0, 10.0}, .disparity_sigma = 0.4});
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  EXPECT_EQ(result.squared_errors.back(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(result.points_in_world.back(), scene.problem.points.back().position_in_world);
+  EXPECT_THAT(result.camera_from_world[3], PoseNear(scene.truth.poses[3].camera_from_world, 1e-6, 1e-6));
+}
+
+TEST(BundleAdjust, SurvivesPointsThatStartCloseBeforeTheCamera) {
+  BundleScene scene = make_scene(14, {});
+  for (int i = 0; i < 10; ++i) {
+    const Pose& camera_from_world = scene.problem.poses[i % 6].camera_from_world;
+    scene.problem.points[i].position_in_world =
+        inverse(camera_from_world) * Eigen::Vector3d(0.01, -0.02, 0.02 + 0.01 * i);
+  }
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  ASSERT_TRUE(result.usable);
+  EXPECT_TRUE(std::ranges::none_of(result.squared_errors, [](double error) { return std::isnan(error); }));
+  EXPECT_LT(median(result.squared_errors), 1.0);
+}
+
+TEST(BundleAdjust, SurvivesPointsSeenOnceWithoutDisparity) {
+  BundleScene scene = make_scene(15, {});
+  const Eigen::Vector3d once_seen = inverse(scene.truth.poses[4].camera_from_world) * Eigen::Vector3d(0.1, 0.2, 2.0);
+  scene.problem.points.push_back({once_seen, false});
+  scene.problem.observations.push_back(
+      {.pose = 4, .point = static_cast<int>(scene.problem.points.size()) - 1, .measured = {350.0, 300.0, 0.0}});
+  const BundleResult result = bundle_adjust(scene.problem, patient());
+  ASSERT_TRUE(result.usable);
+  EXPECT_TRUE(result.points_in_world.back().allFinite());
+  EXPECT_THAT(result.camera_from_world[4], PoseNear(scene.truth.poses[4].camera_from_world, 1e-5, 1e-5));
+}
+
+TEST(BundleAdjust, ReturnsWhatWasGivenWhenTheSolverFails) {
+  BundleScene scene = make_scene(16, {});
+  scene.problem.observations.front().measured.x() = std::numeric_limits<double>::quiet_NaN();
+  const BundleResult result = bundle_adjust(scene.problem, {});
+  EXPECT_FALSE(result.usable);
+  EXPECT_TRUE(identical(result.camera_from_world[3], scene.problem.poses[3].camera_from_world));
+  EXPECT_EQ(result.points_in_world[0], scene.problem.points[0].position_in_world);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,78 @@
+#include "byre/optimise/bundle_cost.h"
+
+namespace byre {
+
+namespace {
+
+using RowMajor33 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using RowMajor34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+void write(const Eigen::Vector3d& from, double* to) {
+  Eigen::Map<Eigen::Vector3d>{to} = from;
+}
+
+// The derivative by rotation and translation, from that by the point in the camera.
+void write_by_pose(const Eigen::Matrix3d& by_camera, const Eigen::Vector3d& rotated_point, double** jacobians) {
+  if (jacobians[0]) {
+    Eigen::Map<RowMajor34> by_rotation(jacobians[0]);
+    by_rotation.leftCols<3>().noalias() = -by_camera * skew(rotated_point);
+    by_rotation.col(3).setZero();
+  }
+  if (jacobians[1]) Eigen::Map<RowMajor33>{jacobians[1]} = by_camera;
+}
+
+void write_by_point(const Eigen::Matrix3d& by_camera, const Eigen::Quaterniond& camera_from_world, double* jacobian) {
+  if (jacobian) Eigen::Map<RowMajor33>{jacobian}.noalias() = by_camera * camera_from_world.toRotationMatrix();
+}
+
+}  // namespace
+
+bool RotationManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
+  const Eigen::Quaterniond moved = rotation_exp(Eigen::Vector3d(delta)) * Eigen::Quaterniond(x);
+  Eigen::Map<Eigen::Quaterniond>{x_plus_delta} = moved.normalized();
+  return true;
+}
+
+bool RotationManifold::PlusJacobian(const double*, double* jacobian) const {
+  Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>>{jacobian}.setIdentity();
+  return true;
+}
+
+bool RotationManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
+  write(rotation_log(Eigen::Quaterniond(y) * Eigen::Quaterniond(x).conjugate()), y_minus_x);
+  return true;
+}
+
+bool RotationManifold::MinusJacobian(const double*, double* jacobian) const {
+  Eigen::Map<RowMajor34>{jacobian}.setIdentity();
+  return true;
+}
+
+bool PoseAndPointCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  const Eigen::Quaterniond rotation(parameters[0]);
+  const Eigen::Vector3d rotated_point = rotation * Eigen::Vector3d(parameters[2]);
+  const Eigen::Vector3d point_in_camera = rotated_point + Eigen::Vector3d(parameters[1]);
+  write(reprojection_.residual(point_in_camera), residual);
+  if (!jacobians) return true;
+  const Eigen::Matrix3d by_camera = reprojection_.jacobian(point_in_camera);
+  write_by_pose(by_camera, rotated_point, jacobians);
+  write_by_point(by_camera, rotation, jacobians[2]);
+  return true;
+}
+
+bool PoseCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  const Eigen::Vector3d rotated_point = Eigen::Quaterniond(parameters[0]) * point_in_world_;
+  const Eigen::Vector3d point_in_camera = rotated_point + Eigen::Vector3d(parameters[1]);
+  write(reprojection_.residual(point_in_camera), residual);
+  if (jacobians) write_by_pose(reprojection_.jacobian(point_in_camera), rotated_point, jacobians);
+  return true;
+}
+
+bool PointCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  const Eigen::Vector3d point_in_camera = camera_from_world_ * Eigen::Vector3d(parameters[0]);
+  write(reprojection_.residual(point_in_camera), residual);
+  if (jacobians) write_by_point(reprojection_.jacobian(point_in_camera), camera_from_world_.rotation, jacobians[0]);
+  return true;
+}
+
+}  // namespace byre

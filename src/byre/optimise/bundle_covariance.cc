@@ -1,0 +1,169 @@
+#include "byre/optimise/bundle_covariance.h"
+
+#include "byre/optimise/huber.h"
+#include "byre/optimise/reprojection.h"
+
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+
+namespace {
+
+using Matrix63 = Eigen::Matrix<double, 6, 3>;
+
+// One observation's share of the normal equations.
+struct Block {
+  int slot = -1;  // the pose's place in the reduced matrix, negative for a fixed pose
+  Matrix6 pose_pose;
+  Matrix63 pose_point;
+  Eigen::Matrix3d point_point;
+};
+
+Block weighted_block(const BundleProblem& solved, const BundleObservation& observation, double huber_width) {
+  const BundlePose& pose = solved.poses[observation.pose];
+  const Eigen::Vector3d point_in_camera = pose.camera_from_world * solved.points[observation.point].position_in_world;
+  const Reprojection reprojection(solved.rigs[pose.rig], observation.measured, observation.pixel_sigma,
+                                  observation.disparity_sigma);
+  const double squared_error = reprojection.residual(point_in_camera).squaredNorm();
+  const Eigen::Matrix3d by_camera =
+      std::sqrt(huber_weight(squared_error, huber_width)) * reprojection.jacobian(point_in_camera);
+  Eigen::Matrix<double, 3, 6> by_pose;
+  by_pose << by_camera, -by_camera * skew(point_in_camera);
+  const Eigen::Matrix3d by_point = by_camera * pose.camera_from_world.rotation.toRotationMatrix();
+  return {-1, by_pose.transpose() * by_pose, by_pose.transpose() * by_point, by_point.transpose() * by_point};
+}
+
+bool in_front(const BundleProblem& solved, const BundleObservation& observation) {
+  const Pose& camera_from_world = solved.poses[observation.pose].camera_from_world;
+  return (camera_from_world * solved.points[observation.point].position_in_world).z() >= kNearestDepth;
+}
+
+// Indices of the observations in front of their cameras, those of one point side by side.
+std::vector<int> by_point(const BundleProblem& solved) {
+  std::vector<int> start(solved.points.size() + 1, 0);
+  for (const BundleObservation& observation : solved.observations) {
+    start[observation.point + 1] += in_front(solved, observation);
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> indices(start.back());
+  for (int i = 0; i < static_cast<int>(solved.observations.size()); ++i) {
+    const BundleObservation& observation = solved.observations[i];
+    if (in_front(solved, observation)) indices[start[observation.point]++] = i;
+  }
+  return indices;
+}
+
+// The place of each moving, observed pose in the reduced matrix; negative for the others. The wanted pose comes last,
+// where a Cholesky factor shows its marginal.
+std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>& observations, int wanted) {
+  std::vector<int> slots(solved.poses.size(), -1);
+  for (const int i : observations) slots[solved.observations[i].pose] = 0;
+  int count = 0;
+  for (int i = 0; i < static_cast<int>(slots.size()); ++i) {
+    if (solved.poses[i].fixed) slots[i] = -1;
+    if (slots[i] == 0 && i != wanted) slots[i] = count++;
+  }
+  if (slots[wanted] == 0) slots[wanted] = count;
+  return slots;
+}
+
+// False when elimination has all but cancelled a pivot.
+template <typename Matrix>
+bool is_regular(const Eigen::LLT<Matrix>& factor, const Matrix& matrix) {
+  constexpr double kSingular = 1e-10;
+  return factor.info() == Eigen::Success &&
+         (factor.matrixLLT().diagonal().array().square() > kSingular * matrix.diagonal().array()).all();
+}
+
+// Empty when the point is not determined, as when it was seen once without a disparity.
+std::optional<Eigen::Matrix3d> point_covariance(const std::vector<Block>& blocks) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  for (const Block& block : blocks) information += block.point_point;
+  const Eigen::LLT<Eigen::Matrix3d> factor(information);
+  if (!is_regular(factor, information)) return std::nullopt;
+  return factor.solve(Eigen::Matrix3d::Identity());
+}
+
+// The normal matrix over poses, lower triangle.
+class ReducedMatrix {
+ public:
+  explicit ReducedMatrix(int poses) : matrix_(Eigen::MatrixXd::Zero(6 * poses, 6 * poses)) {}
+
+  // Adds all that is seen of one point, as if its position were known.
+  void add(const std::vector<Block>& blocks) {
+    for (const Block& block : blocks) {
+      if (block.slot >= 0) at(block.slot, block.slot) += block.pose_pose;
+    }
+  }
+
+  // Subtracts what finding the point's position has used up.
+  void eliminate(const std::vector<Block>& blocks, const Eigen::Matrix3d& point_covariance) {
+    for (const Block& row : blocks) {
+      if (row.slot < 0) continue;
+      const Matrix63 gain = row.pose_point * point_covariance;
+      for (const Block& column : blocks) {
+        if (column.slot < 0 || column.slot > row.slot) continue;
+        at(row.slot, column.slot).noalias() -= gain * column.pose_point.transpose();
+      }
+    }
+  }
+
+  const Eigen::MatrixXd& lower_triangle() const { return matrix_; }
+
+ private:
+  Eigen::Block<Eigen::MatrixXd, 6, 6> at(int row, int column) { return matrix_.block<6, 6>(6 * row, 6 * column); }
+
+  Eigen::MatrixXd matrix_;
+};
+
+// A point that is not determined tells next to nothing of the poses; it is left out, which errs on the safe side.
+void add_point(ReducedMatrix& reduced, const std::vector<Block>& blocks, bool fixed) {
+  if (fixed) return reduced.add(blocks);
+  const auto covariance = point_covariance(blocks);
+  if (!covariance) return;
+  reduced.add(blocks);
+  reduced.eliminate(blocks, *covariance);
+}
+
+ReducedMatrix reduce_to_poses(const BundleProblem& solved, const std::vector<int>& observations,
+                              const std::vector<int>& slots, int slot_count, double huber_width) {
+  ReducedMatrix reduced(slot_count);
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const BundleObservation& observation = solved.observations[observations[i]];
+    blocks.push_back(weighted_block(solved, observation, huber_width));
+    blocks.back().slot = slots[observation.pose];
+    const bool last_of_point =
+        i + 1 == observations.size() || solved.observations[observations[i + 1]].point != observation.point;
+    if (!last_of_point) continue;
+    add_point(reduced, blocks, solved.points[observation.point].fixed);
+    blocks.clear();
+  }
+  return reduced;
+}
+
+// Inverse of the information left to the last pose when the others are eliminated.
+std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(lower_triangle);
+  if (!is_regular(factor, lower_triangle)) return std::nullopt;
+  const Matrix6 square_root = factor.matrixL().toDenseMatrix().bottomRightCorner<6, 6>();
+  const Matrix6 inverse = square_root.triangularView<Eigen::Lower>().solve(Matrix6::Identity());
+  return inverse.transpose() * inverse;
+}
+
+}  // namespace
+
+std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, int pose, double huber_width) {
+  assert(pose >= 0 && pose < static_cast<int>(solved.poses.size()));
+  const std::vector<int> observations = by_point(solved);
+  const std::vector<int> slots = pose_slots(solved, observations, pose);
+  if (slots[pose] < 0) return std::nullopt;
+  return last_marginal(reduce_to_poses(solved, observations, slots, slots[pose] + 1, huber_width).lower_triangle());
+}
+
+}  // namespace byre

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "byre/geometry/rig.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace byre {
+
+// A map point and where the frame sees it.
+struct PoseObservation {
+  Eigen::Vector3d point_in_world;
+  Eigen::Matrix3d point_covariance = Eigen::Matrix3d::Zero();  // in world, square metres
+  StereoPixel measured;                                        // u, v, disparity; pixels
+  double pixel_sigma = 1.0;                                    // pixels, of u and of v
+  double disparity_sigma = -1.0;                               // pixels; negative: no disparity
+  double weight = 1.0;                                         // priority: multiplies its share of the cost
+
+  bool is_stereo() const { return disparity_sigma > 0.0; }
+};
+
+struct PoseRefinementOptions {
+  int rounds = 4;  // of choosing inliers, then solving robustly on them
+  int iterations_per_round = 5;
+  double huber_width = 1.5;                 // sigmas
+  double max_squared_error_mono = 5.991;    // 95 % of chi-square with two degrees of freedom
+  double max_squared_error_stereo = 7.815;  // 95 %, three degrees
+  double max_variance_factor = 9.0;         // see PoseRefinement::variance_factor
+};
+
+struct PoseRefinement {
+  Pose camera_from_world;
+  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * camera_from_world
+  std::vector<bool> inliers;             // one per observation; at or behind the camera never
+  int inlier_count = 0;
+  // By which the residuals' variance exceeds the one stated, at least 1: where the map is not settled yet all errors
+  // are larger than their sigmas. Gates, loss and covariance are widened by it.
+  double variance_factor = 1.0;
+};
+
+// Gauss-Newton on one pose against points of known uncertainty: each residual is whitened by the sum of the
+// measurement's covariance and the point's, projected. Weights decide neither who is an inlier nor make the covariance
+// smaller. The gates also cut the tails of good measurements, which leaves the covariance's variances too small by some
+// 5 % (stereo) to 15 % (mono). Empty when fewer than four observations remain or the normal equations are singular.
+std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_world, const Rig& rig,
+                                          std::span<const PoseObservation> observations,
+                                          const PoseRefinementOptions& options);
+
+}  // namespace byre
