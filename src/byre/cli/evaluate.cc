@@ -1,0 +1,137 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/evaluation_report.h"
+#include "byre/dataset/recording.h"
+#include "byre/evaluation/trajectory_file.h"
+#include "byre/input/input_error.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateOptions {
+  fs::path estimate;
+  fs::path truth;
+  std::optional<fs::path> times;
+  std::optional<fs::path> frames_of;
+  std::optional<fs::path> aligned;
+  Protocol protocol;
+  double time_offset_s = 0.0;
+  double max_gap_s = to_seconds(AssociationOptions{}.max_gap);
+  bool json = false;
+};
+
+constexpr const char* kFooter = R"(Examples:
+  byre evaluate --estimate out.txt --truth MH_01_easy --frames-of MH_01_easy --label final
+  byre evaluate --estimate out.txt --truth MH_01_easy --time-offset -0.0075
+  byre evaluate --estimate out.txt --truth kitti/poses/00.txt --times kitti/sequences/00/times.txt
+  byre evaluate --estimate mono.txt --truth truth.txt --alignment sim3 --json
+
+Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera.)";
+
+Trajectory load_trajectory(const fs::path& path, const std::optional<fs::path>& times) {
+  if (times && guess_trajectory_format(path) == TrajectoryFormat::kitti) return read_kitti_poses(path, *times);
+  return read_trajectory(path);
+}
+
+Trajectory load_truth(const EvaluateOptions& options) {
+  if (!fs::is_directory(options.truth)) return load_trajectory(options.truth, options.times);
+  const std::optional<fs::path> file = find_ground_truth(options.truth);
+  if (!file) throw InputError(options.truth.string(), "is a recording without ground truth", "name the file with it");
+  return load_trajectory(*file, options.times.value_or(options.truth / "times.txt"));
+}
+
+std::optional<ExpectedFrames> expected_frames(const EvaluateOptions& options) {
+  if (options.frames_of) {
+    return ExpectedFrames{open_recording(*options.frames_of, {})->times(), "frames of " + options.frames_of->string()};
+  }
+  if (options.times) return ExpectedFrames{read_times(*options.times), "times in " + options.times->string()};
+  return std::nullopt;
+}
+
+std::string span_of(const Trajectory& trajectory) {
+  return std::to_string(to_seconds(trajectory.front().time)) + " to " +
+         std::to_string(to_seconds(trajectory.back().time)) + " s";
+}
+
+Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport& report) {
+  if (!report.ate) throw std::runtime_error("the estimate cannot be aligned, so it is not written");
+  Trajectory result;
+  for (const StampedPose& sample : estimate) {
+    result.push_back({sample.time, aligned(report.ate->truth_from_estimate, sample.world_from_body)});
+  }
+  return result;
+}
+
+void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
+  const Trajectory estimate = load_trajectory(options.estimate, options.times);
+  const Trajectory truth = load_truth(options);
+  Protocol protocol = options.protocol;
+  protocol.association.time_offset = from_seconds(options.time_offset_s);
+  protocol.association.max_gap = from_seconds(options.max_gap_s);
+  const std::optional<EvaluationReport> report = evaluate(estimate, truth, protocol, expected_frames(options));
+  if (!report) {
+    throw InputError(options.estimate.string(), "no pose has truth at its time",
+                     "the estimate is from " + span_of(estimate) + ", the truth from " + span_of(truth));
+  }
+  if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned);
+  const auto print = options.json ? to_json : to_text;
+  result << print(*report, options.estimate.string(), options.truth.string());
+}
+
+void declare_inputs(CLI::App& command, EvaluateOptions& options) {
+  command.add_option("--estimate", options.estimate, "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--truth", options.truth, "True trajectory in any of these formats, or the recording that holds it")
+      ->type_name("FILE|FOLDER")
+      ->required();
+  command.add_option("--times", options.times, "Times of KITTI poses, and the frames that should have a pose")
+      ->type_name("FILE");
+  command.add_option("--frames-of", options.frames_of, "Recording whose frames should have a pose, for the coverage")
+      ->type_name("FOLDER");
+}
+
+void declare_protocol(CLI::App& command, EvaluateOptions& options) {
+  const std::map<std::string, Alignment> alignments = {
+      {"se3", Alignment::se3}, {"sim3", Alignment::sim3}, {"none", Alignment::none}};
+  command
+      .add_option("--alignment", options.protocol.alignment,
+                  "se3 (default), sim3 for monocular estimates, none for poses in the frame of an aligned map")
+      ->type_name("se3|sim3|none")
+      ->transform(CLI::CheckedTransformer(alignments).description(""));
+  command.add_option("--label", options.protocol.label, "Which poses these are, for the report's header")
+      ->type_name("causal|final")
+      ->check(CLI::IsMember({"causal", "final"}).description(""));
+  command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(-1e6, 1e6).description(""));
+  command.add_option("--max-gap", options.max_gap_s, "Longest gap in the truth to interpolate across")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Action declare_evaluate(CLI::App& command) {
+  const auto options = std::make_shared<EvaluateOptions>();
+  declare_inputs(command, *options);
+  declare_protocol(command, *options);
+  command.add_flag("--json", options->json, "Print the report as JSON");
+  command.add_option("--aligned", options->aligned, "Also write the estimate as aligned to the truth, in TUM format")
+      ->type_name("FILE");
+  command.footer(kFooter);
+  return [options](std::ostream& result) { run_evaluate(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "byre/evaluation/trajectory_error.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre::cli {
+
+enum class Alignment { se3, sim3, none };
+
+// How figures were made; without it they cannot be compared with others.
+struct Protocol {
+  std::string label = "not stated";  // which poses these are: causal or final
+  Alignment alignment = Alignment::se3;
+  AssociationOptions association;
+};
+
+// The frames that should have a pose, and where they come from, as the report says it.
+struct ExpectedFrames {
+  std::vector<Timestamp> times;
+  std::string source;
+};
+
+struct EvaluationReport {
+  Protocol protocol;
+  int estimated_poses = 0;
+  int true_poses = 0;
+  int pairs = 0;
+  double true_path = 0.0;                      // metres, between the poses that were compared
+  std::optional<Coverage> coverage;            // empty when it cannot be told
+  std::string coverage_source;                 // what the expected frames are
+  std::optional<AbsoluteTrajectoryError> ate;  // empty when the positions determine no alignment
+  RelativePoseError rpe_frame;
+  RelativePoseError rpe_second;
+  RelativePoseError rpe_metre;
+};
+
+// Empty when no estimated pose has truth at its time.
+std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Trajectory& truth, const Protocol& protocol,
+                                         const std::optional<ExpectedFrames>& expected);
+
+// Both begin with the protocol. The names of the files are only printed.
+std::string to_text(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file);
+std::string to_json(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file);
+
+}  // namespace byre::cli

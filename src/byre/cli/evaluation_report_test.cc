@@ -1,0 +1,131 @@
+#include "byre/cli/evaluation_report.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+// Five seconds at 20 Hz on a circle of 2 m, about 10 m of path.
+Trajectory circle() {
+  Trajectory trajectory;
+  for (int i = 0; i <= 100; ++i) {
+    const double angle = 0.05 * i;
+    trajectory.push_back({i * std::chrono::milliseconds(50),
+                          {rotation_exp({0.0, 0.0, angle}), {2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0}}});
+  }
+  return trajectory;
+}
+
+Trajectory scaled(Trajectory trajectory, double scale) {
+  for (StampedPose& sample : trajectory) sample.world_from_body.translation *= scale;
+  return trajectory;
+}
+
+EvaluationReport report_of(const Trajectory& estimate, Alignment alignment,
+                           const std::optional<ExpectedFrames>& expected = std::nullopt) {
+  Protocol protocol;
+  protocol.label = "final";
+  protocol.alignment = alignment;
+  return evaluate(estimate, circle(), protocol, expected).value();
+}
+
+TEST(EvaluationReport, StatesItsProtocolFirst) {
+  Protocol protocol;
+  protocol.label = "causal";
+  protocol.association.time_offset = std::chrono::microseconds(-7500);
+  const std::string text = to_text(evaluate(circle(), circle(), protocol, {}).value(), "out.txt", "truth.csv");
+  EXPECT_THAT(text, StartsWith("estimate     out.txt, 101 poses\n"
+                               "truth        truth.csv, 101 poses\n"
+                               "poses        causal\n"
+                               "alignment    SE(3) over all pairs (Umeyama)\n"
+                               "association  truth interpolated in gaps up to 60 ms, else its nearest sample within "
+                               "2 ms: 100 pairs\n"
+                               "time offset  -0.0075 s, added to the truth's time\n"
+                               "coverage     "));
+}
+
+TEST(EvaluationReport, SaysSoWhenTheKindOfPosesIsNotStated) {
+  const std::string text = to_text(evaluate(circle(), circle(), Protocol{}, {}).value(), "a", "b");
+  EXPECT_THAT(text, HasSubstr("poses        not stated\n"));
+}
+
+TEST(EvaluationReport, HasARowForEachError) {
+  const std::string text = to_text(report_of(scaled(circle(), 1.1), Alignment::none), "a", "b");
+  EXPECT_THAT(text, HasSubstr("ATE            m          0.2000    0.2000    0.2000    0.2000    0.2000      101\n"));
+  EXPECT_THAT(text, HasSubstr("ATE            degrees    0.0000"));
+  for (const char* const row : {"RPE 1 frame    m", "RPE 1 s        degrees", "RPE 1 m        m"}) {
+    EXPECT_THAT(text, HasSubstr(row));
+  }
+}
+
+TEST(EvaluationReport, OfASimilarityScalesRelativeErrorsToo) {
+  const EvaluationReport report = report_of(scaled(circle(), 0.5), Alignment::sim3);
+  EXPECT_LT(report.ate->translation.max, 1e-9);
+  EXPECT_LT(report.rpe_second.translation.max, 1e-9);
+  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("Sim(3) over all pairs (Umeyama), scale 2.000000"));
+  EXPECT_GT(report_of(scaled(circle(), 0.5), Alignment::se3).rpe_second.translation.rmse, 0.1);
+}
+
+TEST(EvaluationReport, CountsTheFramesGiven) {
+  Trajectory estimate = circle();
+  estimate.resize(76);
+  std::vector<Timestamp> times;
+  for (const StampedPose& sample : circle()) times.push_back(sample.time);
+  const EvaluationReport report = report_of(estimate, Alignment::se3, ExpectedFrames{times, "frames of room"});
+  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("coverage     75.2 % (76 of 101 frames of room)\n"));
+}
+
+TEST(EvaluationReport, EstimatesTheFramesWhereNoneAreGiven) {
+  Trajectory estimate = circle();
+  estimate.resize(76);
+  EXPECT_THAT(to_text(report_of(estimate, Alignment::se3), "a", "b"),
+              HasSubstr("coverage     75.2 % (76 of 101 frames that fit into the truth's span"));
+}
+
+TEST(EvaluationReport, OfOnePoseSaysWhatCannotBeTold) {
+  Trajectory estimate = circle();
+  estimate.resize(1);
+  const EvaluationReport report = report_of(estimate, Alignment::se3);
+  const std::string text = to_text(report, "a", "b");
+  EXPECT_THAT(text, HasSubstr("alignment    impossible"));
+  EXPECT_THAT(text, HasSubstr("coverage     unknown"));
+  EXPECT_THAT(text, HasSubstr("RPE 1 s        m       no pair of poses"));
+  EXPECT_THAT(text, Not(HasSubstr("ATE")));
+  const nlohmann::json json = nlohmann::json::parse(to_json(report, "a", "b"));
+  EXPECT_TRUE(json["ate"].is_null());
+  EXPECT_TRUE(json["coverage"].is_null());
+  EXPECT_TRUE(json["rpe"]["1_s"]["translation_m"].is_null());
+}
+
+TEST(EvaluationReport, InJsonHoldsTheSameFigures) {
+  const EvaluationReport report = report_of(scaled(circle(), 1.1), Alignment::none);
+  const std::string text = to_json(report, "out.txt", "truth.csv");
+  EXPECT_THAT(text, StartsWith("{\n  \"protocol\": {\n    \"poses\": \"final\""));
+  const nlohmann::json json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["protocol"]["alignment"], "none");
+  EXPECT_EQ(json["protocol"]["association"]["interpolated_within_s"], 0.06);
+  EXPECT_EQ(json["protocol"]["truth_time_offset_s"], 0.0);
+  EXPECT_EQ(json["estimate"]["file"], "out.txt");
+  EXPECT_EQ(json["pairs"], 101);
+  EXPECT_EQ(json["coverage"]["share"], 1.0);
+  EXPECT_NEAR(json["ate"]["translation_m"]["rmse"].get<double>(), 0.2, 1e-12);
+  EXPECT_EQ(json["ate"]["truth_from_estimate"]["scale"], 1.0);
+  EXPECT_EQ(json["rpe"]["1_frame"]["rotation_deg"]["count"], 100);
+  EXPECT_EQ(json["rpe"]["1_m"]["translation_m"]["rmse"].get<double>(), report.rpe_metre.translation.rmse);
+}
+
+TEST(EvaluationReport, IsEmptyWhereNothingCanBeCompared) {
+  Trajectory estimate = circle();
+  for (StampedPose& sample : estimate) sample.time += std::chrono::hours(1);
+  EXPECT_FALSE(evaluate(estimate, circle(), Protocol{}, {}).has_value());
+}
+
+}  // namespace
+}  // namespace byre::cli

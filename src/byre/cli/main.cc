@@ -1,0 +1,76 @@
+#include "byre/cli/commands.h"
+#include "byre/input/input_error.h"
+
+#include <array>
+#include <exception>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace {
+
+using namespace byre::cli;
+
+enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3 };
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input (a file, a calibration, a recording).\n"
+    "\"byre COMMAND --help\" explains a command.";
+
+struct Command {
+  const char* name;
+  const char* summary;
+  Action (*declare)(CLI::App& command);
+};
+
+constexpr std::array kCommands = {
+    Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
+};
+
+// Declares all commands; the one on the command line becomes the action when that is parsed.
+void declare_commands(CLI::App& app, Action& action) {
+  for (const Command& command : kCommands) {
+    CLI::App* const declared = app.add_subcommand(command.name, command.summary);
+    declared->callback([&action, run = command.declare(*declared)] { action = run; });
+  }
+}
+
+int report(const std::string& message, ExitCode code) {
+  std::cerr << "byre: error: " << message << "\n";
+  return code;
+}
+
+int run(const Action& action) {
+  try {
+    action(std::cout);
+    if (!std::cout.flush()) throw std::runtime_error("the result cannot be written to the standard output");
+    return done;
+  } catch (const byre::InputError& error) {
+    return report(error.what(), bad_input);
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Visual SLAM for robots that work in the same building every day.", "byre");
+  app.set_version_flag("--version", "byre " BYRE_VERSION, "Print the version and exit");
+  app.require_subcommand(0, 1);
+  app.footer(kExitCodes);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("byre: error: ") + error.what() + "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
+  });
+  Action action;
+  declare_commands(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {  // also --help and --version, which succeed
+    return app.exit(error) == done ? done : wrong_usage;
+  }
+  if (!action) return report("name a command, as \"byre --help\" lists them", wrong_usage);
+  return run(action);
+}

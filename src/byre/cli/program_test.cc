@@ -1,0 +1,142 @@
+// Runs the program as a user does: exit codes, and what it says on which stream.
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;
+  std::string errors;
+};
+
+class Program : public testing::Test {
+ protected:
+  Program() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::string tum = "# time\n";
+    std::string kitti;
+    std::string times;
+    for (int i = 0; i < 20; ++i) {
+      const std::string x = std::to_string(i), y = std::to_string(i * i);
+      tum += x + " " + x + " " + y + " 0 0 0 0 1\n";
+      kitti += "1 0 0 " + x + " 0 1 0 " + y + " 0 0 1 0\n";
+      times += x + "\n";
+    }
+    write("estimate.txt", tum);
+    write("poses.txt", kitti);
+    write("times.txt", times);
+  }
+  ~Program() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& content) const { std::ofstream(folder_ / name) << content; }
+
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name).rdbuf();
+    return text.str();
+  }
+
+  // Runs byre in the folder.
+  Outcome run(const std::string& arguments) const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" + BYRE_PROGRAM + "' " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) /
+                     (std::string("byre_program.") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(Program, ExplainsItself) {
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output, HasSubstr("evaluate"));
+  EXPECT_THAT(help.output, HasSubstr("Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input"));
+  const Outcome evaluate_help = run("evaluate --help");
+  EXPECT_EQ(evaluate_help.exit_code, 0);
+  EXPECT_THAT(evaluate_help.output, HasSubstr("--time-offset"));
+  EXPECT_THAT(evaluate_help.output, HasSubstr("Examples:\n  byre evaluate --estimate"));
+}
+
+TEST_F(Program, TellsItsVersion) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, testing::MatchesRegex("byre [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(Program, RefusesWrongUsage) {
+  for (const char* const arguments : {"", "evaluat", "--loud", "evaluate", "evaluate --estimate estimate.txt",
+                                      "evaluate --estimate estimate.txt --truth estimate.txt --alignment rigid",
+                                      "evaluate --estimate estimate.txt --truth estimate.txt --label best",
+                                      "evaluate --estimate estimate.txt --truth estimate.txt --time-offset soon"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith("byre: error: ")) << arguments;
+    EXPECT_THAT(outcome.output, IsEmpty()) << arguments;
+  }
+}
+
+TEST_F(Program, NamesBadInput) {
+  write("broken.txt", "1 0 0 0 0 0 0 1\n2 0 0\n");
+  write("later.txt", "101 0 0 0 0 0 0 1\n102 0 0 0 0 0 0 1\n");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"--truth absent.txt", "byre: error: absent.txt: cannot be opened (check that it exists and may be read)\n"},
+      {"--truth broken.txt", "byre: error: broken.txt:2: has 3 columns instead of 8"},
+      {"--truth poses.txt", "byre: error: poses.txt: is in KITTI format, which has no time stamps"},
+      {"--truth later.txt", "byre: error: estimate.txt: no pose has truth at its time"},
+      {"--truth .", "byre: error: .: holds no recording that byre knows"},
+      {"--truth estimate.txt --frames-of absent", "byre: error: absent: is no folder"},
+      {"--truth estimate.txt --aligned absent/out.txt", "byre: error: absent/out.txt: cannot be written"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run("evaluate --estimate estimate.txt " + arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith(message));
+    EXPECT_THAT(outcome.output, IsEmpty()) << arguments;
+  }
+}
+
+TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const std::string command = std::string("'") + BYRE_PROGRAM + "' evaluate --estimate '" +
+                              (folder_ / "estimate.txt").string() + "' --truth '" +
+                              (folder_ / "estimate.txt").string() + "' >/dev/full 2>/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+}
+
+TEST_F(Program, EvaluatesAgainstTheTruthOfKitti) {
+  const Outcome outcome = run("evaluate --estimate estimate.txt --truth poses.txt --times times.txt --label final");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("poses        final\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("coverage     100.0 % (20 of 20 times in times.txt)\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("ATE            m          0.0000"));
+  EXPECT_THAT(outcome.errors, IsEmpty());
+}
+
+TEST_F(Program, PrintsJsonAndWritesTheAlignedEstimate) {
+  const Outcome outcome = run("evaluate --estimate estimate.txt --truth estimate.txt --json --aligned aligned.txt");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, StartsWith("{\n  \"protocol\": {"));
+  EXPECT_THAT(read("aligned.txt"), HasSubstr("\n3.000000000 3.000000000 9.000000000 "));
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "byre/geometry/camera.h"
+
+#include <filesystem>
+
+namespace byre {
+
+struct EurocSensor {
+  Camera camera;
+  Pose body_from_camera;  // T_BS
+};
+
+// Reads a camera's sensor.yaml. Throws InputError naming the field that is missing or makes no sense: a T_BS that is
+// no rigid transform, focal lengths that are not positive, a principal point outside the image, an unknown model, a
+// wrong number of coefficients.
+EurocSensor read_euroc_sensor(const std::filesystem::path& path);
+
+}  // namespace byre

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "byre/features/image.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace byre {
+
+// A PNG, JPEG or other common image file as 8-bit grey, not turned by its EXIF tag. Empty when the file is missing,
+// no image, or cut short.
+std::optional<Image> read_image(const std::filesystem::path& path);
+
+}  // namespace byre

@@ -1,0 +1,108 @@
+#include "byre/dataset/recording_index.h"
+#include "byre/evaluation/text_file.h"
+#include "byre/evaluation/trajectory_file.h"
+#include "byre/input/input_error.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <Eigen/Core>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSameFocal = 1e-6;  // relative
+
+// The projection of a rectified camera: [f 0 cx f*tx; 0 f cy 0; 0 0 1 0], tx the left camera's x in this one, metres.
+using Projection = Eigen::Matrix<double, 3, 4>;
+
+Projection parse_projection(const TextLine& line, const std::string& place) {
+  const std::vector<std::string_view> fields = split_fields(line.text);
+  if (fields.size() != 13) throw InputError(place, "does not hold twelve numbers behind its name");
+  Projection projection;
+  for (int i = 0; i < 12; ++i) {
+    const std::optional<double> number = parse_number(fields[static_cast<std::size_t>(i) + 1]);
+    if (!number) throw InputError(place, "holds something that is not a number");
+    projection(i / 4, i % 4) = *number;
+  }
+  return projection;
+}
+
+// Precondition of all that follows: a rectified camera.
+void check_projection(const Projection& projection, const std::string& place) {
+  const double fx = projection(0, 0);
+  const double fy = projection(1, 1);
+  if (fx <= 0.0 || fy <= 0.0) throw InputError(place, "the focal lengths must be positive");
+  const bool rectified = std::abs(fx - fy) <= kSameFocal * fx && projection(0, 1) == 0.0 && projection(1, 0) == 0.0 &&
+                         projection.row(2) == Eigen::RowVector4d(0.0, 0.0, 1.0, 0.0);
+  if (!rectified)
+    throw InputError(place, "is not the projection of a rectified camera", "use KITTI odometry's calib.txt");
+}
+
+Projection read_projection(const fs::path& calibration, const std::string& name) {
+  for (const TextLine& line : read_lines(calibration)) {
+    if (!line.text.starts_with(name + ":")) continue;
+    const std::string place = calibration.string() + ": " + name;
+    Projection projection = parse_projection(line, place);
+    check_projection(projection, place);
+    return projection;
+  }
+  throw InputError(calibration.string() + ": " + name, "is missing");
+}
+
+Camera pinhole(const Projection& projection, const Image& image, const std::string& place) {
+  Camera camera;
+  camera.width = image.width;
+  camera.height = image.height;
+  camera.fx = projection(0, 0);
+  camera.fy = projection(1, 1);
+  camera.cx = projection(0, 2);
+  camera.cy = projection(1, 2);
+  if (camera.contains({camera.cx, camera.cy})) return camera;
+  throw InputError(place, "the principal point lies outside the images", "check that they belong to this sequence");
+}
+
+StereoPartner read_partner(const fs::path& calibration, const Projection& left, const Image& image) {
+  const std::string place = calibration.string() + ": P1";
+  const Projection right = read_projection(calibration, "P1");
+  const double baseline = (left(0, 3) - right(0, 3)) / right(0, 0);
+  if (baseline <= 0.0) throw InputError(place, "does not put the right camera to the right of the left one");
+  return {pinhole(right, image, place), {Eigen::Quaterniond::Identity(), {-baseline, 0.0, 0.0}}};
+}
+
+fs::path image_path(const fs::path& folder, std::size_t number) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "%06zu.png", number);
+  return folder / name.data();
+}
+
+std::vector<fs::path> image_paths(const fs::path& folder, std::size_t count) {
+  std::vector<fs::path> paths;
+  for (std::size_t i = 0; i < count; ++i) paths.push_back(image_path(folder, i));
+  return paths;
+}
+
+}  // namespace
+
+RecordingIndex index_kitti(const fs::path& folder) {
+  const fs::path calibration = folder / "calib.txt";
+  const Projection projection = read_projection(calibration, "P0");
+  const std::vector<Timestamp> times = read_times(folder / "times.txt");
+  const std::vector<fs::path> left = image_paths(folder / "image_0", times.size());
+  const bool stereo = fs::is_directory(folder / "image_1");
+
+  RecordingIndex index;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    index.frames.push_back({times[i], left[i], std::nullopt});
+    if (stereo) index.frames.back().right = image_path(folder / "image_1", i);
+  }
+  const Image image = first_readable(left);
+  index.calibration.left = pinhole(projection, image, calibration.string() + ": P0");
+  if (stereo) index.calibration.right = read_partner(calibration, projection, image);
+  return index;
+}
+
+}  // namespace byre

@@ -1,0 +1,299 @@
+#include "byre/dataset/recording.h"
+
+#include "byre/dataset/test_folder.h"
+
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kWidth = 32;
+constexpr int kHeight = 24;
+
+std::string sensor_yaml(double x_in_body) {
+  return "T_BS:\n  data: [1, 0, 0, " + std::to_string(x_in_body) +
+         ", 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [32, 24]\ncamera_model: pinhole\n"
+         "intrinsics: [20, 20, 15.5, 11.5]\ndistortion_model: radial-tangential\n"
+         "distortion_coefficients: [0, 0, 0, 0]\n";
+}
+
+// Four stereo pairs, 100 ms apart, in EuRoC's layout: left images are 10, 20.. in grey, right images 15, 25..
+class EurocRecording : public TestFolder {
+ protected:
+  EurocRecording() {
+    write("mav0/cam0/sensor.yaml", sensor_yaml(0.1));
+    write("mav0/cam1/sensor.yaml", sensor_yaml(0.3));
+    write("mav0/cam0/data.csv", kCsv);
+    write("mav0/cam1/data.csv", kCsv);
+    for (int i = 1; i <= 4; ++i) {
+      write_image("mav0/cam0/data/" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i);
+      write_image("mav0/cam1/data/" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 5);
+    }
+  }
+
+  std::unique_ptr<Recording> open(const FrameRange& range = {}) const { return open_recording(folder_, range); }
+  std::string open_error(const FrameRange& range = {}) const {
+    return error_of([&] { open(range); });
+  }
+
+  const std::string kCsv =
+      "#timestamp [ns],filename\r\n100000000,1.png\r\n200000000, 2.png\r\n300000000 ,3.png\r\n400000000,4.png \r\n";
+};
+
+TEST_F(EurocRecording, GivesPairsWithTheirTimes) {
+  const std::unique_ptr<Recording> recording = open();
+  EXPECT_THAT(recording->times(),
+              ElementsAre(milliseconds(100), milliseconds(200), milliseconds(300), milliseconds(400)));
+  const std::optional<ImageFrame> frame = recording->read(1);
+  ASSERT_TRUE(frame && frame->right);
+  EXPECT_EQ(frame->time, milliseconds(200));
+  EXPECT_EQ(frame->left.width, kWidth);
+  EXPECT_EQ(frame->left.pixels.back(), 20);
+  EXPECT_EQ(frame->right->pixels.back(), 25);
+  EXPECT_THAT(recording->warnings(), IsEmpty());
+}
+
+TEST_F(EurocRecording, PutsTheRightCameraBesideTheLeft) {
+  const Calibration calibration = open()->calibration();
+  ASSERT_TRUE(calibration.right.has_value());
+  EXPECT_NEAR(calibration.right->right_from_left.translation.x(), -0.2, 1e-12);
+  EXPECT_NEAR(calibration.body_from_left.translation.x(), 0.1, 1e-12);
+}
+
+TEST_F(EurocRecording, OpensFromTheInnerFolderToo) {
+  EXPECT_EQ(open_recording(folder_ / "mav0", {})->size(), 4);
+  EXPECT_EQ(guess_format(folder_ / "mav0"), RecordingFormat::euroc);
+}
+
+TEST_F(EurocRecording, WithoutTheSecondCameraIsMonocular) {
+  fs::remove_all(folder_ / "mav0/cam1");
+  const std::unique_ptr<Recording> recording = open();
+  EXPECT_FALSE(recording->calibration().right.has_value());
+  const std::optional<ImageFrame> frame = recording->read(0);
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_FALSE(frame->right.has_value());
+  EXPECT_THAT(recording->warnings(), IsEmpty());
+}
+
+TEST_F(EurocRecording, PairsImagesByTimeAndNotByTheirNumber) {
+  write("mav0/cam1/data.csv", "201900000,2.png\n297000000,3.png\n400000000,4.png\n");
+  const std::unique_ptr<Recording> recording = open();
+  ASSERT_EQ(recording->size(), 4);
+  EXPECT_FALSE(recording->read(0)->right.has_value());
+  EXPECT_EQ(recording->read(1)->right->pixels.back(), 25);
+  EXPECT_FALSE(recording->read(2)->right.has_value());
+  EXPECT_EQ(recording->read(3)->right->pixels.back(), 45);
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1.png: has no right image"), HasSubstr("3.png: has no")));
+}
+
+TEST_F(EurocRecording, GoesOnAfterABadImage) {
+  write("mav0/cam0/data/1.png", "broken");
+  fs::remove(folder_ / "mav0/cam1/data/2.png");
+  write_image("mav0/cam0/data/3.png", kWidth, kHeight + 1, 30);
+  const std::unique_ptr<Recording> recording = open();
+  EXPECT_FALSE(recording->read(0).has_value());
+  EXPECT_FALSE(recording->read(1)->right.has_value());
+  EXPECT_FALSE(recording->read(2).has_value());
+  EXPECT_TRUE(recording->read(3)->right.has_value());
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("cam0/data/1.png: is not a whole image"),
+                                                 HasSubstr("cam1/data/2.png: does not exist"),
+                                                 HasSubstr("cam0/data/3.png: is 32x25 instead of 32x24")));
+}
+
+TEST_F(EurocRecording, SelectsARangeOfFrames) {
+  EXPECT_THAT(open({.start_s = 0.1, .end_s = 0.3})->times(), ElementsAre(milliseconds(200), milliseconds(300)));
+  EXPECT_THAT(open({.first = 1, .last = 3})->times(), ElementsAre(milliseconds(200), milliseconds(300)));
+  EXPECT_THAT(open({.first = 1, .stride = 2})->times(), ElementsAre(milliseconds(200), milliseconds(400)));
+  EXPECT_THAT(open({.start_s = 0.2, .last = 3})->times(), ElementsAre(milliseconds(300)));
+  EXPECT_EQ(open({.first = 2})->read(0)->left.pixels.back(), 30);
+}
+
+TEST_F(EurocRecording, RefusesAnEmptyRange) {
+  EXPECT_THAT(open_error({.first = 4}), HasSubstr("no frame lies in the range asked for (it holds 4 frames in 0.3"));
+  EXPECT_THAT(open_error({.start_s = 0.2, .end_s = 0.2}), HasSubstr("no frame lies in the range"));
+  EXPECT_THAT(open_error({.stride = 0}), HasSubstr("stride"));
+}
+
+TEST_F(EurocRecording, NamesTheFileThatIsAbsent) {
+  fs::remove(folder_ / "mav0/cam1/data.csv");
+  EXPECT_THAT(open_error(), HasSubstr("cam1/data.csv: cannot be opened"));
+  fs::remove(folder_ / "mav0/cam0/sensor.yaml");
+  EXPECT_THAT(open_error(), HasSubstr("cam0/sensor.yaml: cannot be opened"));
+}
+
+TEST_F(EurocRecording, NamesTheLineOfAListThatIsWrong) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"200,2.png\n100,1.png\n", "data.csv:2: the time stamp is not later"},
+      {"#\n100,1.png\n100,1.png\n", "data.csv:3: the time stamp is not later"},
+      {"100,1.png\n0.2,2.png\n", "data.csv:2: \"0.2\" is not a time in nanoseconds"},
+      {"100\n", "data.csv:1: names no image file"},
+      {"100,\n", "data.csv:1: names no image file"},
+      {"#timestamp\n", "data.csv: lists no images"},
+  };
+  for (const auto& [csv, message] : cases) {
+    write("mav0/cam0/data.csv", csv);
+    EXPECT_THAT(open_error(), HasSubstr(message));
+  }
+}
+
+TEST_F(EurocRecording, RefusesACalibrationForImagesOfAnotherSize) {
+  for (int i = 1; i <= 4; ++i) write_image("mav0/cam1/data/" + std::to_string(i) + ".png", 16, 12, 50);
+  EXPECT_THAT(open_error(), HasSubstr("cam1/sensor.yaml: resolution: is 32x24, but the images are 16x12"));
+}
+
+TEST_F(EurocRecording, RefusesCamerasInOnePlace) {
+  write("mav0/cam1/sensor.yaml", sensor_yaml(0.1));
+  EXPECT_THAT(open_error(), HasSubstr("cam1/sensor.yaml: T_BS: puts both cameras in the same place"));
+}
+
+TEST_F(EurocRecording, RefusesCamerasOnDifferentClocks) {
+  write("mav0/cam1/data.csv", "1100000000,1.png\n1200000000,2.png\n");
+  EXPECT_THAT(open_error(), HasSubstr("cam1/data.csv: no image was taken within 2 ms"));
+}
+
+TEST_F(EurocRecording, RefusesAFolderWithoutAnyReadableImage) {
+  fs::remove_all(folder_ / "mav0/cam0/data");
+  EXPECT_THAT(open_error(), HasSubstr("cam0/data: none of the images listed can be read"));
+}
+
+TEST_F(EurocRecording, MayHoldItsGroundTruth) {
+  EXPECT_FALSE(find_ground_truth(folder_).has_value());
+  write("mav0/state_groundtruth_estimate0/data.csv", "");
+  EXPECT_EQ(find_ground_truth(folder_), folder_ / "mav0/state_groundtruth_estimate0/data.csv");
+}
+
+constexpr const char* kCalib =
+    "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\nP1: 20 0 15.5 -10 0 20 11.5 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
+
+// Three stereo pairs, 100 ms apart, in the layout of KITTI odometry.
+class KittiRecording : public TestFolder {
+ protected:
+  KittiRecording() {
+    write("sequences/07/calib.txt", kCalib);
+    write("sequences/07/times.txt", "0.000000e+00\n1.000000e-01\n2.000000e-01\n");
+    for (int i = 0; i < 3; ++i) {
+      write_image("sequences/07/image_0/00000" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 10);
+      write_image("sequences/07/image_1/00000" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 15);
+    }
+  }
+
+  std::unique_ptr<Recording> open() const { return open_recording(sequence_, {}); }
+  std::string open_error() const {
+    return error_of([&] { open(); });
+  }
+
+  fs::path sequence_ = folder_ / "sequences" / "07";
+};
+
+TEST_F(KittiRecording, GivesRectifiedPairsInTheFrameOfTheLeftCamera) {
+  const std::unique_ptr<Recording> recording = open();
+  const Calibration& calibration = recording->calibration();
+  EXPECT_EQ(calibration.left.model, CameraModel::pinhole);
+  EXPECT_EQ(calibration.left.width, kWidth);
+  EXPECT_EQ(calibration.left.fx, 20.0);
+  EXPECT_EQ(calibration.left.cy, 11.5);
+  ASSERT_TRUE(calibration.right.has_value());
+  EXPECT_EQ(calibration.right->right_from_left.translation, Eigen::Vector3d(-0.5, 0.0, 0.0));
+  EXPECT_TRUE(calibration.body_from_left.translation.isZero());
+  const std::optional<ImageFrame> frame = recording->read(2);
+  ASSERT_TRUE(frame && frame->right);
+  EXPECT_EQ(frame->time, milliseconds(200));
+  EXPECT_EQ(frame->left.pixels.back(), 30);
+  EXPECT_EQ(frame->right->pixels.back(), 35);
+}
+
+TEST_F(KittiRecording, WithoutTheSecondCameraIsMonocular) {
+  fs::remove_all(sequence_ / "image_1");
+  write("sequences/07/calib.txt", "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n");
+  EXPECT_FALSE(open()->calibration().right.has_value());
+}
+
+TEST_F(KittiRecording, NamesTheCalibrationThatMakesNoSense) {
+  const std::string p0 = "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"P1: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: is missing"},
+      {p0, "calib.txt: P1: is missing"},
+      {"P0: 20 0 15.5 0 0 20 11.5 0 0 0 1\n", "calib.txt: P0: does not hold twelve numbers"},
+      {"P0: 20 0 x 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: holds something that is not a number"},
+      {"P0: -20 0 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: the focal lengths must be positive"},
+      {"P0: 20 1 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: is not the projection of a rectified camera"},
+      {"P0: 20 0 155 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: the principal point lies outside"},
+      {p0 + "P1: 20 0 15.5 10 0 20 11.5 0 0 0 1 0\n", "calib.txt: P1: does not put the right camera to the right"},
+  };
+  for (const auto& [calib, message] : cases) {
+    write("sequences/07/calib.txt", calib);
+    EXPECT_THAT(open_error(), HasSubstr(message)) << calib;
+  }
+}
+
+TEST_F(KittiRecording, NamesWhatIsAbsentOrOutOfOrder) {
+  write("sequences/07/times.txt", "0\n0.2\n0.1\n");
+  EXPECT_THAT(open_error(), HasSubstr("times.txt:3: is earlier"));
+  fs::remove(sequence_ / "times.txt");
+  EXPECT_THAT(open_error(), HasSubstr("times.txt: cannot be opened"));
+}
+
+TEST_F(KittiRecording, HasItsGroundTruthBesideTheSequences) {
+  EXPECT_FALSE(find_ground_truth(sequence_).has_value());
+  write("poses/07.txt", "");
+  ASSERT_TRUE(find_ground_truth(sequence_).has_value());
+  EXPECT_TRUE(fs::equivalent(*find_ground_truth(sequence_), folder_ / "poses" / "07.txt"));
+}
+
+using GuessFormat = TestFolder;
+
+TEST_F(GuessFormat, SaysWhatItLookedFor) {
+  EXPECT_THAT(error_of([&] { guess_format(folder_); }), HasSubstr("looked for mav0/cam0"));
+  EXPECT_THAT(error_of([&] { guess_format(folder_ / "absent"); }), HasSubstr("absent: is no folder"));
+}
+
+class RealRecording : public testing::Test {
+ protected:
+  static fs::path data() {
+    const char* const folder = std::getenv("BYRE_DATA");
+    return folder != nullptr ? fs::path(folder) : fs::path(BYRE_SOURCE_DIR) / ".." / "shared" / "data";
+  }
+};
+
+TEST_F(RealRecording, OfEurocIsRead) {
+  const fs::path folder = data() / "euroc" / "MH_01_easy";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
+  const std::unique_ptr<Recording> recording = open_recording(folder, {});
+  EXPECT_EQ(recording->size(), 300);
+  EXPECT_EQ(recording->calibration().left.model, CameraModel::radial_tangential);
+  EXPECT_NEAR(recording->calibration().right->right_from_left.translation.norm(), 0.110, 0.001);
+  const std::optional<ImageFrame> frame = recording->read(299);
+  ASSERT_TRUE(frame && frame->right);
+  EXPECT_EQ(frame->right->width, 752);
+  EXPECT_TRUE(find_ground_truth(folder).has_value());
+}
+
+TEST_F(RealRecording, OfEurocInJpegIsRead) {
+  const fs::path folder = data() / "euroc" / "V1_01_easy_sparse";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
+  const std::unique_ptr<Recording> recording = open_recording(folder, {});
+  EXPECT_EQ(recording->size(), 100);
+  for (int i = 0; i < recording->size(); i += 25) EXPECT_TRUE(recording->read(i)->right.has_value());
+  EXPECT_THAT(recording->warnings(), IsEmpty());
+}
+
+TEST_F(RealRecording, OfKittiIsRead) {
+  const fs::path folder = data() / "kitti" / "sequences" / "00";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
+  const std::unique_ptr<Recording> recording = open_recording(folder, {});
+  EXPECT_EQ(recording->size(), 60);
+  EXPECT_NEAR(recording->calibration().right->right_from_left.translation.x(), -0.537, 0.001);
+  EXPECT_EQ(recording->read(59)->left.width, 1241);
+  EXPECT_TRUE(find_ground_truth(folder).has_value());
+}
+
+}  // namespace
+}  // namespace byre

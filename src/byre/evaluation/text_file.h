@@ -1,0 +1,41 @@
+#pragma once
+
+#include "byre/geometry/trajectory.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// The lines and values of the text files that trajectories, time stamps and calibrations are kept in.
+
+struct TextLine {
+  int number = 0;    // as an editor counts them, from 1
+  std::string text;  // without white space at its ends
+};
+
+// The lines that say something: without blank ones and comments ("#..."). Line ends may be LF or CRLF.
+// Throws InputError when the file cannot be read.
+std::vector<TextLine> read_lines(const std::filesystem::path& path);
+
+// "file:line", as InputError names a place.
+std::string place_of(const std::filesystem::path& path, const TextLine& line);
+
+// The fields of a line, separated by a comma or by white space. Views into the text.
+std::vector<std::string_view> split_fields(std::string_view text);
+
+// Empty unless the whole text is one finite number.
+std::optional<double> parse_number(std::string_view text);
+
+// Seconds as a decimal number ("1403636584.763555584", "1.037e-01"), exact to the nanosecond, which a double is not.
+std::optional<Timestamp> parse_seconds(std::string_view text);
+std::optional<Timestamp> parse_nanoseconds(std::string_view text);  // a whole number
+
+// A rotation matrix as written in a file, its rounding errors removed; empty when it is none (to 1e-3 an entry of
+// R^T R), or mirrors.
+std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix);
+
+}  // namespace byre

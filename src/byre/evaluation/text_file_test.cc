@@ -1,0 +1,92 @@
+#include "byre/evaluation/text_file.h"
+
+#include "byre/input/input_error.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+using testing::ElementsAre;
+
+std::filesystem::path written(const std::string& name, const std::string& content) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(path, std::ios::binary) << content;
+  return path;
+}
+
+TEST(ParseSeconds, KeepsEveryNanosecondOfAnEpochTime) {
+  EXPECT_EQ(parse_seconds("1403636584.763555584"), Timestamp(1403636584763555584));
+  EXPECT_EQ(parse_seconds("1.403636584763555584e+09"), Timestamp(1403636584763555584));
+}
+
+TEST(ParseSeconds, ReadsShortAndScientificForms) {
+  EXPECT_EQ(parse_seconds("2"), Timestamp(2'000'000'000));
+  EXPECT_EQ(parse_seconds("2."), Timestamp(2'000'000'000));
+  EXPECT_EQ(parse_seconds(".5"), Timestamp(500'000'000));
+  EXPECT_EQ(parse_seconds("1.037000e-01"), Timestamp(103'700'000));
+  EXPECT_EQ(parse_seconds("-0.0075"), Timestamp(-7'500'000));
+  EXPECT_EQ(parse_seconds("0.000000e+00"), Timestamp(0));
+}
+
+TEST(ParseSeconds, RoundsBelowTheNanosecond) {
+  EXPECT_EQ(parse_seconds("0.0000000014"), Timestamp(1));
+  EXPECT_EQ(parse_seconds("0.0000000015"), Timestamp(2));
+  EXPECT_EQ(parse_seconds("-0.0000000015"), Timestamp(-2));
+  EXPECT_EQ(parse_seconds("1e-20"), Timestamp(0));
+}
+
+TEST(ParseSeconds, RefusesWhatIsNoTime) {
+  for (const char* const text :
+       {"", "-", ".", "1.2.3", "abc", "1e", "1e99", "nan", "inf", "99999999999", "1 2", "--1"}) {
+    EXPECT_FALSE(parse_seconds(text).has_value()) << text;
+  }
+}
+
+TEST(ParseNumber, RefusesTrailingTextAndNumbersThatAreNotFinite) {
+  EXPECT_EQ(parse_number("+1.5e-3"), 1.5e-3);
+  for (const char* const text : {"", "1.5m", "nan", "inf", "1e999", "+-1", "0x10"}) {
+    EXPECT_FALSE(parse_number(text).has_value()) << text;
+  }
+}
+
+TEST(SplitFields, TakesCommasOrWhiteSpace) {
+  EXPECT_THAT(split_fields("1, 2 ,3"), ElementsAre("1", "2", "3"));
+  EXPECT_THAT(split_fields("1  2\t3"), ElementsAre("1", "2", "3"));
+  EXPECT_THAT(split_fields("1,,3"), ElementsAre("1", "", "3"));
+}
+
+TEST(ReadLines, SkipsCommentsAndBlankLinesButCountsThem) {
+  const std::vector<TextLine> lines = read_lines(written("lines.txt", "# head\r\n\r\n  1 2 \r\n\n3"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].number, 3);
+  EXPECT_EQ(lines[0].text, "1 2");
+  EXPECT_EQ(lines[1].number, 5);
+  EXPECT_EQ(lines[1].text, "3");
+}
+
+TEST(ReadLines, NamesAFileThatIsNotThere) {
+  try {
+    read_lines("/nowhere/poses.txt");
+    FAIL() << "no InputError";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "/nowhere/poses.txt");
+  }
+  EXPECT_THROW(read_lines(testing::TempDir()), InputError);
+}
+
+TEST(RotationFromMatrix, AcceptsARoundedRotationAndNothingElse) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d rounded = (turn * 1e4).array().round() / 1e4;
+  ASSERT_TRUE(rotation_from_matrix(rounded).has_value());
+  EXPECT_LT(angle_between(*rotation_from_matrix(rounded), Eigen::Quaterniond(turn)), 1e-4);
+  EXPECT_FALSE(rotation_from_matrix(1.01 * turn).has_value());
+  EXPECT_FALSE(rotation_from_matrix(-turn).has_value());
+  EXPECT_FALSE(rotation_from_matrix(Eigen::Matrix3d::Zero()).has_value());
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,181 @@
+#include "byre/evaluation/trajectory_file.h"
+
+#include "byre/evaluation/text_file.h"
+#include "byre/input/input_error.h"
+
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <span>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPoseFields = 8;    // time, position, quaternion
+constexpr std::size_t kKittiFields = 12;  // a 3x4 matrix
+constexpr double kUnitTolerance = 0.01;
+
+using Fields = std::span<const std::string_view>;
+
+std::vector<double> parse_numbers(Fields fields, const std::string& place) {
+  std::vector<double> numbers;
+  for (const std::string_view field : fields) {
+    const std::optional<double> number = parse_number(field);
+    if (!number) throw InputError(place, "\"" + std::string(field) + "\" is not a number");
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+Eigen::Quaterniond unit_quaternion(double w, double x, double y, double z, const std::string& place) {
+  const Eigen::Quaterniond rotation(w, x, y, z);
+  if (std::abs(rotation.norm() - 1.0) > kUnitTolerance) {
+    throw InputError(place, "the quaternion has length " + std::to_string(rotation.norm()) + ", not 1",
+                     "check the order of the columns");
+  }
+  return rotation.normalized();
+}
+
+Timestamp time_of(const std::optional<Timestamp>& parsed, std::string_view field, std::string_view unit,
+                  const std::string& place) {
+  if (parsed) return *parsed;
+  throw InputError(place, "\"" + std::string(field) + "\" is not a time in " + std::string(unit));
+}
+
+// A line with commas begins with whole nanoseconds, any other with seconds.
+Timestamp parse_time(const TextLine& line, const std::string& place) {
+  const std::string_view first = split_fields(line.text).front();
+  if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
+  return time_of(parse_seconds(first), first, "seconds", place);
+}
+
+StampedPose parse_stamped_pose(const TextLine& line, TrajectoryFormat format, const std::string& place) {
+  const std::vector<std::string_view> fields = split_fields(line.text);
+  const bool enough = format == TrajectoryFormat::euroc ? fields.size() >= kPoseFields : fields.size() == kPoseFields;
+  if (!enough) {
+    throw InputError(place, "has " + std::to_string(fields.size()) + " columns instead of 8",
+                     "time, position and quaternion are expected");
+  }
+  const std::vector<double> n = parse_numbers(Fields(fields).subspan(1, kPoseFields - 1), place);
+  const Eigen::Quaterniond rotation = format == TrajectoryFormat::euroc
+                                          ? unit_quaternion(n[3], n[4], n[5], n[6], place)
+                                          : unit_quaternion(n[6], n[3], n[4], n[5], place);
+  return {parse_time(line, place), {rotation, {n[0], n[1], n[2]}}};
+}
+
+Pose parse_kitti_pose(const TextLine& line, const std::string& place) {
+  const std::vector<std::string_view> fields = split_fields(line.text);
+  if (fields.size() != kKittiFields) {
+    throw InputError(place, "has " + std::to_string(fields.size()) + " columns instead of 12",
+                     "the rows of a 3x4 matrix are expected");
+  }
+  const std::vector<double> numbers = parse_numbers(fields, place);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> world_from_camera(numbers.data());
+  const std::optional<Eigen::Quaterniond> rotation = rotation_from_matrix(world_from_camera.leftCols<3>());
+  if (!rotation) throw InputError(place, "the left 3x3 part is not a rotation");
+  return {*rotation, world_from_camera.col(3)};
+}
+
+void require_later(Timestamp time, std::optional<Timestamp> previous, const std::string& place) {
+  if (!previous || time > *previous) return;
+  throw InputError(place, time == *previous ? "repeats the time stamp before it" : "is earlier than the line before it",
+                   "sort the lines by time and remove duplicates");
+}
+
+std::string format_pose(const StampedPose& sample) {
+  const std::int64_t count = sample.time.count();
+  const auto [seconds, nanoseconds] = std::lldiv(std::llabs(count), 1'000'000'000);
+  const Eigen::Vector3d& t = sample.world_from_body.translation;
+  const Eigen::Quaterniond& q = sample.world_from_body.rotation;
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), "%s%lld.%09lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", count < 0 ? "-" : "",
+                seconds, nanoseconds, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+  return text.data();
+}
+
+}  // namespace
+
+TrajectoryFormat guess_trajectory_format(const fs::path& path) {
+  const std::vector<TextLine> lines = read_lines(path);
+  if (lines.empty()) throw InputError(path.string(), "holds no poses");
+  const std::string& first = lines.front().text;
+  if (first.find(',') != std::string::npos) return TrajectoryFormat::euroc;
+  const std::size_t columns = split_fields(first).size();
+  if (columns == kKittiFields) return TrajectoryFormat::kitti;
+  if (columns == kPoseFields) return TrajectoryFormat::tum;
+  throw InputError(place_of(path, lines.front()),
+                   "has " + std::to_string(columns) + " columns, which no known trajectory format has",
+                   "TUM has 8, KITTI 12, EuRoC at least 8 separated by commas");
+}
+
+Trajectory read_trajectory(const fs::path& path) {
+  if (fs::is_directory(path)) {
+    const std::optional<fs::path> truth = find_euroc_ground_truth(path);
+    if (!truth) throw InputError(path.string(), "holds no ground truth in mav0/state_groundtruth_estimate0/data.csv");
+    return read_trajectory(*truth);
+  }
+  const TrajectoryFormat format = guess_trajectory_format(path);
+  if (format == TrajectoryFormat::kitti) {
+    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
+  }
+  Trajectory trajectory;
+  for (const TextLine& line : read_lines(path)) {
+    const std::string place = place_of(path, line);
+    const StampedPose sample = parse_stamped_pose(line, format, place);
+    require_later(sample.time, trajectory.empty() ? std::nullopt : std::optional(trajectory.back().time), place);
+    trajectory.push_back(sample);
+  }
+  return trajectory;
+}
+
+Trajectory read_kitti_poses(const fs::path& poses, const fs::path& times) {
+  const std::vector<TextLine> lines = read_lines(poses);
+  const std::vector<Timestamp> stamps = read_times(times);
+  if (lines.size() != stamps.size()) {
+    throw InputError(poses.string(),
+                     "holds " + std::to_string(lines.size()) + " poses, but " + times.string() + " holds " +
+                         std::to_string(stamps.size()) + " times",
+                     "give the times of the same sequence");
+  }
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    trajectory.push_back({stamps[i], parse_kitti_pose(lines[i], place_of(poses, lines[i]))});
+  }
+  return trajectory;
+}
+
+std::vector<Timestamp> read_times(const fs::path& path) {
+  std::vector<Timestamp> times;
+  for (const TextLine& line : read_lines(path)) {
+    const std::string place = place_of(path, line);
+    const Timestamp time = parse_time(line, place);
+    require_later(time, times.empty() ? std::nullopt : std::optional(times.back()), place);
+    times.push_back(time);
+  }
+  if (times.empty()) throw InputError(path.string(), "holds no times");
+  return times;
+}
+
+void write_trajectory(const Trajectory& trajectory, const fs::path& path) {
+  std::ofstream file(path);
+  file << "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& sample : trajectory) file << format_pose(sample);
+  file.close();
+  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
+}
+
+std::optional<fs::path> find_euroc_ground_truth(const fs::path& folder) {
+  for (const char* const mav : {"mav0", "."}) {
+    for (const char* const source : {"state_groundtruth_estimate0", "mocap0"}) {
+      const fs::path file = (folder / mav / source / "data.csv").lexically_normal();
+      if (fs::exists(file)) return file;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace byre
