@@ -18,8 +18,8 @@ struct Observation {
 
 struct MapPoint {
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Zero();  // of the position, square metres; float would not stay positive
+  // Of the position, square metres. In double: rounded to float it may no longer be positive definite.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Vector3f mean_viewing_direction = Eigen::Vector3f::UnitZ();  // unit length, camera to point
   Descriptor descriptor{};                                            // the most central of its observations'
   float min_distance = 0.0f;                                          // metres over which the descriptor holds

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "byre/features/image.h"
+#include "byre/geometry/camera.h"
+#include "byre/geometry/trajectory.h"
+#include "byre/simulation/pixel_rays.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// A box of a room with a few boxes standing on its floor, all covered with a procedural, band-limited texture: small
+// stereo recordings with exact truth for tests and for the first demo, where no data set is at hand.
+// World frame: origin at the room's centre, z up. The boxes leave free what is above the lower third of the room.
+struct RenderedRoomOptions {
+  Eigen::Vector3d room_size{8.0, 6.0, 3.0};  // metres
+  int boxes = 6;
+  double noise_sigma = 2.0;  // grey values
+  std::uint64_t seed = 1;
+};
+
+// A stereo pair (or one camera) ready for rendering: rendering many frames, make it once.
+struct RenderedCameras {
+  explicit RenderedCameras(const Calibration& calibration);
+
+  Calibration calibration;
+  PixelRays left;
+  std::optional<PixelRays> right;
+};
+
+// Where a ray meets a surface of the room.
+struct SurfaceHit {
+  float distance = 0.0f;  // in lengths of the ray's direction
+  int box = 0;            // 0: the room itself
+  int axis = 0;           // the world's axis across the surface
+  bool is_upper = false;  // the surface on the positive side of its box
+};
+
+class RenderedRoom {
+ public:
+  // Throws InputError when the room has no size or its options are negative.
+  explicit RenderedRoom(const RenderedRoomOptions& options);
+
+  // Deterministic: the same room, calibration, pose and time give the same bytes.
+  ImageFrame render(const RenderedCameras& cameras, const Pose& world_from_body, Timestamp time) const;
+  ImageFrame render(const Calibration& calibration, const Pose& world_from_body, Timestamp time) const;
+
+  // The first surface on a ray in the world frame. Precondition: the origin lies inside the room and outside its boxes.
+  SurfaceHit hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+
+ private:
+  struct Box {
+    Eigen::Vector3f centre;
+    Eigen::Vector3f half_size;
+  };
+
+  Image render_camera(const PixelRays& rays, const Pose& world_from_camera, std::uint64_t noise_seed) const;
+  float pixel_grey(const PixelRays::Corners& corners_in_world, const Eigen::Vector3f& origin) const;
+
+  RenderedRoomOptions options_;
+  std::vector<Box> boxes_;  // the room itself first, seen from inside
+};
+
+// Renders a trajectory into an EuRoC ASL folder (mav0/cam0, cam1, state_groundtruth_estimate0). Calls progress, unless
+// it is empty, with the number of frames done. Throws InputError when a file cannot be written.
+void write_euroc_recording(const RenderedRoom& room, const Calibration& calibration, const Trajectory& truth,
+                           const std::filesystem::path& folder,
+                           const std::function<void(int done, int total)>& progress);
+
+// EuRoC's own stereo cameras, from its published calibration; resolution divided by a whole number, 1 at least.
+Calibration euroc_like_calibration(int divisor);
+
+}  // namespace byre
