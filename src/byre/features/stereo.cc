@@ -32,9 +32,21 @@ const std::uint8_t* block(const cv::Mat& level, int x, int y) {
 
 struct RowMatch {
   int x = -1;
-  int cost = std::numeric_limits<int>::max();
+  int cost = std::numeric_limits<int>::max();         // see cost_between_columns
   int second_cost = std::numeric_limits<int>::max();  // the best that is more than one pixel away
+
+  bool is_unique(float max_ratio) const {
+    constexpr int kAllowance = kColumns * kRows;  // a grey value per pixel: too little to tell candidates apart
+    return static_cast<float>(cost + kAllowance) < max_ratio * static_cast<float>(second_cost);
+  }
 };
+
+// A minimum's cost at its place between the columns; the sum of absolute differences grows linearly to both sides of
+// it. On whole columns a repeating pattern would seem unique wherever one of its copies happens to fall on a column.
+int cost_between_columns(const std::vector<int>& costs, std::size_t i) {
+  if (i == 0 || i + 1 == costs.size() || costs[i] > std::min(costs[i - 1], costs[i + 1])) return costs[i];
+  return std::max(0, costs[i] - std::abs(costs[i - 1] - costs[i + 1]) / 2);
+}
 
 // The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
 RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
@@ -52,8 +64,9 @@ RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int fi
     }
   }
   for (int candidate = first; candidate <= last; ++candidate) {
-    if (std::abs(candidate - match.x) <= 1) continue;
-    match.second_cost = std::min(match.second_cost, costs[static_cast<std::size_t>(candidate - first)]);
+    const int cost = cost_between_columns(costs, static_cast<std::size_t>(candidate - first));
+    if (candidate == match.x) match.cost = cost;
+    if (std::abs(candidate - match.x) > 1) match.second_cost = std::min(match.second_cost, cost);
   }
   return match;
 }
@@ -71,9 +84,7 @@ int clamp_column(const cv::Mat& level, int x) {
 std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x, int y, int max_disparity,
                                 const StereoOptions& options) {
   const RowMatch there = search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x));
-  if (there.x < 0 || static_cast<float>(there.cost) >= options.max_ratio * static_cast<float>(there.second_cost)) {
-    return std::nullopt;
-  }
+  if (there.x < 0 || !there.is_unique(options.max_ratio)) return std::nullopt;
   const RowMatch back =
       search_row(right, there.x, y, left, clamp_column(left, there.x), clamp_column(left, there.x + max_disparity));
   if (std::abs(back.x - x) > 1) return std::nullopt;
