@@ -1,0 +1,258 @@
+#include "byre/features/extract.h"
+
+#include "byre/features/test_images.h"
+#include "byre/input/input_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr int kWidth = 376;
+constexpr int kHeight = 240;
+constexpr double kFocal = 230.0;    // pixels
+constexpr double kBaseline = 0.11;  // metres
+
+Camera ideal_camera() {
+  return {CameraModel::pinhole, kWidth, kHeight, kFocal, kFocal, 187.5, 119.5, {}};
+}
+
+Calibration ideal_pair() {
+  return {ideal_camera(), StereoPartner{ideal_camera(), {Eigen::Quaterniond::Identity(), {-kBaseline, 0.0, 0.0}}},
+          Pose{}};
+}
+
+// What two cameras see of a textured wall, a plane z = depth of the left camera frame.
+struct Wall {
+  Texture texture;
+  double depth = 2.0;               // metres
+  double pixels_per_metre = 115.0;  // of the texture
+
+  Image seen_by(const Camera& camera, const Pose& camera_from_left) const {
+    const Pose left_from_camera = inverse(camera_from_left);
+    return to_image(render(camera.width, camera.height, [&](double u, double v) {
+      const auto bearing = camera.bearing({u, v});
+      if (!bearing) return 0.0;
+      const Eigen::Vector3d direction = left_from_camera.rotation * *bearing;
+      const double range = (depth - left_from_camera.translation.z()) / direction.z();
+      const Eigen::Vector3d point = left_from_camera.translation + range * direction;
+      return texture(pixels_per_metre * point.x(), pixels_per_metre * point.y());
+    }));
+  }
+
+  ImageFrame seen_by(const Calibration& calibration) const {
+    ImageFrame images{from_seconds(12.5), seen_by(calibration.left, Pose{}), std::nullopt};
+    if (calibration.right) images.right = seen_by(calibration.right->camera, calibration.right->right_from_left);
+    return images;
+  }
+};
+
+Wall wall() {
+  return {Texture(51, 0.8)};
+}
+
+double share_with_disparity(const Features& features) {
+  const auto count = std::count_if(features.keypoints().begin(), features.keypoints().end(),
+                                   [](const Keypoint& keypoint) { return keypoint.has_disparity(); });
+  return static_cast<double>(count) / features.size();
+}
+
+TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
+  Extractor extractor(ideal_pair(), {});
+  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  const Features& features = *extraction.frame.features;
+  EXPECT_EQ(extraction.frame.time, from_seconds(12.5));
+  EXPECT_GE(features.size(), 500);
+  EXPECT_LE(features.size(), ExtractOptions().max_features);
+  EXPECT_EQ(features.descriptors().size(), features.keypoints().size());
+  EXPECT_EQ(features.patches().size(), features.keypoints().size());
+}
+
+TEST(Extractor, FillsTheQuotaWhereTheImageAllows) {
+  for (const int wanted : {1, 100, 300}) {
+    Extractor extractor(ideal_pair(), {wanted});
+    EXPECT_EQ(extractor.extract(wall().seen_by(ideal_pair())).frame.features->size(), wanted);
+  }
+}
+
+TEST(Extractor, UsesAllOctaves) {
+  Extractor extractor(ideal_pair(), {});
+  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  std::array<int, kOctaves> count{};
+  for (const Keypoint& keypoint : extraction.frame.features->keypoints()) ++count[keypoint.octave];
+  EXPECT_GE(*std::min_element(count.begin(), count.end()), 20);
+}
+
+TEST(Extractor, MeasuresTheDisparityOfAWall) {
+  Extractor extractor(ideal_pair(), {});
+  const Wall seen = wall();
+  const auto features = extractor.extract(seen.seen_by(ideal_pair())).frame.features;
+  const double expected = kFocal * kBaseline / seen.depth;  // 12.65 pixels
+  EXPECT_GE(share_with_disparity(*features), 0.9);
+  for (const Keypoint& keypoint : features->keypoints()) {
+    if (!keypoint.has_disparity()) continue;
+    EXPECT_GT(keypoint.disparity_sigma, 0.0f);
+    EXPECT_NEAR(keypoint.disparity, expected, 3.0 * keypoint.disparity_sigma);
+  }
+}
+
+TEST(Extractor, MeasuresInTheRigOfADistortedPair) {
+  const Camera left{CameraModel::radial_tangential,
+                    kWidth,
+                    kHeight,
+                    229.3,
+                    228.6,
+                    183.6,
+                    124.2,
+                    {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0}};
+  const Camera right{CameraModel::radial_tangential,
+                     kWidth,
+                     kHeight,
+                     228.8,
+                     228.1,
+                     189.9,
+                     127.6,
+                     {-0.28368365, 0.07451284, -0.00010473, -3.55590700e-05, 0.0}};
+  const Pose left_from_right{rotation_exp({0.014, 0.0025, 0.0071}), {0.11, 0.0003, 0.0008}};
+  const Calibration calibration{left, StereoPartner{right, inverse(left_from_right)}, Pose{}};
+  const Wall seen = wall();
+  Extractor extractor(calibration, {});
+  const auto features = extractor.extract(seen.seen_by(calibration)).frame.features;
+  EXPECT_GE(share_with_disparity(*features), 0.8);
+  int on_wall = 0, measured = 0;
+  for (const Keypoint& keypoint : features->keypoints()) {
+    if (!keypoint.has_disparity()) continue;
+    const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
+    const double depth = (extractor.rig().body_from_camera * extractor.rig().triangulate(pixel)).z();
+    const double depth_sigma = depth * keypoint.disparity_sigma / keypoint.disparity;
+    ++measured;
+    on_wall += std::abs(depth - seen.depth) <= 2.0 * depth_sigma ? 1 : 0;
+  }
+  EXPECT_GE(static_cast<double>(on_wall), 0.95 * measured);
+}
+
+TEST(Extractor, GivesTheSameBytesTwice) {
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  Extractor used(ideal_pair(), {});
+  used.extract(Wall{Texture(52)}.seen_by(ideal_pair()));  // leaves other images in the working memory
+  Extractor fresh(ideal_pair(), {});
+  const auto first = used.extract(images).frame.features;
+  const auto second = fresh.extract(images).frame.features;
+  ASSERT_EQ(first->size(), second->size());
+  EXPECT_EQ(first->descriptors(), second->descriptors());
+  for (int i = 0; i < first->size(); ++i) {
+    const Keypoint &a = first->keypoint(i), &b = second->keypoint(i);
+    EXPECT_EQ(a.pixel, b.pixel);
+    EXPECT_EQ(std::tuple(a.disparity, a.disparity_sigma, a.angle, a.response, a.octave),
+              std::tuple(b.disparity, b.disparity_sigma, b.angle, b.response, b.octave));
+    EXPECT_EQ(first->patch(i).pixels, second->patch(i).pixels);
+    EXPECT_EQ(first->patch(i).centre, second->patch(i).centre);
+  }
+}
+
+TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  Extractor extractor(ideal_pair(), {});
+  const auto features = extractor.extract(images).frame.features;
+  for (int i = 0; i < features->size(); ++i) {
+    const Keypoint& keypoint = features->keypoint(i);
+    if (keypoint.octave > 0) continue;
+    const Patch& patch = features->patch(i);
+    const int left = static_cast<int>(keypoint.pixel.x() - patch.centre.x());
+    const int top = static_cast<int>(keypoint.pixel.y() - patch.centre.y());
+    for (const int corner : {0, Patch::kSize - 1}) {
+      EXPECT_EQ(patch.pixels[static_cast<std::size_t>(corner * Patch::kSize + corner)],
+                images.left.pixels[static_cast<std::size_t>((top + corner) * kWidth + left + corner)]);
+    }
+  }
+}
+
+TEST(Extractor, FindsNoDisparitiesWithoutARightImage) {
+  ImageFrame images = wall().seen_by(ideal_pair());
+  Extractor extractor(ideal_pair(), {});
+  const auto with_right = extractor.extract(images).frame.features;
+  images.right.reset();
+  const auto features = extractor.extract(images).frame.features;
+  EXPECT_EQ(share_with_disparity(*features), 0.0);
+  EXPECT_EQ(features->descriptors(), with_right->descriptors()) << "the left image alone decides what is found";
+}
+
+TEST(Extractor, IgnoresTheRightImageOfASingleCamera) {
+  Extractor extractor({ideal_camera(), std::nullopt, Pose{}}, {});
+  const auto features = extractor.extract(wall().seen_by(ideal_pair())).frame.features;
+  EXPECT_GE(features->size(), 500);
+  EXPECT_EQ(share_with_disparity(*features), 0.0);
+}
+
+TEST(Extractor, FindsNothingInABlankImage) {
+  ImageFrame images{Timestamp{}, {kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight, 90)}, std::nullopt};
+  images.right = images.left;
+  Extractor extractor(ideal_pair(), {});
+  EXPECT_EQ(extractor.extract(images).frame.features->size(), 0);
+}
+
+TEST(Extractor, WorksOnImagesTooSmallForMostOctaves) {
+  for (const int side : {16, 40, 47, 60, 75}) {
+    Camera small = ideal_camera();
+    small.width = small.height = side;
+    small.cx = small.cy = 0.5 * (side - 1);
+    Calibration calibration = ideal_pair();
+    calibration.left = calibration.right->camera = small;
+    Extractor extractor(calibration, {});
+    const auto features = extractor.extract(wall().seen_by(calibration)).frame.features;
+    EXPECT_EQ(features->size() > 0, side > 39) << side;
+    for (const Keypoint& keypoint : features->keypoints()) EXPECT_LE(keypoint.octave, 2);
+  }
+}
+
+TEST(Extractor, CanBeMoved) {
+  Extractor first(ideal_pair(), {100});
+  Extractor second = std::move(first);
+  EXPECT_EQ(second.rig().width, kWidth);
+  EXPECT_GT(second.extract(wall().seen_by(ideal_pair())).frame.features->size(), 50);
+}
+
+TEST(Extractor, RefusesImagesOfAnotherSize) {
+  Extractor extractor(ideal_pair(), {});
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  ImageFrame wrong = images;
+  wrong.left.width = kHeight;
+  wrong.left.height = kWidth;
+  EXPECT_THROW(extractor.extract(wrong), InputError);
+  wrong = images;
+  wrong.right = Image{kWidth, kHeight - 1, std::vector<std::uint8_t>(kWidth * (kHeight - 1))};
+  EXPECT_THROW(extractor.extract(wrong), InputError);
+  EXPECT_NO_THROW(extractor.extract(images)) << "and goes on with the next";
+}
+
+TEST(Extractor, RefusesImagesThatLackPixels) {
+  Extractor extractor(ideal_pair(), {});
+  ImageFrame images = wall().seen_by(ideal_pair());
+  images.left.pixels.pop_back();
+  EXPECT_THROW(extractor.extract(images), InputError);
+}
+
+TEST(Extractor, TakesEachImageInTheSizeOfItsOwnCamera) {
+  Calibration calibration = ideal_pair();
+  calibration.right->camera.width += 40;
+  calibration.right->camera.height += 20;
+  const Wall seen = wall();
+  Extractor extractor(calibration, {});
+  const auto features = extractor.extract(seen.seen_by(calibration)).frame.features;
+  EXPECT_GE(share_with_disparity(*features), 0.9);
+}
+
+TEST(Extractor, RefusesACalibrationThatCannotBeRectified) {
+  Calibration calibration = ideal_pair();
+  calibration.right->right_from_left.translation = {kBaseline, 0.0, 0.0};
+  EXPECT_THROW(Extractor(calibration, {}), InputError);
+}
+
+}  // namespace
+}  // namespace byre
