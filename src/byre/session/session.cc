@@ -42,6 +42,7 @@ FrameReport Session::process(const Frame& frame) {
   state_ = next_state(state_, {last_keyframe_.has_value(), tracked.has_value() || keyframe_added});
   if (tracked) {
     remember(frame, *tracked);
+    if (fresh_inliers_ == 0) fresh_inliers_ = static_cast<int>(tracked->features.size());
     if (needs_keyframe(*tracked, keyframe_evidence(*tracked), options_.keyframes)) {
       add_keyframe(frame, *tracked);
       keyframe_added = true;
@@ -62,6 +63,7 @@ bool Session::initialise(const Frame& frame) {
   last_keyframe_ = online_.keyframe_ids().front();
   anchored_.push_back({frame.time, *last_keyframe_, Pose{}});
   frames_since_keyframe_ = 0;
+  fresh_inliers_ = 0;
   return true;
 }
 
@@ -88,7 +90,9 @@ Pose Session::predict(Timestamp time) const {
 }
 
 std::optional<TrackedFrame> Session::find_pose(const Frame& frame) const {
-  const KeyframeId reference = anchored_.back().keyframe;
+  // Mapping may have removed the last frame's keyframe since, but never the newest.
+  const KeyframeId last_reference = anchored_.back().keyframe;
+  const KeyframeId reference = online_.find_keyframe(last_reference) != nullptr ? last_reference : *last_keyframe_;
   const std::vector<PointId> candidates = local_points(map(), reference, options_.local_keyframes);
   const Pose predicted = state_ == State::tracking ? predict(frame.time) : last_camera_from_world();
   if (auto tracked = track(frame, predicted, rig_, map(), candidates, options_.track)) return tracked;
@@ -110,8 +114,7 @@ void Session::remember(const Frame& frame, const TrackedFrame& tracked) {
 
 KeyframeEvidence Session::keyframe_evidence(const TrackedFrame& tracked) const {
   KeyframeEvidence evidence;
-  const Keyframe* const reference = online_.find_keyframe(tracked.reference);
-  for (const Sighting& sighting : reference->sightings) evidence.reference_points += sighting.point ? 1 : 0;
+  evidence.fresh_inliers = fresh_inliers_;
   evidence.frames_since_last = frames_since_keyframe_;
   evidence.pending = static_cast<int>(pending_.size());
   const Pose motion = tracked.camera_from_world * inverse(online_.camera_from_world(*last_keyframe_));
@@ -125,6 +128,7 @@ void Session::add_keyframe(const Frame& frame, const TrackedFrame& tracked) {
   add_stereo_points(online_, id);
   last_keyframe_ = id;
   frames_since_keyframe_ = 0;
+  fresh_inliers_ = 0;
   pending_.push_back(id);
   anchored_.back().keyframe = id;
   anchored_.back().camera_from_keyframe = Pose{};

@@ -83,6 +83,7 @@ class Session {
   State state_ = State::initialising;
   std::optional<KeyframeId> last_keyframe_;
   int frames_since_keyframe_ = 0;
+  int fresh_inliers_ = 0;               // in the first frame tracked after the last keyframe
   std::vector<KeyframeId> pending_;     // keyframes mapping has not worked on
   std::vector<AnchoredPose> anchored_;  // one per frame with a pose
   Vector6 velocity_ = Vector6::Zero();  // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world

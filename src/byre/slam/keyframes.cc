@@ -32,7 +32,7 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
   const bool weak = inliers < options.min_tracked;
   if (weak) return true;
   if (evidence.frames_since_last < options.min_frames) return false;
-  return inliers < options.min_tracked_share * evidence.reference_points || evidence.turn > options.max_turn ||
+  return inliers < options.min_tracked_share * evidence.fresh_inliers || evidence.turn > options.max_turn ||
          evidence.shift_share > options.max_shift_share;
 }
 

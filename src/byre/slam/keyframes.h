@@ -18,7 +18,7 @@ struct KeyframeOptions {
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.
 struct KeyframeEvidence {
-  int reference_points = 0;   // points the reference keyframe sees
+  int fresh_inliers = 0;      // points tracked in the first frame after the last keyframe
   int frames_since_last = 0;  // frames since the last keyframe was made
   int pending = 0;            // keyframes mapping has not worked on yet
   double turn = 0.0;          // radians, rotation since the last keyframe
