@@ -18,14 +18,19 @@ class InlineExecutor final : public Executor {
  public:
   void submit(MappingJob job) override {
     assert(idle());
-    finished_ = run(job);
+    std::packaged_task<FinishedJob()> task([&job] { return run(job); });
+    result_ = task.get_future();
+    task();  // keeps an exception for collect()
   }
-  std::optional<FinishedJob> collect() override { return std::exchange(finished_, std::nullopt); }
+  std::optional<FinishedJob> collect() override {
+    if (idle()) return std::nullopt;
+    return result_.get();
+  }
   std::optional<FinishedJob> finish() override { return collect(); }
-  bool idle() const override { return !finished_; }
+  bool idle() const override { return !result_.valid(); }
 
  private:
-  std::optional<FinishedJob> finished_;
+  std::future<FinishedJob> result_;
 };
 
 class PacedExecutor final : public Executor {

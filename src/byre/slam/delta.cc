@@ -81,6 +81,22 @@ void add_new_point(const NewPoint& made, Map& online) {
   if (added < 2 || !reference_sees_it) online.remove_point(id);
 }
 
+// What is there already stays as it is.
+void add_observations(const MapDelta& delta, Map& online) {
+  for (const NewObservation& added : delta.new_observations) {
+    online.add_observation({added.keyframe, added.feature}, added.sighting);
+  }
+}
+
+void remove_observations(const MapDelta& delta, Map& online) {
+  for (const RemovedObservation& removed : delta.removed_observations) {
+    const Keyframe* const keyframe = online.find_keyframe(removed.keyframe);
+    if (keyframe == nullptr) continue;
+    if (keyframe->sightings[static_cast<std::size_t>(removed.feature)].point != removed.point) continue;
+    online.remove_observation({removed.keyframe, removed.feature});
+  }
+}
+
 }  // namespace
 
 MapDelta difference(const MapWindow& before, const MapWindow& after) {
@@ -108,15 +124,11 @@ void apply(const MapDelta& delta, Map& online) {
     online.move_keyframe(moved.id, moved.camera_from_world, moved.covariance);
   }
   for (const OnlinePointId id : delta.removed_points) online.remove_point(id);
-  for (const RemovedObservation& removed : delta.removed_observations) {
-    const Keyframe* const keyframe = online.find_keyframe(removed.keyframe);
-    if (keyframe == nullptr) continue;
-    if (keyframe->sightings[static_cast<std::size_t>(removed.feature)].point != removed.point) continue;
-    online.remove_observation({removed.keyframe, removed.feature});
-  }
-  for (const NewObservation& added : delta.new_observations) {
-    online.add_observation({added.keyframe, added.feature}, added.sighting);
-  }
+  // Gains before losses, so that no point is left without observations in between; then those gains that had to wait
+  // for a feature to lose its point.
+  add_observations(delta, online);
+  remove_observations(delta, online);
+  add_observations(delta, online);
   for (const NewPoint& made : delta.new_points) add_new_point(made, online);
   for (const UpdatedPoint& updated : delta.updated_points) online.update_point(updated.id, updated.point);
   for (const OnlineKeyframeId id : delta.removed_keyframes) online.remove_keyframe(id);
