@@ -95,19 +95,26 @@ std::optional<TrackedFrame> Session::find_pose(const Frame& frame) const {
   const KeyframeId reference = online_.find_keyframe(last_reference) != nullptr ? last_reference : *last_keyframe_;
   const std::vector<PointId> candidates = local_points(map(), reference, options_.local_keyframes);
   const Pose predicted = state_ == State::tracking ? predict(frame.time) : last_camera_from_world();
-  if (auto tracked = track(frame, predicted, rig_, map(), candidates, options_.track)) return tracked;
+  auto best = track(frame, predicted, rig_, map(), candidates, options_.track);
+  const auto inliers = [](const std::optional<TrackedFrame>& tracked) {
+    return tracked ? tracked->features.size() : 0;
+  };
+  // A sudden loss of matches may mean that the prediction led astray: look again without it.
+  if (static_cast<double>(inliers(best)) >= options_.min_kept_share * last_inliers_) return best;
   for (const KeyframeId keyframe : {reference, *last_keyframe_}) {
     const auto pose = pose_from_keyframe(frame, rig_, map(), keyframe);
     if (!pose) continue;
-    if (auto tracked = track(frame, *pose, rig_, map(), candidates, options_.track)) return tracked;
+    auto tracked = track(frame, *pose, rig_, map(), candidates, options_.track);
+    if (inliers(tracked) > inliers(best)) best = std::move(tracked);
   }
-  return std::nullopt;
+  return best;
 }
 
 void Session::remember(const Frame& frame, const TrackedFrame& tracked) {
   const double elapsed = to_seconds(frame.time - anchored_.back().time);
   const Pose motion = tracked.camera_from_world * inverse(last_camera_from_world());
   velocity_ = state_ == State::tracking && elapsed > 0.0 ? Vector6(log_pose(motion) / elapsed) : Vector6::Zero();
+  last_inliers_ = static_cast<int>(tracked.features.size());
   anchored_.push_back({frame.time, tracked.reference,
                        tracked.camera_from_world * inverse(online_.camera_from_world(tracked.reference))});
 }

@@ -17,6 +17,7 @@ namespace byre {
 struct SessionOptions {
   int min_initial_points = 100;  // stereo points of the first keyframe
   int local_keyframes = 15;      // whose points are looked for in a frame
+  double min_kept_share = 0.5;   // of the last frame's inliers; fewer, and the pose is sought without prediction too
   TrackOptions track;
   KeyframeOptions keyframes;
   MappingOptions mapping;
@@ -83,6 +84,7 @@ class Session {
   State state_ = State::initialising;
   std::optional<KeyframeId> last_keyframe_;
   int frames_since_keyframe_ = 0;
+  int last_inliers_ = 0;                // in the last frame tracked
   int fresh_inliers_ = 0;               // in the first frame tracked after the last keyframe
   std::vector<KeyframeId> pending_;     // keyframes mapping has not worked on
   std::vector<AnchoredPose> anchored_;  // one per frame with a pose

@@ -21,18 +21,24 @@ PoseObservation pose_observation(const MapPoint& point, const Keypoint& keypoint
   return observation;
 }
 
-// A first pose from the corners as they were detected.
+bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
+  return refined.inlier_count >= options.min_inliers &&
+         refined.inlier_count >= options.min_inlier_share * static_cast<double>(matches);
+}
+
+// A first pose from the corners as they were detected, matched within a radius of where the prediction expects them.
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, const std::vector<GuidedMatch>& matches,
-                               const PoseRefinementOptions& options) {
+                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const TrackOptions& options) {
+  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
     const Keypoint& keypoint = frame.features->keypoint(match.feature);
     observations.push_back(pose_observation(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
   }
-  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options);
-  if (!refined) return std::nullopt;
+  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options.refinement);
+  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
   return refined->camera_from_world;
 }
 
@@ -71,7 +77,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
     features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }
   const auto refined = refine_pose(camera_from_world, rig, observations, options.refinement);
-  if (!refined || refined->inlier_count < options.min_inliers) return std::nullopt;
+  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
 
   TrackedFrame tracked;
   tracked.camera_from_world = refined->camera_from_world;
@@ -106,16 +112,15 @@ std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_came
                                   const MapView& map, const std::vector<PointId>& candidates,
                                   const TrackOptions& options) {
   const std::vector<ExpectedPoint> predicted = project_points(map, candidates, predicted_camera_from_world, rig);
-  std::vector<GuidedMatch> matches = match_expected(*frame.features, map, predicted, {options.search_radius});
-  if (static_cast<int>(matches.size()) < options.min_matches) {
-    matches = match_expected(*frame.features, map, predicted, {options.wide_radius});
+  std::optional<Pose> first;
+  for (const float radius : {options.search_radius, options.wide_radius}) {
+    if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, predicted, radius, options);
   }
-  if (static_cast<int>(matches.size()) < options.min_inliers) return std::nullopt;
-  const auto first = first_pose(frame, predicted_camera_from_world, rig, map, matches, options.refinement);
   if (!first) return std::nullopt;
 
   const std::vector<ExpectedPoint> expected = project_points(map, candidates, *first, rig);
-  matches = match_expected(*frame.features, map, expected, {options.narrow_radius, 90, 0.9f});
+  const std::vector<GuidedMatch> matches =
+      match_expected(*frame.features, map, expected, {options.narrow_radius, 90, 0.9f});
   auto tracked = refine_on_matches(frame, *first, rig, map, matches, options);
   if (tracked) tracked->expected = static_cast<int>(expected.size());
   return tracked;

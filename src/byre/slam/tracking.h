@@ -28,8 +28,8 @@ struct TrackOptions {
   float search_radius = 12.0f;  // pixels at octave 0, about the predicted pixel
   float wide_radius = 40.0f;    // pixels, when the first search finds too little
   float narrow_radius = 4.0f;   // pixels, once a first pose is known
-  int min_matches = 30;         // below it the wider search is tried
-  int min_inliers = 20;
+  int min_inliers = 25;
+  double min_inlier_share = 0.5;  // of the matches; fewer mean that the prediction led astray
   PoseRefinementOptions refinement;
 };
 
@@ -37,7 +37,8 @@ struct TrackOptions {
 std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
 
 // Projects the candidates from the predicted pose, matches them nearby, refines the pose, matches the rest around it,
-// refines all matches in the image, and the pose again on those. Empty when fewer than min_inliers remain.
+// refines all matches in the image, and the pose again on those. A first search that finds too little, or too much that
+// does not agree, is repeated in wide_radius. Empty when too few inliers remain or most matches disagree.
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                   const MapView& map, const std::vector<PointId>& candidates,
                                   const TrackOptions& options);
