@@ -1,0 +1,51 @@
+#pragma once
+
+// Simulated missions as the tests of tracking, mapping and the session need them.
+
+#include "byre/simulation/simulated_mission.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace byre {
+
+inline SimulationOptions without_noise() {
+  SimulationOptions options;
+  options.pixel_sigma = 0.0;
+  options.disparity_sigma = 0.0;
+  options.missing_ratio = 0.0;
+  options.descriptor_flip_ratio = 0.0;
+  return options;
+}
+
+// A quarter of a circle of 2 m radius, 8 cm and 2 degrees from frame to frame.
+inline SimulatedMission quarter_circle(const SimulationOptions& options) {
+  return simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.25), options);
+}
+
+inline Pose true_camera_from_world(const SimulatedMission& mission, std::size_t frame) {
+  return inverse(mission.truth[frame].world_from_body * mission.rig.body_from_camera);
+}
+
+// The frame a keyframe was made of; keyframes keep their frame's time.
+inline std::size_t frame_at(const SimulatedMission& mission, Timestamp time) {
+  const auto found = std::ranges::find(mission.frames, time, &Frame::time);
+  return static_cast<std::size_t>(found - mission.frames.begin());
+}
+
+// The landmark a keyframe's feature really shows; -1 for an outlier.
+inline int true_landmark(const SimulatedMission& mission, const Keyframe& keyframe, int feature) {
+  return mission.landmark_of_feature[frame_at(mission, keyframe.frame.time)][static_cast<std::size_t>(feature)];
+}
+
+// The landmark that most of a point's observations really show; -1 when that is an outlier.
+inline int true_landmark(const SimulatedMission& mission, const Map& map, PointId point) {
+  std::vector<int> landmarks;
+  for (const Observation& seen : map.observations(point)) {
+    landmarks.push_back(true_landmark(mission, *map.find_keyframe(seen.keyframe), seen.feature));
+  }
+  std::ranges::sort(landmarks);
+  return *std::ranges::max_element(landmarks, {}, [&](int one) { return std::ranges::count(landmarks, one); });
+}
+
+}  // namespace byre
