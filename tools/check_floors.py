@@ -32,7 +32,7 @@ KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
         "session", "simulation", "viewer", "cli"},
     r"mutex|shared_mutex": {"session", "viewer"},
-    r"filesystem|fstream": {"evaluation", "dataset", "map", "place", "simulation", "viewer", "cli"},
+    r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "viewer", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},

@@ -1,7 +1,7 @@
 #include "byre/dataset/euroc_sensor.h"
 
-#include "byre/evaluation/text_file.h"
 #include "byre/input/input_error.h"
+#include "byre/input/text_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace byre {
 
 Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector) {
@@ -20,6 +22,12 @@ Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation) {
   const double sine = vector.norm();
   if (sine < 1e-9) return 2.0 * vector;
   return vector * (2.0 * std::atan2(sine, sign * rotation.w()) / sine);
+}
+
+std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix) {
+  const Eigen::Matrix3d excess = matrix.transpose() * matrix - Eigen::Matrix3d::Identity();
+  if (!(excess.cwiseAbs().maxCoeff() < 1e-3) || matrix.determinant() < 0.0) return std::nullopt;
+  return Eigen::Quaterniond(matrix).normalized();
 }
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& vector) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -30,6 +32,10 @@ inline Pose inverse(const Pose& a_from_b) {
 // Rotation vector (axis times angle, radians) to unit quaternion and back; the logarithm's angle is at most pi.
 Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector);
 Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation);
+
+// A rotation matrix as written in a file, its rounding errors removed; empty when it is none (to 1e-3 an entry of
+// R^T R), or mirrors.
+std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix);
 
 // The cross-product matrix: skew(a) * b = a x b.
 Eigen::Matrix3d skew(const Eigen::Vector3d& vector);

@@ -148,5 +148,15 @@ TEST(Interpolate, TurnsEvenlyAndExtrapolates) {
               PoseNear(Pose{rotation_exp({0.0, 0.0, 1.0}), {5.0, 0.0, 8.0}}, 1e-14, 1e-14));
 }
 
+TEST(RotationFromMatrix, AcceptsARoundedRotationAndNothingElse) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d rounded = (turn * 1e4).array().round() / 1e4;
+  ASSERT_TRUE(rotation_from_matrix(rounded).has_value());
+  EXPECT_LT(angle_between(*rotation_from_matrix(rounded), Eigen::Quaterniond(turn)), 1e-4);
+  EXPECT_FALSE(rotation_from_matrix(1.01 * turn).has_value());
+  EXPECT_FALSE(rotation_from_matrix(-turn).has_value());
+  EXPECT_FALSE(rotation_from_matrix(Eigen::Matrix3d::Zero()).has_value());
+}
+
 }  // namespace
 }  // namespace byre

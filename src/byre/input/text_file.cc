@@ -1,4 +1,4 @@
-#include "byre/evaluation/text_file.h"
+#include "byre/input/text_file.h"
 
 #include "byre/input/input_error.h"
 
@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <fstream>
 #include <utility>
-
-#include <Eigen/LU>
 
 namespace byre {
 namespace {
@@ -91,7 +89,7 @@ std::optional<double> parse_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<Timestamp> parse_seconds(std::string_view text) {
+std::optional<std::chrono::nanoseconds> parse_seconds(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   std::optional<std::pair<std::string, int>> number = split_exponent(text);
@@ -108,19 +106,13 @@ std::optional<Timestamp> parse_seconds(std::string_view text) {
     if (!value) return std::nullopt;
     nanoseconds += *value;
   }
-  return Timestamp(negative ? -nanoseconds : nanoseconds);
+  return std::chrono::nanoseconds(negative ? -nanoseconds : nanoseconds);
 }
 
-std::optional<Timestamp> parse_nanoseconds(std::string_view text) {
+std::optional<std::chrono::nanoseconds> parse_nanoseconds(std::string_view text) {
   const std::optional<std::int64_t> count = parse_whole<std::int64_t>(text);
   if (!count) return std::nullopt;
-  return Timestamp(*count);
-}
-
-std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix) {
-  const Eigen::Matrix3d excess = matrix.transpose() * matrix - Eigen::Matrix3d::Identity();
-  if (!(excess.cwiseAbs().maxCoeff() < 1e-3) || matrix.determinant() < 0.0) return std::nullopt;
-  return Eigen::Quaterniond(matrix).normalized();
+  return std::chrono::nanoseconds(*count);
 }
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/evaluation/text_file.h"
+#include "byre/input/text_file.h"
 
 #include "byre/input/input_error.h"
 
@@ -10,6 +10,7 @@
 namespace byre {
 namespace {
 
+using std::chrono::nanoseconds;
 using testing::ElementsAre;
 
 std::filesystem::path written(const std::string& name, const std::string& content) {
@@ -19,24 +20,24 @@ std::filesystem::path written(const std::string& name, const std::string& conten
 }
 
 TEST(ParseSeconds, KeepsEveryNanosecondOfAnEpochTime) {
-  EXPECT_EQ(parse_seconds("1403636584.763555584"), Timestamp(1403636584763555584));
-  EXPECT_EQ(parse_seconds("1.403636584763555584e+09"), Timestamp(1403636584763555584));
+  EXPECT_EQ(parse_seconds("1403636584.763555584"), nanoseconds(1403636584763555584));
+  EXPECT_EQ(parse_seconds("1.403636584763555584e+09"), nanoseconds(1403636584763555584));
 }
 
 TEST(ParseSeconds, ReadsShortAndScientificForms) {
-  EXPECT_EQ(parse_seconds("2"), Timestamp(2'000'000'000));
-  EXPECT_EQ(parse_seconds("2."), Timestamp(2'000'000'000));
-  EXPECT_EQ(parse_seconds(".5"), Timestamp(500'000'000));
-  EXPECT_EQ(parse_seconds("1.037000e-01"), Timestamp(103'700'000));
-  EXPECT_EQ(parse_seconds("-0.0075"), Timestamp(-7'500'000));
-  EXPECT_EQ(parse_seconds("0.000000e+00"), Timestamp(0));
+  EXPECT_EQ(parse_seconds("2"), nanoseconds(2'000'000'000));
+  EXPECT_EQ(parse_seconds("2."), nanoseconds(2'000'000'000));
+  EXPECT_EQ(parse_seconds(".5"), nanoseconds(500'000'000));
+  EXPECT_EQ(parse_seconds("1.037000e-01"), nanoseconds(103'700'000));
+  EXPECT_EQ(parse_seconds("-0.0075"), nanoseconds(-7'500'000));
+  EXPECT_EQ(parse_seconds("0.000000e+00"), nanoseconds(0));
 }
 
 TEST(ParseSeconds, RoundsBelowTheNanosecond) {
-  EXPECT_EQ(parse_seconds("0.0000000014"), Timestamp(1));
-  EXPECT_EQ(parse_seconds("0.0000000015"), Timestamp(2));
-  EXPECT_EQ(parse_seconds("-0.0000000015"), Timestamp(-2));
-  EXPECT_EQ(parse_seconds("1e-20"), Timestamp(0));
+  EXPECT_EQ(parse_seconds("0.0000000014"), nanoseconds(1));
+  EXPECT_EQ(parse_seconds("0.0000000015"), nanoseconds(2));
+  EXPECT_EQ(parse_seconds("-0.0000000015"), nanoseconds(-2));
+  EXPECT_EQ(parse_seconds("1e-20"), nanoseconds(0));
 }
 
 TEST(ParseSeconds, RefusesWhatIsNoTime) {
@@ -76,16 +77,6 @@ TEST(ReadLines, NamesAFileThatIsNotThere) {
     EXPECT_EQ(error.place(), "/nowhere/poses.txt");
   }
   EXPECT_THROW(read_lines(testing::TempDir()), InputError);
-}
-
-TEST(RotationFromMatrix, AcceptsARoundedRotationAndNothingElse) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
-  const Eigen::Matrix3d rounded = (turn * 1e4).array().round() / 1e4;
-  ASSERT_TRUE(rotation_from_matrix(rounded).has_value());
-  EXPECT_LT(angle_between(*rotation_from_matrix(rounded), Eigen::Quaterniond(turn)), 1e-4);
-  EXPECT_FALSE(rotation_from_matrix(1.01 * turn).has_value());
-  EXPECT_FALSE(rotation_from_matrix(-turn).has_value());
-  EXPECT_FALSE(rotation_from_matrix(Eigen::Matrix3d::Zero()).has_value());
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "byre/geometry/trajectory.h"
-
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,11 +30,7 @@ std::vector<std::string_view> split_fields(std::string_view text);
 std::optional<double> parse_number(std::string_view text);
 
 // Seconds as a decimal number ("1403636584.763555584", "1.037e-01"), exact to the nanosecond, which a double is not.
-std::optional<Timestamp> parse_seconds(std::string_view text);
-std::optional<Timestamp> parse_nanoseconds(std::string_view text);  // a whole number
-
-// A rotation matrix as written in a file, its rounding errors removed; empty when it is none (to 1e-3 an entry of
-// R^T R), or mirrors.
-std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix);
+std::optional<std::chrono::nanoseconds> parse_seconds(std::string_view text);
+std::optional<std::chrono::nanoseconds> parse_nanoseconds(std::string_view text);  // a whole number
 
 }  // namespace byre
