@@ -26,28 +26,43 @@ void append_corners(const cv::Mat& level, const cv::Rect& area, int threshold, s
   }
 }
 
-// Looks again, with the lower threshold, into the cells that have no corner yet.
-void search_empty_cells(const cv::Mat& level, const DetectOptions& options, std::vector<Corner>& corners) {
-  const cv::Rect whole = searched_area(level, options.border);
-  const cv::Rect inner(options.border, options.border, level.cols - 2 * options.border,
-                       level.rows - 2 * options.border);
-  const int columns = (inner.width + options.cell_size - 1) / options.cell_size;
-  const int rows = (inner.height + options.cell_size - 1) / options.cell_size;
-  std::vector<bool> occupied(static_cast<std::size_t>(columns * rows), false);
-  for (const Corner& corner : corners) {
-    const int cell = (corner.y - inner.y) / options.cell_size * columns + (corner.x - inner.x) / options.cell_size;
-    occupied[static_cast<std::size_t>(cell)] = true;
+// Squares of the level inside its border, row by row; those of the last row and column are cut off.
+struct CellGrid {
+  cv::Rect area;
+  int cell_size;
+
+  int columns() const { return (area.width + cell_size - 1) / cell_size; }
+  int rows() const { return (area.height + cell_size - 1) / cell_size; }
+  std::size_t size() const { return static_cast<std::size_t>(columns() * rows()); }
+  std::size_t index_of(const Corner& corner) const {
+    return static_cast<std::size_t>((corner.y - area.y) / cell_size * columns() + (corner.x - area.x) / cell_size);
   }
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      if (occupied[static_cast<std::size_t>(row * columns + column)]) continue;
-      const cv::Rect cell(inner.x + column * options.cell_size - kFastRadius,
-                          inner.y + row * options.cell_size - kFastRadius, options.cell_size + 2 * kFastRadius,
-                          options.cell_size + 2 * kFastRadius);
-      const cv::Rect area = cell & whole;
-      if (std::min(area.width, area.height) <= 2 * kFastRadius) continue;
-      append_corners(level, area, options.min_fast_threshold, corners);
-    }
+  cv::Rect cell(std::size_t index) const {
+    const int row = static_cast<int>(index) / columns();
+    const int column = static_cast<int>(index) % columns();
+    return cv::Rect(area.x + column * cell_size, area.y + row * cell_size, cell_size, cell_size) & area;
+  }
+};
+
+// Looks again, with the lower threshold, into the cells that gave less than their share of the corners wanted.
+void search_poor_cells(const cv::Mat& level, int max_corners, const DetectOptions& options,
+                       std::vector<Corner>& corners) {
+  const CellGrid grid{
+      cv::Rect(options.border, options.border, level.cols - 2 * options.border, level.rows - 2 * options.border),
+      options.cell_size};
+  std::vector<int> found(grid.size(), 0);
+  for (const Corner& corner : corners) ++found[grid.index_of(corner)];
+  std::vector<bool> poor(grid.size(), false);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
+  }
+  std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });  // they are found again
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (!poor[i]) continue;
+    const cv::Rect cell = grid.cell(i);
+    const cv::Rect widened(cell.x - kFastRadius, cell.y - kFastRadius, cell.width + 2 * kFastRadius,
+                           cell.height + 2 * kFastRadius);
+    append_corners(level, widened, options.min_fast_threshold, corners);
   }
 }
 
@@ -83,7 +98,7 @@ std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const 
   if (std::min(area.width, area.height) <= 2 * kFastRadius) return {};
   std::vector<Corner> corners;
   append_corners(level, area, options.fast_threshold, corners);
-  search_empty_cells(level, options, corners);
+  search_poor_cells(level, max_corners, options, corners);
 
   std::vector<RankedCorner> ranked = rank_in_squares(corners, level.size(), max_corners);
   const std::size_t wanted = std::min(ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));

@@ -14,8 +14,8 @@ struct Corner {
 
 struct DetectOptions {
   int fast_threshold = 20;     // grey values
-  int min_fast_threshold = 7;  // used where a cell has no corner at fast_threshold
-  int cell_size = 32;          // octave pixels: of the cells that are looked at again
+  int min_fast_threshold = 7;  // used in cells that give less than their share of corners at fast_threshold
+  int cell_size = 64;          // octave pixels: of the cells that are looked at again
   int border = 19;             // octave pixels kept free of corners
 };
 

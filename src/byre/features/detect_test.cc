@@ -106,15 +106,18 @@ TEST(DetectCorners, LooksAgainWithTheLowThresholdWhereTheImageIsDull) {
   EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 1);
 }
 
-TEST(DetectCorners, KeepsTheHighThresholdWhereACellHasCorners) {
+TEST(DetectCorners, KeepsTheHighThresholdWhereACellGivesItsShare) {
   // Each cell of 32 pixels has a bright spot and a faint one, but the cells of the first row have no bright one.
   const cv::Mat image = render(230, 230, [](double x, double y) {
     const double u = std::fmod(x - 19.0 + 32.0, 32.0), v = std::fmod(y - 19.0 + 32.0, 32.0);
     const auto spot = [&](double at) { return std::exp(-0.25 * (std::pow(u - at, 2) + std::pow(v - at, 2))); };
     return 100.0 + (y < 19.0 + 32.0 ? 0.0 : 100.0 * spot(8.2)) + 16.0 * spot(24.2);
   });
+  DetectOptions options;
+  options.cell_size = 32;
+  constexpr int kOneForEachCell = 36;
   int bright = 0, faint = 0;
-  for (const Corner& corner : detect_corners(image, kPlenty, {})) {
+  for (const Corner& corner : detect_corners(image, kOneForEachCell, options)) {
     const bool in_first_row = corner.y < 19 + 32;
     EXPECT_EQ(corner.response < 20.0f, in_first_row) << corner.x << ", " << corner.y;
     ++(in_first_row ? faint : bright);

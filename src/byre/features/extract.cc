@@ -85,7 +85,10 @@ struct Extractor::State {
 
 void Extractor::State::describe_octave(int octave, int quota, Described& described) {
   const cv::Mat& level = left.levels[static_cast<std::size_t>(octave)];
-  const DetectOptions detect{options.fast_threshold, options.min_fast_threshold, 32, kDescriptorRadius};
+  DetectOptions detect;
+  detect.fast_threshold = options.fast_threshold;
+  detect.min_fast_threshold = options.min_fast_threshold;
+  detect.border = kDescriptorRadius;
   const std::vector<Corner> corners = detect_corners(level, quota, detect);
   if (corners.empty()) return;
   cv::GaussianBlur(level, blurred, cv::Size(7, 7), 2.0, 2.0, cv::BORDER_REFLECT_101);

@@ -55,6 +55,11 @@ Matrix6 adjoint(const Pose& a_from_b) {
   return result;
 }
 
+Matrix6 move_covariance(const Matrix6& covariance_in_b, const Pose& a_from_b) {
+  const Matrix6 a_motion_from_b_motion = adjoint(a_from_b);
+  return a_motion_from_b_motion * covariance_in_b * a_motion_from_b_motion.transpose();
+}
+
 double angle_between(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second) {
   return rotation_log(first.conjugate() * second).norm();
 }

@@ -50,6 +50,9 @@ Vector6 log_pose(const Pose& pose);
 // a_from_b * exp_pose(delta) = exp_pose(adjoint(a_from_b) * delta) * a_from_b to first order.
 Matrix6 adjoint(const Pose& a_from_b);
 
+// The covariance of a small motion as seen in frame a, given it as seen in frame b.
+Matrix6 move_covariance(const Matrix6& covariance_in_b, const Pose& a_from_b);
+
 // Angle between two rotations, radians, 0 to pi.
 double angle_between(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second);
 

@@ -154,9 +154,8 @@ FrameReport Session::report_of(const Frame& frame, const std::optional<TrackedFr
   report.expected_points = tracked->expected;
   report.matches = tracked->matches;
   report.inliers = static_cast<int>(tracked->features.size());
-  // From a motion of the camera as seen in it, to one of the body as seen in the body.
-  const Matrix6 body_from_camera = adjoint(rig_.body_from_camera);
-  report.covariance = body_from_camera * tracked->covariance * body_from_camera.transpose();
+  report.covariance =
+      move_covariance(tracked->covariance, rig_.body_from_camera);  // from left of the camera to the body
   return report;
 }
 

@@ -77,6 +77,22 @@ void remove_outliers(MapWindow& window, const WindowBundle& bundle, const Bundle
   }
 }
 
+// The uncertainty of the anchors as a whole, with which the window moves: that of their middle one. Their own shares of
+// it average out, so the worst would be too much; what they have in common does not, so the best would be too little.
+Matrix6 anchor_covariance(const MapWindow& window) {
+  const Pose& centre_from_world = window.keyframes.front().keyframe.camera_from_world;
+  std::vector<Matrix6> covariances;
+  for (const WindowKeyframe& anchor : window.keyframes) {
+    if (anchor.movable) continue;
+    covariances.push_back(
+        move_covariance(anchor.keyframe.covariance, centre_from_world * inverse(anchor.keyframe.camera_from_world)));
+  }
+  if (covariances.empty()) return Matrix6::Zero();
+  const auto middle = covariances.begin() + static_cast<std::ptrdiff_t>(covariances.size() / 2);
+  std::ranges::nth_element(covariances, middle, {}, [](const Matrix6& covariance) { return covariance.trace(); });
+  return *middle;
+}
+
 }  // namespace
 
 BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature) {
@@ -100,7 +116,9 @@ void adjust_bundle(MapWindow& window, const MappingOptions& options) {
     const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
     if (!result.usable) return;
     take_over(window, result);
-    if (result.pose_covariance) window.keyframes.front().keyframe.covariance = *result.pose_covariance;
+    if (result.pose_covariance) {
+      window.keyframes.front().keyframe.covariance = *result.pose_covariance + anchor_covariance(window);
+    }
     remove_outliers(window, bundle, result, options);
   }
 }

@@ -87,6 +87,10 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
     if (refined->inliers[i]) tracked.features.push_back(features[i]);
   }
   tracked.reference = most_shared(map, tracked.features);
+  if (const Keyframe* const reference = map.find_keyframe(tracked.reference)) {
+    tracked.covariance +=
+        move_covariance(reference->covariance, tracked.camera_from_world * inverse(reference->camera_from_world));
+  }
   return tracked;
 }
 

@@ -17,7 +17,9 @@ struct TrackedFeature {
 
 struct TrackedFrame {
   Pose camera_from_world;
-  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * camera_from_world, given the map
+  // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin: what the matches leave open, and
+  // what the reference keyframe's own pose does.
+  Matrix6 covariance = Matrix6::Zero();
   KeyframeId reference;                  // the keyframe that shares most points
   std::vector<TrackedFeature> features;  // inliers only, ascending
   int expected = 0;                      // map points in the frustum
