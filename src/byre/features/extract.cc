@@ -100,7 +100,7 @@ void Extractor::State::describe_octave(int octave, int quota, Described& describ
     keypoint.angle = orientation(level.ptr<std::uint8_t>(corner.y) + corner.x, static_cast<std::ptrdiff_t>(level.step));
     described.descriptors.push_back(describe(blurred.ptr<std::uint8_t>(corner.y) + corner.x,
                                              static_cast<std::ptrdiff_t>(blurred.step), keypoint.angle));
-    described.patches.push_back(cut_patch(level, corner.x, corner.y));
+    if (options.refinement == Refinement::all) described.patches.push_back(cut_patch(level, corner.x, corner.y));
     described.keypoints.push_back(keypoint);
   }
 }
@@ -142,7 +142,9 @@ Extraction Extractor::extract(const ImageFrame& images) {
 
   if (stereo) {
     build_pyramid(right, state_->right);
-    const auto matches = match_stereo(state_->left, state_->right, rig(), described.keypoints, {});
+    StereoOptions stereo_options;
+    stereo_options.refine = state_->options.refinement != Refinement::none;
+    const auto matches = match_stereo(state_->left, state_->right, rig(), described.keypoints, stereo_options);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (!matches[i]) continue;
       described.keypoints[i].disparity = matches[i]->disparity;

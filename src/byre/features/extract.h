@@ -4,14 +4,19 @@
 #include "byre/features/image.h"
 #include "byre/geometry/camera.h"
 
+#include <cstdint>
 #include <memory>
 
 namespace byre {
+
+// Which matches are refined in the image to a fraction of a pixel. Anything less than all is for comparison.
+enum class Refinement : std::uint8_t { none, stereo, all };  // stereo: left to right only; all: over time too
 
 struct ExtractOptions {
   int max_features = 1000;
   int fast_threshold = 20;     // grey values
   int min_fast_threshold = 7;  // used where the image is dull
+  Refinement refinement = Refinement::all;
 };
 
 // Wall time of the stages of one extraction, seconds.

@@ -173,6 +173,26 @@ TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
   }
 }
 
+TEST(Extractor, RefinesOnlyWhatItIsAskedTo) {
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  const auto median_disparity_error = [&](Refinement refinement) {
+    ExtractOptions options;
+    options.refinement = refinement;
+    const Features& features = *Extractor(ideal_pair(), options).extract(images).frame.features;
+    EXPECT_EQ(features.has_patches(), refinement == Refinement::all);
+    std::vector<double> errors;
+    for (const Keypoint& keypoint : features.keypoints()) {
+      if (!keypoint.has_disparity()) continue;
+      errors.push_back(std::abs(keypoint.disparity - kFocal * kBaseline / wall().depth));
+    }
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    return *middle;
+  };
+  EXPECT_LT(3.0 * median_disparity_error(Refinement::stereo), median_disparity_error(Refinement::none));
+  EXPECT_EQ(median_disparity_error(Refinement::all), median_disparity_error(Refinement::stereo));
+}
+
 TEST(Extractor, FindsNoDisparitiesWithoutARightImage) {
   ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});

@@ -91,16 +91,14 @@ std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x
   return there.x;
 }
 
-std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
-                                     double max_disparity, const StereoOptions& options) {
-  const float scale = kScaleOfOctave[keypoint.octave];
-  const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
-  const int x = static_cast<int>(std::lround(centre.x()));
-  const int y = static_cast<int>(std::lround(centre.y()));
-  if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
-  const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
-  if (!right_x) return std::nullopt;
+// The match of a left pixel to a right column, octave pixels.
+struct OctaveMatch {
+  float disparity = 0.0f;
+  float sigma = 0.0f;
+};
 
+std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& right, int x, int y, int right_x,
+                                         const StereoOptions& options) {
   const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
   const auto grey = sample<kAlignSize>(window_of(left), pixel);
   if (!grey) return std::nullopt;
@@ -109,11 +107,25 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
   align.min_similarity = options.min_similarity;
   align.min_sigma = options.min_sigma;
   const auto aligned = align_window<kAlignSize>(CentredTemplate<kAlignSize>(*grey), window_of(right),
-                                                {static_cast<float>(*right_x), pixel.y()}, align);
+                                                {static_cast<float>(right_x), pixel.y()}, align);
   if (!aligned || std::abs(aligned->pixel.y() - pixel.y()) > options.max_vertical_error) return std::nullopt;
-  const float disparity = (pixel.x() - aligned->pixel.x()) * scale;
-  if (!(disparity > 0.0f)) return std::nullopt;
-  return StereoMatch{disparity, aligned->sigma * scale};
+  return OctaveMatch{pixel.x() - aligned->pixel.x(), aligned->sigma};
+}
+
+std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
+                                     double max_disparity, const StereoOptions& options) {
+  constexpr float kRoundingSigma = 0.29f;  // of a value rounded to a whole pixel
+  const float scale = kScaleOfOctave[keypoint.octave];
+  const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
+  const int x = static_cast<int>(std::lround(centre.x()));
+  const int y = static_cast<int>(std::lround(centre.y()));
+  if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
+  const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
+  if (!right_x) return std::nullopt;
+  const auto match = options.refine ? refine_column(left, right, x, y, *right_x, options)
+                                    : OctaveMatch{static_cast<float>(x - *right_x), kRoundingSigma};
+  if (!match || !(match->disparity > 0.0f)) return std::nullopt;
+  return StereoMatch{match->disparity * scale, match->sigma * scale};
 }
 
 }  // namespace

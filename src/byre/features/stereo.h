@@ -14,6 +14,7 @@ struct StereoOptions {
   float max_vertical_error = 1.2f;  // octave pixels that rectification may be off
   float min_similarity = 0.85f;     // of the refined match, see Alignment
   float min_sigma = 0.08f;          // octave pixels
+  bool refine = true;               // else whole octave pixels, for comparison
 };
 
 struct StereoMatch {
