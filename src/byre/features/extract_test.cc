@@ -178,7 +178,8 @@ TEST(Extractor, RefinesOnlyWhatItIsAskedTo) {
   const auto median_disparity_error = [&](Refinement refinement) {
     ExtractOptions options;
     options.refinement = refinement;
-    const Features& features = *Extractor(ideal_pair(), options).extract(images).frame.features;
+    const Extraction extraction = Extractor(ideal_pair(), options).extract(images);
+    const Features& features = *extraction.frame.features;
     EXPECT_EQ(features.has_patches(), refinement == Refinement::all);
     std::vector<double> errors;
     for (const Keypoint& keypoint : features.keypoints()) {
