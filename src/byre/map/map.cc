@@ -115,18 +115,6 @@ void Map::remove_keyframe(KeyframeId id) {
   --keyframe_count_;
 }
 
-void Map::fuse_points(PointId removed, PointId kept) {
-  if (removed == kept || !find_point(removed) || !find_observations(kept)) return;
-  const std::vector<Observation> observers = observations(removed);
-  for (const Observation& observation : observers) {
-    Sighting sighting = sighting_of(*slot(observation.keyframe).keyframe, observation.feature);
-    sighting.point = kept;
-    unlink(observation);
-    add_observation(observation, sighting);
-  }
-  remove_point(removed);
-}
-
 void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
   Keyframe* keyframe = find_own_keyframe(id);
   if (!keyframe) return;

@@ -85,9 +85,6 @@ class Map {
   // Its children are handed to its parent, and its pose is kept relative to it. A keyframe without a parent stays:
   // the poses of the others hang from it.
   void remove_keyframe(KeyframeId id);
-  // All observations of removed become observations of kept, except where a keyframe sees both. kept may be offline;
-  // what it is (position, descriptor, reference) stays.
-  void fuse_points(PointId removed, PointId kept);
 
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // A reference that does not observe the point is replaced by the point's lowest observation.

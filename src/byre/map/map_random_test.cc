@@ -68,16 +68,6 @@ struct Model {
     drop_unseen_points_and_repair_references();
   }
 
-  void fuse_points(PointId removed, PointId kept) {
-    const bool is_kept_known = kept.origin == Origin::offline || references.contains(kept);
-    if (removed == kept || !references.contains(removed) || !is_kept_known) return;
-    for (const Observation& observation : observations(removed)) {
-      sightings.erase(observation);
-      add_observation(observation, kept);
-    }
-    references.erase(removed);
-  }
-
   std::vector<std::pair<KeyframeId, int>> covisible(KeyframeId keyframe) const {
     std::map<KeyframeId, int> counts;
     for (const auto& [observation, point] : sightings) {
@@ -102,9 +92,8 @@ class RandomOperations {
     if (dice < 30) return add_point();
     if (dice < 70) return add_observation();
     if (dice < 82) return remove_observation();
-    if (dice < 88) return remove_point();
-    if (dice < 94) return remove_keyframe();
-    fuse_points();
+    if (dice < 90) return remove_point();
+    remove_keyframe();
   }
 
   Map map{Origin::online};
@@ -180,13 +169,6 @@ class RandomOperations {
     const KeyframeId keyframe = any_keyframe();
     map.remove_keyframe(keyframe);
     model.remove_keyframe(keyframe);
-  }
-
-  void fuse_points() {
-    const PointId removed = any_online_point();
-    const PointId kept = any_point();
-    map.fuse_points(removed, kept);
-    model.fuse_points(removed, kept);
   }
 
   std::mt19937_64 random_;

@@ -204,32 +204,6 @@ TEST_F(SmallMap, AddsTheObservationsANewKeyframeNames) {
               ElementsAre(SharesPoints(third, 2), SharesPoints(first, 1), SharesPoints(second, 1)));
 }
 
-TEST_F(SmallMap, FusesPointsExceptWhereAKeyframeSeesBoth) {
-  const PointId twin = add_seen_point(map, {second, 2});
-  map.add_observation({third, 2}, {twin, {7.0f, 8.0f}, 0.5f});
-  map.fuse_points(twin, lonely);
-  EXPECT_EQ(map.find_point(twin), nullptr);
-  EXPECT_THAT(map.observations(lonely), ElementsAre(Observation{second, 2}, Observation{third, 1}));
-  EXPECT_EQ(seen_by(third, 2), std::nullopt);
-  EXPECT_EQ(map.find_point(lonely)->reference, (Observation{third, 1}));
-}
-
-TEST_F(SmallMap, FusesAnOnlinePointIntoAnOfflineOne) {
-  const PointId offline{Origin::offline, 7};
-  map.fuse_points(shared, offline);
-  EXPECT_EQ(map.find_point(shared), nullptr);
-  EXPECT_THAT(map.observations(offline), SizeIs(3));
-  EXPECT_EQ(seen_by(first, 0), offline);
-  EXPECT_THAT(map.covisible_keyframes(first, kAll), ElementsAre(SharesPoints(second, 1), SharesPoints(third, 1)));
-}
-
-TEST_F(SmallMap, DoesNotFuseWithAPointThatIsGoneOrWithItself) {
-  map.remove_point(lonely);
-  map.fuse_points(shared, lonely);
-  map.fuse_points(shared, shared);
-  EXPECT_THAT(map.observations(shared), SizeIs(3));
-}
-
 TEST_F(SmallMap, KeepsObservationsOfOfflinePoints) {
   const PointId offline{Origin::offline, 3};
   EXPECT_TRUE(map.add_observation({second, 1}, {offline}));

@@ -200,7 +200,6 @@ class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
     const auto some_point = [&] { return points[random() % points.size()]; };
     for (int i = 0; i < 40; ++i) {
       map.remove_point(some_point());
-      map.fuse_points(some_point(), some_point());
       const KeyframeId keyframe{Origin::online, static_cast<std::uint32_t>(random() % 20)};
       if (i % 20 == 0) map.remove_keyframe(keyframe);
       const Keyframe* const entry = map.find_keyframe(keyframe);
