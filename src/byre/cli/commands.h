@@ -7,12 +7,16 @@
 
 namespace byre::cli {
 
+// What the program ends with.
+enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupted = 130 };
+
 // Does what a command is for, with the options it was given, and writes its result. Throws InputError for bad input and
-// any other exception for a failure at work.
-using Action = std::function<void(std::ostream& result)>;
+// any other exception for a failure at work. Gives interrupted when it was stopped by Ctrl-C, else done.
+using Action = std::function<ExitCode(std::ostream& result)>;
 
 // Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
 // the command line is parsed.
+Action declare_map(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 
 }  // namespace byre::cli

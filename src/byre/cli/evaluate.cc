@@ -131,7 +131,10 @@ Action declare_evaluate(CLI::App& command) {
   command.add_option("--aligned", options->aligned, "Also write the estimate as aligned to the truth, in TUM format")
       ->type_name("FILE");
   command.footer(kFooter);
-  return [options](std::ostream& result) { run_evaluate(*options, result); };
+  return [options](std::ostream& result) {
+    run_evaluate(*options, result);
+    return ExitCode::done;
+  };
 }
 
 }  // namespace byre::cli

@@ -1,7 +1,7 @@
 #include "byre/cli/evaluation_report.h"
 
-#include <array>
-#include <cstdio>
+#include "byre/cli/formatted.h"
+
 #include <sstream>
 #include <string_view>
 
@@ -13,13 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSpanSource = "frames that fit into the truth's span at the estimate's median interval";
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
 
 double to_milliseconds(Timestamp time) {
   return 1e3 * to_seconds(time);

@@ -13,10 +13,9 @@ namespace {
 
 using namespace byre::cli;
 
-enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3 };
-
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input (a file, a calibration, a recording).\n"
+    "Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input (a file, a calibration, a recording),\n"
+    "130 stopped by Ctrl-C.\n"
     "\"byre COMMAND --help\" explains a command.";
 
 struct Command {
@@ -26,6 +25,7 @@ struct Command {
 };
 
 constexpr std::array kCommands = {
+    Command{"map", "Turn a stereo recording into a trajectory", declare_map},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
 };
 
@@ -44,9 +44,9 @@ int report(const std::string& message, ExitCode code) {
 
 int run(const Action& action) {
   try {
-    action(std::cout);
+    const ExitCode code = action(std::cout);
     if (!std::cout.flush()) throw std::runtime_error("the result cannot be written to the standard output");
-    return done;
+    return code;
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
   } catch (const std::exception& error) {

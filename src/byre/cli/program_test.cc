@@ -1,35 +1,23 @@
 // Runs the program as a user does: exit codes, and what it says on which stream.
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include "byre/cli/program_fixture.h"
+
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
 
 namespace byre::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output;
-  std::string errors;
-};
-
-class Program : public testing::Test {
+class Program : public ProgramTest {
  protected:
   Program() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     std::string tum = "# time\n";
     std::string kitti;
     std::string times;
@@ -43,26 +31,6 @@ class Program : public testing::Test {
     write("poses.txt", kitti);
     write("times.txt", times);
   }
-  ~Program() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& content) const { std::ofstream(folder_ / name) << content; }
-
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
-
-  // Runs byre in the folder.
-  Outcome run(const std::string& arguments) const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && '" + BYRE_PROGRAM + "' " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
-  }
-
-  fs::path folder_ = fs::path(testing::TempDir()) /
-                     (std::string("byre_program.") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(Program, ExplainsItself) {
@@ -115,7 +83,7 @@ TEST_F(Program, NamesBadInput) {
 }
 
 TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const std::string command = std::string("'") + BYRE_PROGRAM + "' evaluate --estimate '" +
                               (folder_ / "estimate.txt").string() + "' --truth '" +
                               (folder_ / "estimate.txt").string() + "' >/dev/full 2>/dev/null";

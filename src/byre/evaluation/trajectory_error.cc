@@ -16,14 +16,6 @@ double to_degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-// Precondition: sorted, not empty.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double position = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
-}
-
 // The sample nearest to a time, when it is near enough.
 std::optional<Pose> nearest_pose(const Trajectory& trajectory, Timestamp time, Timestamp max_difference) {
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time,
@@ -86,6 +78,13 @@ Timestamp median_interval(const Trajectory& trajectory) {
 }
 
 }  // namespace
+
+double quantile(const std::vector<double>& sorted, double share) {
+  const double position = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+}
 
 ErrorStatistics summarise(std::vector<double> errors) {
   if (errors.empty()) return {};

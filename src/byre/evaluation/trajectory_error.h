@@ -19,6 +19,9 @@ struct ErrorStatistics {
 
 ErrorStatistics summarise(std::vector<double> errors);  // all zero for none
 
+// Interpolated between its neighbours; share 0 is the least, 1 the largest. Precondition: ascending, not empty.
+double quantile(const std::vector<double>& sorted, double share);
+
 // Interpolation is off by an eighth of acceleration times squared gap: 2 mm at 5 m/s^2 in truth of 20 Hz. The nearest
 // sample is off by speed times difference, and so only stands in for truth at what was meant to be the same instant.
 struct AssociationOptions {

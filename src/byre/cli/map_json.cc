@@ -1,0 +1,190 @@
+#include "byre/cli/map_report.h"
+#include "byre/cli/map_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMillisecondsPerSecond = 1e3;
+constexpr std::size_t kListedWarnings = 20;
+constexpr const char* kCovariance =
+    "6x6, row-major, of a small motion (translation in metres, rotation vector in radians) as seen in the body, "
+    "relative to the map's origin";
+
+// To the microsecond: more digits would only be noise.
+double rounded_ms(double milliseconds) {
+  return std::round(1e3 * milliseconds) / 1e3;
+}
+
+template <typename Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+// What decides how much is computed; all else is as the version has it.
+Json options_json(const MapRunOptions& options) {
+  return {{"max_features", options.extract.max_features},
+          {"fast_threshold", options.extract.fast_threshold},
+          {"min_fast_threshold", options.extract.min_fast_threshold},
+          {"min_initial_points", options.session.min_initial_points},
+          {"local_keyframes", options.session.local_keyframes},
+          {"movable_keyframes", options.session.mapping.window.movable},
+          {"anchor_keyframes", options.session.mapping.window.anchors}};
+}
+
+Json protocol_json(const MapProtocol& protocol) {
+  const FrameRange& range = protocol.range;
+  Json json = {{"program", "byre map"},
+               {"version", BYRE_VERSION},
+               {"recording", protocol.recording},
+               {"format", protocol.format == RecordingFormat::euroc ? "euroc" : "kitti"},
+               {"range",
+                {{"start_s", or_null(range.start_s)},
+                 {"end_s", or_null(range.end_s)},
+                 {"first_frame", range.first},
+                 {"end_frame", or_null(range.last)},
+                 {"stride_frames", range.stride}}},
+               {"frames_in_range", protocol.frames_in_range},
+               {"pace", name_of(protocol.options.pace)}};
+  if (protocol.options.pace == Pace::paced) json["mapping_latency_frames"] = kPacedLatency;
+  json["options"] = options_json(protocol.options);
+  json["body_covariance"] = kCovariance;
+  return json;
+}
+
+Json counts_json(const MapRun& run) {
+  const FrameCounts counts = count_frames(run.frames);
+  return {{"frames", counts.frames},
+          {"frames_with_pose", counts.with_pose},
+          {"coverage", counts.coverage()},
+          {"frames_unreadable", counts.unreadable},
+          {"frames_without_right_image", counts.without_right_image},
+          {"keyframes_made", counts.keyframes},
+          {"keyframes_left", run.keyframes_left},
+          {"points", run.points_left},
+          {"lost_episodes", counts.lost_episodes},
+          {"frames_lost", counts.lost},
+          {"resets", counts.resets}};
+}
+
+Json to_json(const TimeSummary& times) {
+  if (times.count == 0) return nullptr;
+  return {{"mean", rounded_ms(times.mean_ms)},
+          {"p50", rounded_ms(times.p50_ms)},
+          {"p95", rounded_ms(times.p95_ms)},
+          {"p99", rounded_ms(times.p99_ms)},
+          {"max", rounded_ms(times.max_ms)}};
+}
+
+Json stages_json(const std::vector<MappedFrame>& frames) {
+  const auto stage = [&frames](double StageSeconds::*member) { return to_json(summarise_stage(frames, member)); };
+  return {{"decode", stage(&StageSeconds::decode)},   {"rectify", stage(&StageSeconds::rectify)},
+          {"extract", stage(&StageSeconds::extract)}, {"stereo", stage(&StageSeconds::stereo)},
+          {"track", stage(&StageSeconds::track)},     {"map", stage(&StageSeconds::map)}};
+}
+
+Json jobs_json(const std::vector<double>& job_seconds) {
+  const TimeSummary jobs = summarise_times(job_seconds);
+  return {{"count", jobs.count}, {"mean_ms", rounded_ms(jobs.mean_ms)}, {"max_ms", rounded_ms(jobs.max_ms)}};
+}
+
+Json late_json(const MapRun& run) {
+  const TimeSummary late = summarise_times(run.lateness);
+  return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
+}
+
+Json warnings_json(const std::vector<std::string>& warnings) {
+  const auto listed = static_cast<std::ptrdiff_t>(std::min(warnings.size(), kListedWarnings));
+  return {{"count", warnings.size()}, {"first", std::vector(warnings.begin(), warnings.begin() + listed)}};
+}
+
+Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources) {
+  const Pace pace = protocol.options.pace;
+  Json json = {{"protocol", protocol_json(protocol)},
+               {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
+               {"counts", counts_json(run)},
+               {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
+               {"stages_ms", stages_json(run.frames)},
+               {"mapping_jobs", jobs_json(run.job_seconds)}};
+  if (pace == Pace::same_thread) json["frame_thread_without_jobs_ms"] = to_json(summarise_without_jobs(run.frames));
+  if (pace == Pace::live) json["late"] = late_json(run);
+  json["cpu_s"] = resources.cpu_seconds;
+  json["wall_s"] = run.wall_seconds;
+  json["peak_memory_mb"] = resources.peak_memory_mb;
+  json["warnings"] = warnings_json(run.warnings);
+  return json;
+}
+
+Json milliseconds_json(const MappedFrame& frame) {
+  const StageSeconds& seconds = frame.seconds;
+  Json json;
+  const auto add = [&json](const char* name, double value) { json[name] = rounded_ms(kMillisecondsPerSecond * value); };
+  add("decode", seconds.decode);
+  add("rectify", seconds.rectify);
+  add("extract", seconds.extract);
+  add("stereo", seconds.stereo);
+  add("track", seconds.track);
+  add("map", seconds.map);
+  add("map_submit", seconds.map_submit);
+  add("total", seconds.total);
+  const std::optional<double> job = frame.report->job_seconds;
+  json["job_taken_over"] = job ? Json(rounded_ms(kMillisecondsPerSecond * *job)) : Json();
+  return json;
+}
+
+void add_pose(const FrameReport& report, Json& json) {
+  const Eigen::Vector3d& t = report.world_from_body->translation;
+  const Eigen::Quaterniond& q = report.world_from_body->rotation;
+  json["position_m"] = {t.x(), t.y(), t.z()};
+  json["quaternion_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
+  Json covariance = Json::array();
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) covariance.push_back(report.covariance(row, column));
+  }
+  json["body_covariance"] = covariance;
+}
+
+Json frame_json(const MappedFrame& frame) {
+  Json json = {{"time_s", to_seconds(frame.time)}, {"time_ns", frame.time.count()}};
+  if (!frame.report) {
+    json["state"] = "unreadable";
+    return json;
+  }
+  const FrameReport& report = *frame.report;
+  json["state"] = to_string(report.state);
+  json["has_right_image"] = frame.has_right;
+  json["keyframe"] = report.keyframe_added;
+  json["features"] = report.features;
+  json["expected"] = report.expected_points;
+  json["matches"] = report.matches;
+  json["inliers"] = report.inliers;
+  if (report.world_from_body) add_pose(report, json);
+  json["ms"] = milliseconds_json(frame);
+  return json;
+}
+
+std::string dumped(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources) {
+  std::string text = dumped(run_json(run, protocol, resources), 2);
+  text.erase(text.rfind("\n}"));
+  text += ",\n  \"frames\": [";
+  const char* separator = "\n    ";
+  for (const MappedFrame& frame : run.frames) {
+    text += separator + dumped(frame_json(frame), -1);
+    separator = ",\n    ";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,188 @@
+// "byre map" as a user runs it: exit codes, what it says on which stream, and the files it leaves.
+
+#include "byre/cli/formatted.h"
+#include "byre/cli/program_fixture.h"
+#include "byre/cli/rendered_fixture.h"
+#include "byre/evaluation/trajectory_file.h"
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+std::string quoted(const fs::path& path) {
+  return formatted("'%s'", path.c_str());
+}
+
+class MapProgram : public ProgramTest {
+ protected:
+  Outcome map(const std::string& arguments) const {
+    return run("map " + quoted(RenderedFixture::shared().folder()) + " " + arguments);
+  }
+
+  // Starts the program with SIGINT as it is in a terminal.
+  pid_t start(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), BYRE_PROGRAM);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    const std::pair<int, fs::path> streams[] = {{1, folder_ / "stdout.txt"}, {2, folder_ / "stderr.txt"}};
+    for (const auto& [stream, path] : streams) {
+      posix_spawn_file_actions_addopen(&files, stream, path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    }
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &interrupt);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    pid_t process = -1;
+    EXPECT_EQ(posix_spawn(&process, BYRE_PROGRAM, &files, &attributes, pointers.data(), environ), 0);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    return process;
+  }
+
+  // Gives up after half a minute.
+  bool appears(const std::string& text, const std::string& file) const {
+    for (int i = 0; i < 3000; ++i) {
+      if (read(file).find(text) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  auto files_left() const { return std::distance(fs::directory_iterator(folder_), {}); }
+};
+
+TEST_F(MapProgram, ExplainsItself) {
+  const Outcome help = run("map --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output, AllOf(HasSubstr("--causal-trajectory"), HasSubstr("--pace"), HasSubstr("--stride"),
+                                 HasSubstr("Examples:\n  byre map MH_01_easy --trajectory out.txt\n")));
+}
+
+TEST_F(MapProgram, WritesWhatItWasAskedFor) {
+  const Outcome outcome = map("--trajectory final.txt --causal-trajectory causal.txt --stats stats.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const std::size_t frames = RenderedFixture::shared().truth().size();
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(frames));
+  EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(frames));
+  EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), frames);
+  EXPECT_THAT(outcome.output, HasSubstr("poses        24 of 24 frames (100.0 %)\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("written      final.txt, causal.txt, stats.json\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("24 of 24 frames, "));
+  EXPECT_EQ(files_left(), 5) << "three results and the two streams";
+}
+
+TEST_F(MapProgram, SaysNothingOnTheWayWhenQuiet) {
+  const Outcome outcome = map("--trajectory final.txt --frames 0:3 --quiet");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  EXPECT_THAT(outcome.output, StartsWith("recording    "));
+}
+
+TEST_F(MapProgram, MapsThePartAskedFor) {
+  EXPECT_EQ(map("--trajectory frames.txt --frames 4:12 --stride 2 --pace inline").exit_code, 0);
+  const Trajectory frames = read_trajectory(folder_ / "frames.txt");
+  ASSERT_THAT(frames, SizeIs(4));
+  EXPECT_EQ(frames.front().time, std::chrono::milliseconds(200));
+  EXPECT_EQ(frames.back().time, std::chrono::milliseconds(500));
+
+  EXPECT_EQ(map("--trajectory seconds.txt --start 0.1 --end 0.3 --pace live").exit_code, 0);
+  const Trajectory seconds = read_trajectory(folder_ / "seconds.txt");
+  ASSERT_THAT(seconds, SizeIs(4));
+  EXPECT_EQ(seconds.front().time, std::chrono::milliseconds(100));
+}
+
+TEST_F(MapProgram, RefusesWrongUsage) {
+  for (const char* const arguments :
+       {"", "--trajectory", "--trajectory out.txt --frames 5", "--trajectory out.txt --frames 9:3",
+        "--trajectory out.txt --start 2 --end 2", "--trajectory out.txt --start -1", "--trajectory out.txt --stride 0",
+        "--trajectory out.txt --pace fast", "--trajectory out.txt --stats ./out.txt",
+        "--trajectory out.txt another_recording"}) {
+    const Outcome outcome = map(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith("byre: error: ")) << arguments;
+    EXPECT_THAT(outcome.output, IsEmpty()) << arguments;
+  }
+  EXPECT_EQ(run("map --trajectory out.txt").exit_code, 2);
+}
+
+TEST_F(MapProgram, NamesBadInput) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"absent --trajectory out.txt", "byre: error: absent: is no folder"},
+      {". --trajectory out.txt", "byre: error: .: holds no recording that byre knows"},
+      {"absent --trajectory nowhere/out.txt",
+       "byre: error: nowhere/out.txt: cannot be written: its folder does not exist"},
+      {"absent --trajectory out.txt --stats .", "byre: error: .: is a folder"},
+      {quoted(RenderedFixture::shared().folder()) + " --trajectory out.txt --frames 100:", "byre: error: "},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run("map " + arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith(message));
+    EXPECT_THAT(outcome.output, IsEmpty()) << arguments;
+  }
+}
+
+TEST_F(MapProgram, NeedsStereo) {
+  const RenderedFixture monocular("byre_monocular_room", 2, 20.0);
+  fs::remove_all(monocular.folder() / "mav0" / "cam1");
+  const Outcome outcome = run("map " + quoted(monocular.folder()) + " --trajectory out.txt");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("has no right camera: only stereo recordings can be mapped"));
+}
+
+TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {
+  const RenderedFixture blind("byre_blind_room", 2, 20.0);
+  fs::remove(blind.image("cam1", 0));
+  const Outcome outcome =
+      run("map " + quoted(blind.folder()) + " --frames 0:1 --trajectory out.txt --stats stats.json");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: error: no frame got a pose"));
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: warning: "));
+  EXPECT_EQ(json::parse(read("stats.json")).at("counts").at("frames_without_right_image"), 1);
+}
+
+TEST_F(MapProgram, StopsAtCtrlCAndStillWritesEverything) {
+  const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live, its second frame is due in an hour
+  const pid_t process =
+      start({"map", slow.folder().string(), "--pace", "live", "--trajectory", (folder_ / "final.txt").string(),
+             "--causal-trajectory", (folder_ / "causal.txt").string(), "--stats", (folder_ / "stats.json").string()});
+  ASSERT_GT(process, 0);
+  EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
+  kill(process, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(process, &status, 0), process);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(1));
+  EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
+  EXPECT_EQ(json::parse(read("stats.json")).at("stopped_early"), true);
+  EXPECT_THAT(read("stdout.txt"), HasSubstr("2 frames, stopped after 1\n"));
+}
+
+}  // namespace
+}  // namespace byre::cli

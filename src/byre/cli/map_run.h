@@ -1,0 +1,72 @@
+#pragma once
+
+#include "byre/dataset/recording.h"
+#include "byre/features/extract.h"
+#include "byre/session/session.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre::cli {
+
+// Where mapping runs, and how fast frames are fed.
+//   same_thread  on the frame thread ("inline"), frames as fast as possible
+//   paced        on a worker, taken over kPacedLatency frames later, frames as fast as possible: repeatable
+//   live         on a worker, taken over when ready, frames at the recording's own time stamps; none is dropped
+enum class Pace : std::uint8_t { same_thread, paced, live };
+
+std::string_view name_of(Pace pace);  // as on the command line
+
+inline constexpr int kPacedLatency = 4;  // frames
+
+struct MapRunOptions {
+  Pace pace = Pace::paced;
+  ExtractOptions extract;
+  SessionOptions session;
+};
+
+// Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
+struct StageSeconds {
+  double decode = 0.0;  // ahead, in a thread of its own; not in total
+  double rectify = 0.0;
+  double extract = 0.0;
+  double stereo = 0.0;
+  double track = 0.0;
+  double map = 0.0;         // windows, deltas, new points, and jobs where they run on this thread
+  double map_submit = 0.0;  // of map: handing jobs to the executor, so the whole job where it runs on this thread
+  double total = 0.0;       // from the images in memory to the report
+};
+
+struct MappedFrame {
+  Timestamp time{};
+  bool has_right = false;
+  std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
+  StageSeconds seconds;
+};
+
+struct MapRun {
+  std::vector<MappedFrame> frames;  // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                // poses as published when their frames came
+  Trajectory final;                 // as recomputed after the last frame
+  int keyframes_left = 0;           // of those made, others were found redundant
+  int points_left = 0;
+  std::vector<double> job_seconds;    // wall time of each mapping job
+  std::vector<std::string> warnings;  // of the recording
+  std::vector<double> lateness;       // live: seconds by which frames were fed too late, of those that were
+  double wall_seconds = 0.0;          // of it all
+};
+
+struct MapRunHooks {
+  std::function<bool()> should_stop;                                    // asked before each frame
+  std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
+};
+
+// Maps a stereo recording from its first to its last frame. Frames whose images cannot be read are left out.
+// Throws InputError when its calibration cannot be rectified.
+MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks);
+
+}  // namespace byre::cli

@@ -1,0 +1,104 @@
+#include "byre/cli/map_run.h"
+
+#include "byre/cli/map_statistics.h"
+#include "byre/cli/rendered_fixture.h"
+#include "byre/evaluation/trajectory_error.h"
+
+#include <gmock/gmock.h>
+
+namespace byre::cli {
+namespace {
+
+using testing::Each;
+using testing::Gt;
+using testing::SizeIs;
+
+MapRun run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
+  const auto recording = open_recording(rendered.folder(), {});
+  MapRunOptions options;
+  options.pace = pace;
+  int frames_done = 0;
+  MapRunHooks hooks;
+  hooks.should_stop = [&] { return frames_done == stop_after; };
+  hooks.after_frame = [&frames_done](int done, const MappedFrame&) { frames_done = done; };
+  return run_map(*recording, options, hooks);
+}
+
+double error_m(const Trajectory& estimate, const Trajectory& truth) {
+  const auto error = absolute_trajectory_error(associate(estimate, truth, {}), Scale::fixed);
+  return error ? error->translation.rmse : -1.0;
+}
+
+std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const StampedPose& sample : trajectory) positions.push_back(sample.world_from_body.translation);
+  return positions;
+}
+
+TEST(RunMap, FollowsARecordingInEveryPace) {
+  const RenderedFixture& rendered = RenderedFixture::shared();
+  for (const Pace pace : {Pace::same_thread, Pace::paced, Pace::live}) {
+    SCOPED_TRACE(name_of(pace));
+    const MapRun mapped = run(rendered, pace);
+    EXPECT_THAT(mapped.frames, SizeIs(rendered.truth().size()));
+    EXPECT_THAT(mapped.causal, SizeIs(rendered.truth().size()));
+    EXPECT_THAT(mapped.final, SizeIs(rendered.truth().size()));
+    EXPECT_LT(error_m(mapped.causal, rendered.truth()), 0.1);
+    EXPECT_LT(error_m(mapped.final, rendered.truth()), 0.1);
+    EXPECT_GT(mapped.keyframes_left, 1);
+    EXPECT_GT(mapped.points_left, 100);
+    EXPECT_FALSE(mapped.job_seconds.empty());
+  }
+}
+
+TEST(RunMap, RepeatsItselfWhenPaced) {
+  const MapRun first = run(RenderedFixture::shared(), Pace::paced);
+  const MapRun second = run(RenderedFixture::shared(), Pace::paced);
+  EXPECT_EQ(positions(first.causal), positions(second.causal));
+  EXPECT_EQ(positions(first.final), positions(second.final));
+}
+
+TEST(RunMap, NotesInWhichFrameAJobRanWhereTheyShareAThread) {
+  const MapRun mapped = run(RenderedFixture::shared(), Pace::same_thread);
+  int taken_over = 0;
+  for (std::size_t i = 1; i < mapped.frames.size(); ++i) {
+    const std::optional<double> job_before = mapped.frames[i].report->job_seconds;
+    const StageSeconds& before = mapped.frames[i - 1].seconds;
+    EXPECT_GE(before.map_submit, job_before.value_or(0.0));
+    EXPECT_GE(before.map, before.map_submit);
+    EXPECT_GE(before.total, before.map + before.track);
+    taken_over += job_before ? 1 : 0;
+  }
+  EXPECT_GT(taken_over, 0);
+}
+
+TEST(RunMap, StopsAfterTheFrameItIsAt) {
+  const MapRun mapped = run(RenderedFixture::shared(), Pace::paced, 5);
+  EXPECT_THAT(mapped.frames, SizeIs(5));
+  EXPECT_THAT(mapped.causal, SizeIs(5));
+  EXPECT_THAT(mapped.final, SizeIs(5));
+}
+
+TEST(RunMap, GoesOnPastImagesThatAreTornOrAbsent) {
+  const RenderedFixture damaged("byre_damaged_room", 12, 20.0);
+  std::filesystem::resize_file(damaged.image("cam0", 4), 100);
+  std::filesystem::remove(damaged.image("cam1", 7));
+  const MapRun mapped = run(damaged, Pace::same_thread);
+  const FrameCounts counts = count_frames(mapped.frames);
+  EXPECT_EQ(counts.frames, 12);
+  EXPECT_EQ(counts.unreadable, 1);
+  EXPECT_EQ(counts.without_right_image, 1);
+  EXPECT_EQ(counts.with_pose, 11);
+  EXPECT_FALSE(mapped.frames[4].report);
+  EXPECT_FALSE(mapped.frames[7].has_right);
+  EXPECT_THAT(mapped.warnings, SizeIs(2));
+  EXPECT_THAT(mapped.final, SizeIs(11));
+}
+
+TEST(RunMap, CountsLateFramesOnlyWhenLive) {
+  EXPECT_THAT(run(RenderedFixture::shared(), Pace::paced).lateness, SizeIs(0));
+  EXPECT_THAT(run(RenderedFixture::shared(), Pace::live).lateness, Each(Gt(0.0)));
+}
+
+}  // namespace
+}  // namespace byre::cli

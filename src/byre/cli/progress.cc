@@ -1,0 +1,66 @@
+#include "byre/cli/progress.h"
+
+#include "byre/cli/formatted.h"
+
+#include <cmath>
+#include <ostream>
+
+namespace byre::cli {
+namespace {
+
+constexpr double kBarInterval_s = 0.1;
+constexpr double kLineInterval_s = 10.0;
+constexpr int kLineShares = 10;
+constexpr int kBarWidth = 24;  // characters
+
+std::string bar(int done, int total) {
+  const auto filled = static_cast<std::size_t>(static_cast<std::int64_t>(kBarWidth) * done / total);
+  return std::string(kBarWidth, '.').replace(0, filled, filled, '#');
+}
+
+std::string describe(int done, int total, double elapsed_s, std::string_view state) {
+  std::string text = formatted("%d of %d frames", done, total);
+  if (elapsed_s > 0.0) {
+    const double rate = done / elapsed_s;
+    text += formatted(", %.1f frames/s, %s left", rate, format_duration((total - done) / rate).c_str());
+  }
+  return text + ", " + std::string(state);
+}
+
+}  // namespace
+
+bool Progress::is_due(int done, double elapsed_s) const {
+  if (style_ == ProgressStyle::none) return false;
+  if (shown_done_ == 0 || done == total_) return true;
+  const double since_shown_s = elapsed_s - shown_elapsed_s_;
+  if (style_ == ProgressStyle::bar) return since_shown_s >= kBarInterval_s;
+  const auto share = [this](int frames) { return static_cast<std::int64_t>(kLineShares) * frames / total_; };
+  return share(done) > share(shown_done_) || since_shown_s >= kLineInterval_s;
+}
+
+void Progress::update(int done, double elapsed_s, std::string_view state) {
+  if (!is_due(done, elapsed_s)) return;
+  const std::string text = describe(done, total_, elapsed_s, state);
+  if (style_ == ProgressStyle::bar) {
+    constexpr const char* kClearToEnd = "\x1b[K";
+    stream_ << "\r[" << bar(done, total_) << "] " << text << kClearToEnd << std::flush;
+  } else {
+    stream_ << text << std::endl;
+  }
+  shown_done_ = done;
+  shown_elapsed_s_ = elapsed_s;
+}
+
+void Progress::close() {
+  if (style_ == ProgressStyle::bar && shown_done_ > 0) stream_ << std::endl;
+  shown_done_ = 0;
+}
+
+std::string format_duration(double seconds) {
+  const auto total = static_cast<long long>(std::ceil(seconds));
+  const long long hours = total / 3600, minutes = total / 60 % 60;
+  if (hours > 0) return formatted("%lld:%02lld:%02lld", hours, minutes, total % 60);
+  return formatted("%lld:%02lld", minutes, total % 60);
+}
+
+}  // namespace byre::cli

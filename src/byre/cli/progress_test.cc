@@ -1,0 +1,56 @@
+#include "byre/cli/progress.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace byre::cli {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string shown(ProgressStyle style, int total, double seconds_per_frame) {
+  std::ostringstream stream;
+  Progress progress(stream, style, total);
+  for (int done = 1; done <= total; ++done) progress.update(done, done * seconds_per_frame, "tracking");
+  progress.close();
+  return stream.str();
+}
+
+TEST(Progress, PrintsTheFirstFrameAndEachTenthAsLines) {
+  const std::string text = shown(ProgressStyle::lines, 1000, 0.01);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 11);
+  EXPECT_THAT(text, StartsWith("1 of 1000 frames, 100.0 frames/s, 0:10 left, tracking\n100 of 1000 frames, "));
+  EXPECT_THAT(text, EndsWith("1000 of 1000 frames, 100.0 frames/s, 0:00 left, tracking\n"));
+}
+
+TEST(Progress, PrintsALineAfterTenSecondsWhenFramesAreSlow) {
+  EXPECT_EQ(std::ranges::count(shown(ProgressStyle::lines, 1000, 1.0), '\n'), 101);
+}
+
+TEST(Progress, RedrawsTheBarInOneLine) {
+  const std::string text = shown(ProgressStyle::bar, 100, 0.0625);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1);
+  EXPECT_EQ(std::ranges::count(text, '\r'), 51);
+  EXPECT_THAT(text, HasSubstr("\r[............"));
+  EXPECT_THAT(text, HasSubstr("\r[############............] 51 of 100 frames"));
+  EXPECT_THAT(text,
+              EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\n"));
+}
+
+TEST(Progress, IsSilentWhenToldSo) {
+  EXPECT_EQ(shown(ProgressStyle::none, 100, 1.0), "");
+}
+
+TEST(FormatDuration, CountsHoursOnlyWhereThereAreSome) {
+  EXPECT_EQ(format_duration(0.0), "0:00");
+  EXPECT_EQ(format_duration(6.2), "0:07");
+  EXPECT_EQ(format_duration(754.0), "12:34");
+  EXPECT_EQ(format_duration(3723.0), "1:02:03");
+}
+
+}  // namespace
+}  // namespace byre::cli
