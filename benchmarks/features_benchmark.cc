@@ -1,0 +1,110 @@
+#include "byre/features/extract.h"
+#include "byre/features/image_threads.h"
+#include "byre/features/match.h"
+#include "byre/features/rectify.h"
+#include "byre/features/stereo.h"
+#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/simulated_mission.h"
+
+#include <algorithm>
+
+#include <benchmark/benchmark.h>
+
+namespace byre {
+namespace {
+
+struct RenderedPair {
+  Calibration calibration;
+  ImageFrame images;
+};
+
+// Of EuRoC's resolution. One for the whole process: rendering it takes longer than most benchmarks.
+const RenderedPair& rendered_pair() {
+  static const RenderedPair pair = [] {
+    limit_image_threads(1);
+    const Calibration calibration = euroc_like_calibration(1);
+    const Trajectory truth = figure_eight_trajectory(2, 1.0, 3.0, 0.1, calibration.body_from_left);
+    return RenderedPair{calibration, RenderedRoom({}).render(calibration, truth.front().world_from_body, {})};
+  }();
+  return pair;
+}
+
+cv::Mat as_matrix(const Image& image) {
+  return cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())).clone();
+}
+
+// What stereo matching starts from.
+struct DetectedPair {
+  Rig rig;
+  Pyramid left;
+  Pyramid right;
+  std::vector<Keypoint> keypoints;
+};
+
+DetectedPair detected_pair() {
+  const auto& [calibration, images] = rendered_pair();
+  const Rectifier rectifier(calibration);
+  DetectedPair pair;
+  pair.rig = rectifier.rig();
+  build_pyramid(rectifier.left(as_matrix(images.left)), pair.left);
+  build_pyramid(rectifier.right(as_matrix(*images.right)), pair.right);
+  pair.keypoints = Extractor(calibration, {}).extract({{}, images.left, {}}).frame.features->keypoints();
+  return pair;
+}
+
+void extract_images(benchmark::State& state, const ImageFrame& images) {
+  Extractor extractor(rendered_pair().calibration, {});
+  ExtractTimes total;
+  int features = 0;
+  for (auto _ : state) {
+    const Extraction extraction = extractor.extract(images);
+    features = extraction.frame.features->size();
+    total.rectify += extraction.times.rectify;
+    total.extract += extraction.times.extract;
+    total.stereo += extraction.times.stereo;
+  }
+  const auto mean_ms = [](double seconds) {
+    return benchmark::Counter(1e3 * seconds, benchmark::Counter::kAvgIterations);
+  };
+  state.counters["features"] = features;
+  state.counters["rectify_ms"] = mean_ms(total.rectify);
+  state.counters["extract_ms"] = mean_ms(total.extract);
+  state.counters["stereo_ms"] = mean_ms(total.stereo);
+}
+
+void extract_left_image(benchmark::State& state) {
+  extract_images(state, {{}, rendered_pair().images.left, {}});
+}
+BENCHMARK(extract_left_image)->Unit(benchmark::kMillisecond);
+
+void extract_stereo_pair(benchmark::State& state) {
+  extract_images(state, rendered_pair().images);
+}
+BENCHMARK(extract_stereo_pair)->Unit(benchmark::kMillisecond);
+
+void match_stereo_pair(benchmark::State& state) {
+  const DetectedPair pair = detected_pair();
+  std::vector<std::optional<StereoMatch>> matches;
+  for (auto _ : state) matches = match_stereo(pair.left, pair.right, pair.rig, pair.keypoints, {});
+  state.counters["features"] = static_cast<double>(matches.size());
+  state.counters["matched"] =
+      static_cast<double>(std::ranges::count_if(matches, [](const auto& match) { return match.has_value(); }));
+}
+BENCHMARK(match_stereo_pair)->Unit(benchmark::kMillisecond);
+
+// Every descriptor against every one, as relocalisation does.
+void match_all_descriptors(benchmark::State& state) {
+  SimulationOptions options;
+  options.landmarks = 12000;
+  const auto mission = simulate_mission(simulated_rig(), circling_trajectory(2, 10.0, 2.0, 0.01), options);
+  const Features& first = *mission.frames[0].features;
+  const Features& second = *mission.frames[1].features;
+  std::vector<Match> matches;
+  for (auto _ : state) matches = match_features(first, second, {});
+  state.counters["features"] = first.size();
+  state.counters["matched"] = static_cast<double>(matches.size());
+}
+BENCHMARK(match_all_descriptors)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace byre
