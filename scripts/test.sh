@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks everything: builds the release, runs all tests, checks the formatting, then runs the unit tests under the
-# address and undefined-behaviour sanitizers and those of the threads under the thread sanitizer.
+# Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
+# benchmark runs), checks the formatting, then runs the unit tests under the address and undefined-behaviour sanitizers
+# and those of the threads under the thread sanitizer. Says which tests were skipped for lack of their recordings.
 # Usage: test.sh [--quick]        --quick leaves the sanitizers out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,6 +15,7 @@ esac
 
 passed=0
 failed=0
+skipped=0
 
 # The sanitizers of GCC 12 cannot start where the kernel spreads addresses wider than they expect.
 runner=()
@@ -21,14 +23,23 @@ runner=()
 
 headline() { printf '\n== %s\n' "$1"; }
 
-# Runs the tests of a preset and adds up what ctest's closing line says.
+# Why tests of a preset were skipped, in their own words.
+print_skips() {
+  local output=build/$1/Testing/Temporary/LastTest.log
+  grep -A1 -E ': Skipped$' "$output" | grep -vE '^--$|: Skipped$' | sort -u | sed 's/^/Skipped: /' || true
+}
+
+# Runs the tests of a preset and adds up what ctest's closing lines say; it counts skipped tests among the passed ones.
 run_tests() {
-  local preset=$1 log=build/$1/tests.log closing
+  local preset=$1 log=build/$1/tests.log closing skips
   "${runner[@]}" ctest --preset "$preset" --parallel "$(nproc)" | tee "$log" || true
   closing=$(grep -E 'tests? failed out of' "$log") || { echo "test.sh: no tests ran under $preset" >&2; exit 1; }
   [[ $closing =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]
   failed=$((failed + BASH_REMATCH[1]))
-  passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1]))
+  skips=$(grep -cE '^[[:space:]]+[0-9]+ - .* \(Skipped\)$' "$log" || true)
+  passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - skips))
+  skipped=$((skipped + skips))
+  ((skips == 0)) || print_skips "$preset"
 }
 
 check_format() {
@@ -61,5 +72,7 @@ if ! $quick; then
   run_tests tsan
 fi
 
-printf '\n%d passed, %d failed\n' "$passed" "$failed"
+echo
+((skipped == 0)) || echo "$skipped skipped, see above for why"
+echo "$passed passed, $failed failed"
 ((failed == 0))

@@ -1,0 +1,41 @@
+// KITTI odometry 00 (Geiger 2012), its first 60 rectified stereo pairs: a car that drives 55 m along a street.
+
+#include "mapped_recording.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr const char* kName = "kitti/sequences/00";
+
+Trajectory part(const Trajectory& trajectory, std::ptrdiff_t first, std::ptrdiff_t last) {
+  return {trajectory.begin() + first, trajectory.begin() + last + 1};
+}
+
+class Kitti00 : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!find_recording(kName)) GTEST_SKIP() << missing(kName);
+  }
+
+  static const MappedRecording& inline_run() {
+    static const MappedRecording mapped = map_recording(*find_recording(kName), {}, make_inline_executor());
+    return mapped;
+  }
+};
+
+TEST_F(Kitti00, EveryFrameHasAPose) {
+  EXPECT_EQ(inline_run().frame_times.size(), 60);
+  EXPECT_EQ(frames_without_pose(inline_run()), 0);
+}
+
+// Only frames 17 to 38 are judged, where the truth is smooth. Its first 17 poses are a constant step of 0.859 m apart,
+// although the images show the car accelerating from 0.68 m a frame, and it jumps at frames 39 to 45.
+TEST_F(Kitti00, FinalTrajectoryIsTrueToCentimetresWhereTheTruthIsSmooth) {
+  ASSERT_EQ(frames_without_pose(inline_run()), 0);
+  EXPECT_LE(position_error(part(inline_run().final, 17, 38), truth_of(*find_recording(kName))), 0.03);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "byre/dataset/recording.h"
+#include "byre/evaluation/trajectory_error.h"
+#include "byre/session/session.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// What byre makes of a recording, with the options a user gets. Trajectories are world_from_body.
+struct MappedRecording {
+  std::vector<Timestamp> frame_times;
+  Trajectory causal;  // poses as they were published when their frame came
+  Trajectory final;   // the same frames after all corrections
+};
+
+MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,
+                              std::unique_ptr<Executor> executor);
+
+// Frames that have no final pose.
+int frames_without_pose(const MappedRecording& mapped);
+
+// The ground truth of a recording. Throws InputError when there is none.
+Trajectory truth_of(const std::filesystem::path& folder);
+
+// Root mean square of the position error after rigid alignment, metres; infinite when the estimate cannot be aligned.
+double position_error(const Trajectory& estimate, const Trajectory& truth, const AssociationOptions& options = {});
+
+// The bytes of the file that the trajectory is written to.
+std::string written(const Trajectory& trajectory);
+
+// Where a real recording lies; empty when it is not there.
+std::optional<std::filesystem::path> find_recording(const std::filesystem::path& name);
+
+// Why a test without its recording is skipped, and how to have it run.
+std::string missing(const std::filesystem::path& name);
+
+}  // namespace byre
