@@ -92,6 +92,7 @@ ExitCode run_map_command(const MapOptions& options, std::ostream& result) {
   MapProtocol protocol{
       options.recording.string(), guess_format(options.recording), options.range, recording->size(), {}};
   protocol.options.pace = options.pace;
+  protocol.options.extract.refinement = options.refinement;
 
   limit_image_threads(1);
   const InterruptCatcher interrupt;

@@ -32,6 +32,7 @@ Json options_json(const MapRunOptions& options) {
   return {{"max_features", options.extract.max_features},
           {"fast_threshold", options.extract.fast_threshold},
           {"min_fast_threshold", options.extract.min_fast_threshold},
+          {"refinement", name_of(options.extract.refinement)},
           {"min_initial_points", options.session.min_initial_points},
           {"local_keyframes", options.session.local_keyframes},
           {"movable_keyframes", options.session.mapping.window.movable},

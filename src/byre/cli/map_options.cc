@@ -99,6 +99,14 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   command.add_option("--pace", options.pace, "Where mapping runs and how fast frames are fed (paced)")
       ->type_name("inline|paced|live")
       ->transform(CLI::CheckedTransformer(paces).description(""));
+  std::map<std::string, Refinement> refinements;
+  for (const Refinement refinement : {Refinement::none, Refinement::stereo, Refinement::all}) {
+    refinements.emplace(name_of(refinement), refinement);
+  }
+  command
+      .add_option("--refine", options.refinement, "Matches refined in the image; less than all is for comparison (all)")
+      ->type_name("none|stereo|all")
+      ->transform(CLI::CheckedTransformer(refinements).description(""));
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.parse_complete_callback([&options] { require_sense(options); });
   command.footer(kFooter);

@@ -19,6 +19,7 @@ struct MapOptions {
   std::optional<std::filesystem::path> stats;
   FrameRange range;
   Pace pace = Pace::paced;
+  Refinement refinement = Refinement::all;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

@@ -117,6 +117,18 @@ Described Extractor::State::describe_all() {
   return described;
 }
 
+std::string_view name_of(Refinement refinement) {
+  switch (refinement) {
+    case Refinement::none:
+      return "none";
+    case Refinement::stereo:
+      return "stereo";
+    case Refinement::all:
+      return "all";
+  }
+  return "";
+}
+
 Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
     : state_(new State{calibration, Rectifier(calibration), options, {}, {}, {}}) {}
 Extractor::~Extractor() = default;

@@ -6,11 +6,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 namespace byre {
 
 // Which matches are refined in the image to a fraction of a pixel. Anything less than all is for comparison.
 enum class Refinement : std::uint8_t { none, stereo, all };  // stereo: left to right only; all: over time too
+
+std::string_view name_of(Refinement refinement);
 
 struct ExtractOptions {
   int max_features = 1000;
