@@ -30,6 +30,7 @@ SimulatedMission simulate(const Trajectory& truth, std::uint64_t seed) {
   SimulationOptions options;
   options.seed = seed;
   options.noise_seed = seed;
+  options.pixel_sigma = 0.8;  // what a corner without a patch is taken to have
   return simulate_mission(simulated_rig(robot_from_camera()), truth, options);
 }
 

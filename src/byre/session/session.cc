@@ -113,7 +113,7 @@ std::optional<TrackedFrame> Session::find_pose(const Frame& frame) const {
 void Session::remember(const Frame& frame, const TrackedFrame& tracked) {
   const double elapsed = to_seconds(frame.time - anchored_.back().time);
   const Pose motion = tracked.camera_from_world * inverse(last_camera_from_world());
-  velocity_ = state_ == State::tracking && elapsed > 0.0 ? Vector6(log_pose(motion) / elapsed) : Vector6::Zero();
+  velocity_ = elapsed > 0.0 ? Vector6(log_pose(motion) / elapsed) : Vector6::Zero();
   last_inliers_ = static_cast<int>(tracked.features.size());
   anchored_.push_back({frame.time, tracked.reference,
                        tracked.camera_from_world * inverse(online_.camera_from_world(tracked.reference))});
@@ -154,8 +154,9 @@ FrameReport Session::report_of(const Frame& frame, const std::optional<TrackedFr
   report.expected_points = tracked->expected;
   report.matches = tracked->matches;
   report.inliers = static_cast<int>(tracked->features.size());
-  report.covariance =
-      move_covariance(tracked->covariance, rig_.body_from_camera);  // from left of the camera to the body
+  // Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
+  constexpr double kNeglectedCorrelation = 1.1;
+  report.covariance = kNeglectedCorrelation * move_covariance(tracked->covariance, rig_.body_from_camera);
   return report;
 }
 

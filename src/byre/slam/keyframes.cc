@@ -56,8 +56,9 @@ Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig)
   keyframe.camera_from_world = tracked.camera_from_world;
   keyframe.covariance = tracked.covariance;
   keyframe.parent = tracked.reference;
-  for (const Keypoint& keypoint : frame.features->keypoints()) {
-    keyframe.sightings.push_back({std::nullopt, keypoint.pixel, reference_sigma(keypoint)});
+  for (int i = 0; i < frame.features->size(); ++i) {
+    keyframe.sightings.push_back(
+        {std::nullopt, frame.features->keypoint(i).pixel, reference_sigma(*frame.features, i)});
   }
   for (const TrackedFeature& feature : tracked.features) {
     keyframe.sightings[static_cast<std::size_t>(feature.feature)] = {feature.point, feature.pixel, feature.pixel_sigma};
@@ -90,7 +91,7 @@ int add_stereo_points(Map& map, KeyframeId id) {
     if (keyframe.sightings[static_cast<std::size_t>(feature)].point || !has_trustworthy_disparity(keypoint)) continue;
     const Eigen::Vector3d point_in_camera =
         rig.triangulate({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity});
-    const float sigma = reference_sigma(keypoint);
+    const float sigma = reference_sigma(*keyframe.frame.features, feature);
     const Eigen::Matrix3d covariance =
         stereo_covariance(rig, keyframe.camera_from_world, point_in_camera, sigma, keypoint.disparity_sigma);
     const PointId point = map.add_point(make_point(world_from_camera * point_in_camera, covariance, {id, feature},

@@ -174,7 +174,7 @@ class ManyMeasurementsOfOnePoint : public ::testing::Test {
     Keypoint keypoint;
     keypoint.octave = 2;
     keypoint.disparity_sigma = 0.4f;
-    const double sigma = reference_sigma(keypoint);
+    const double sigma = reference_sigma(Features(rig.width, rig.height, {keypoint}, {{}}, {}), 0);
     std::vector<Keypoint> keypoints;
     for (int i = 0; i < kMeasurements; ++i) {
       keypoint.pixel = (true_pixel.head<2>() + sigma * Eigen::Vector2d(noise(random), noise(random))).cast<float>();

@@ -99,7 +99,7 @@ std::optional<TriangulatedPoint> triangulate_match(const CameraView& first, int 
       measure_pixel({first, first_feature, first_keypoint.pixel}, *rough, second, second_feature);
   const auto point = triangulate_pixels(first, first_keypoint.pixel, second, measured.pixel);
   if (!point) return std::nullopt;
-  const double first_sigma = reference_sigma(first_keypoint);
+  const double first_sigma = reference_sigma(first.features, first_feature);
   // The poses are not exact either: half a pixel at least is granted.
   const double allowed_sigma = std::hypot(static_cast<double>(measured.sigma), 0.5);
   if (!agrees(first, *point, first_keypoint.pixel, allowed_sigma, options.max_squared_error_mono) ||
@@ -137,7 +137,8 @@ void triangulate_pair(MapWindow& window, int first, int second, const MappingOpt
                              0,
                              false});
     const int index = static_cast<int>(window.points.size()) - 1;
-    add_observation(window, index, {first, feature.index}, {std::nullopt, keypoint.pixel, reference_sigma(keypoint)});
+    add_observation(window, index, {first, feature.index},
+                    {std::nullopt, keypoint.pixel, reference_sigma(first_view.features, feature.index)});
     add_observation(window, index, {second, *match}, {std::nullopt, point->second.pixel, point->second.sigma});
   }
 }

@@ -34,8 +34,8 @@ PixelMeasurement corner_measurement(const Keypoint& keypoint) {
   return {keypoint.pixel, kCornerSigma * scale_of(keypoint), false};
 }
 
-float reference_sigma(const Keypoint& keypoint) {
-  return kModelSigma * scale_of(keypoint);
+float reference_sigma(const Features& features, int feature) {
+  return (features.has_patches() ? kModelSigma : kCornerSigma) * scale_of(features.keypoint(feature));
 }
 
 PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vector3d& point_in_world,

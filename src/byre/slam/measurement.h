@@ -34,7 +34,7 @@ PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vect
 // The measurement a detected corner is by itself.
 PixelMeasurement corner_measurement(const Keypoint& keypoint);
 
-// The precision of a point's own reference pixel, which defines it.
-float reference_sigma(const Keypoint& keypoint);
+// The precision of a point's own reference pixel, which defines it; a corner's where no patch was kept, pixels.
+float reference_sigma(const Features& features, int feature);
 
 }  // namespace byre
