@@ -33,49 +33,50 @@ class InlineExecutor final : public Executor {
   std::future<FinishedJob> result_;
 };
 
-class PacedExecutor final : public Executor {
+// Runs each job on a thread of its own; when its result is handed over is left open.
+class WorkerExecutor : public Executor {
+ public:
+  void submit(MappingJob job) override {
+    assert(idle());
+    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
+  }
+  std::optional<FinishedJob> finish() override {
+    if (idle()) return std::nullopt;
+    return result_.get();
+  }
+  bool idle() const override { return !result_.valid(); }
+
+ protected:
+  bool is_done() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+
+ private:
+  std::future<FinishedJob> result_;
+};
+
+class PacedExecutor final : public WorkerExecutor {
  public:
   explicit PacedExecutor(int latency) : latency_(latency) { assert(latency > 0); }
 
   void submit(MappingJob job) override {
-    assert(idle());
-    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
+    WorkerExecutor::submit(std::move(job));
     frames_left_ = latency_;
   }
   std::optional<FinishedJob> collect() override {
     if (idle() || --frames_left_ > 0) return std::nullopt;
-    return result_.get();
+    return finish();
   }
-  std::optional<FinishedJob> finish() override {
-    if (idle()) return std::nullopt;
-    return result_.get();
-  }
-  bool idle() const override { return !result_.valid(); }
 
  private:
   const int latency_;  // frames
   int frames_left_ = 0;
-  std::future<FinishedJob> result_;
 };
 
-class LiveExecutor final : public Executor {
+class LiveExecutor final : public WorkerExecutor {
  public:
-  void submit(MappingJob job) override {
-    assert(idle());
-    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
-  }
   std::optional<FinishedJob> collect() override {
-    if (idle() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
-    return result_.get();
+    if (idle() || !is_done()) return std::nullopt;
+    return finish();
   }
-  std::optional<FinishedJob> finish() override {
-    if (idle()) return std::nullopt;
-    return result_.get();
-  }
-  bool idle() const override { return !result_.valid(); }
-
- private:
-  std::future<FinishedJob> result_;
 };
 
 }  // namespace
