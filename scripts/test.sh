@@ -23,7 +23,7 @@ runner=()
 
 headline() { printf '\n== %s\n' "$1"; }
 
-# Why tests of a preset were skipped, in their own words.
+# Why tests of a preset were skipped, in their own words; also those within a program that ran others.
 print_skips() {
   local output=build/$1/Testing/Temporary/LastTest.log
   grep -A1 -E ': Skipped$' "$output" | grep -vE '^--$|: Skipped$' | sort -u | sed 's/^/Skipped: /' || true
@@ -39,7 +39,7 @@ run_tests() {
   skips=$(grep -cE '^[[:space:]]+[0-9]+ - .* \(Skipped\)$' "$log" || true)
   passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - skips))
   skipped=$((skipped + skips))
-  ((skips == 0)) || print_skips "$preset"
+  print_skips "$preset"
 }
 
 check_format() {
@@ -73,6 +73,6 @@ if ! $quick; then
 fi
 
 echo
-((skipped == 0)) || echo "$skipped skipped, see above for why"
+((skipped == 0)) || echo "$skipped skipped"
 echo "$passed passed, $failed failed"
 ((failed == 0))
