@@ -76,7 +76,7 @@ std::string header(const EvaluationReport& report, const std::string& estimate_f
 
 std::string row(const char* name, const ErrorStatistics& errors) {
   if (errors.count == 0) return formatted("%-22s no pair of poses is that far apart\n", name);
-  return formatted("%-22s %9.4f %9.4f %9.4f %9.4f %9.4f %8d\n", name, errors.rmse, errors.mean, errors.median,
+  return formatted("%-22s %9.5f %9.5f %9.5f %9.5f %9.5f %8d\n", name, errors.rmse, errors.mean, errors.median,
                    errors.p95, errors.max, errors.count);
 }
 

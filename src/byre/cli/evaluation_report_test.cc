@@ -58,8 +58,8 @@ TEST(EvaluationReport, SaysSoWhenTheKindOfPosesIsNotStated) {
 
 TEST(EvaluationReport, HasARowForEachError) {
   const std::string text = to_text(report_of(scaled(circle(), 1.1), Alignment::none), "a", "b");
-  EXPECT_THAT(text, HasSubstr("ATE            m          0.2000    0.2000    0.2000    0.2000    0.2000      101\n"));
-  EXPECT_THAT(text, HasSubstr("ATE            degrees    0.0000"));
+  EXPECT_THAT(text, HasSubstr("ATE            m         0.20000   0.20000   0.20000   0.20000   0.20000      101\n"));
+  EXPECT_THAT(text, HasSubstr("ATE            degrees   0.00000"));
   for (const char* const row : {"RPE 1 frame    m", "RPE 1 s        degrees", "RPE 1 m        m"}) {
     EXPECT_THAT(text, HasSubstr(row));
   }

@@ -95,7 +95,7 @@ TEST_F(Program, EvaluatesAgainstTheTruthOfKitti) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("poses        final\n"));
   EXPECT_THAT(outcome.output, HasSubstr("coverage     100.0 % (20 of 20 times in times.txt)\n"));
-  EXPECT_THAT(outcome.output, HasSubstr("ATE            m          0.0000"));
+  EXPECT_THAT(outcome.output, HasSubstr("ATE            m         0.00000"));
   EXPECT_THAT(outcome.errors, IsEmpty());
 }
 
