@@ -27,9 +27,9 @@ Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world,
 }  // namespace
 
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options) {
-  if (evidence.pending >= options.max_pending) return false;
   const int inliers = static_cast<int>(tracked.features.size());
   const bool weak = inliers < options.min_tracked;
+  if (evidence.pending >= (weak ? options.max_pending_when_weak : options.max_pending)) return false;
   if (weak) return true;
   if (evidence.frames_since_last < options.min_frames) return false;
   return inliers < options.min_tracked_share * evidence.fresh_inliers || evidence.turn > options.max_turn ||

@@ -8,12 +8,13 @@
 namespace byre {
 
 struct KeyframeOptions {
-  double min_tracked_share = 0.75;  // of the points that the reference keyframe has: fewer ask for a keyframe
+  double min_tracked_share = 0.75;  // of the points tracked right after the last keyframe: fewer ask for another
   int min_tracked = 100;            // points: fewer ask for one too
   double max_turn = 0.25;           // radians of rotation since the last keyframe
   double max_shift_share = 0.15;    // of the median depth, translation since the last keyframe
   int min_frames = 2;               // between keyframes, unless tracking is about to fail
-  int max_pending = 3;              // keyframes that wait for mapping; more are not made
+  int max_pending = 3;              // keyframes that wait for mapping; more are not made,
+  int max_pending_when_weak = 10;   // unless fewer than min_tracked points are left
 };
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.

@@ -72,7 +72,9 @@ INSTANTIATE_TEST_SUITE_P(
                  true},
         Decision{"MappingIsBehind", 250, calm_but([](auto& e) { e.pending = kOptions.max_pending; }), false},
         Decision{"MappingIsBehindAndTrackingIsAboutToFail", 90,
-                 calm_but([](auto& e) { e.pending = kOptions.max_pending; }), false}),
+                 calm_but([](auto& e) { e.pending = kOptions.max_pending; }), true},
+        Decision{"MappingIsFarBehindAndTrackingIsAboutToFail", 90,
+                 calm_but([](auto& e) { e.pending = kOptions.max_pending_when_weak; }), false}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(MedianDepth, IsThatOfTheTrackedPointsAlongTheOpticalAxis) {
