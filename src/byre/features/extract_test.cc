@@ -71,7 +71,7 @@ TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
   EXPECT_GE(features.size(), 500);
   EXPECT_LE(features.size(), ExtractOptions().max_features);
   EXPECT_EQ(features.descriptors().size(), features.keypoints().size());
-  EXPECT_EQ(features.patches().size(), features.keypoints().size());
+  for (int i = 0; i < features.size(); ++i) EXPECT_NE(features.find_patch(i), nullptr);
 }
 
 TEST(Extractor, FillsTheQuotaWhereTheImageAllows) {
@@ -151,8 +151,8 @@ TEST(Extractor, GivesTheSameBytesTwice) {
     EXPECT_EQ(a.pixel, b.pixel);
     EXPECT_EQ(std::tuple(a.disparity, a.disparity_sigma, a.angle, a.response, a.octave),
               std::tuple(b.disparity, b.disparity_sigma, b.angle, b.response, b.octave));
-    EXPECT_EQ(first->patch(i).pixels, second->patch(i).pixels);
-    EXPECT_EQ(first->patch(i).centre, second->patch(i).centre);
+    EXPECT_EQ(first->find_patch(i)->pixels, second->find_patch(i)->pixels);
+    EXPECT_EQ(first->find_patch(i)->centre, second->find_patch(i)->centre);
   }
 }
 
@@ -163,7 +163,7 @@ TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
   for (int i = 0; i < features->size(); ++i) {
     const Keypoint& keypoint = features->keypoint(i);
     if (keypoint.octave > 0) continue;
-    const Patch& patch = features->patch(i);
+    const Patch& patch = *features->find_patch(i);
     const int left = static_cast<int>(keypoint.pixel.x() - patch.centre.x());
     const int top = static_cast<int>(keypoint.pixel.y() - patch.centre.y());
     for (const int corner : {0, Patch::kSize - 1}) {
@@ -180,7 +180,7 @@ TEST(Extractor, RefinesOnlyWhatItIsAskedTo) {
     options.refinement = refinement;
     const Extraction extraction = Extractor(ideal_pair(), options).extract(images);
     const Features& features = *extraction.frame.features;
-    EXPECT_EQ(features.has_patches(), refinement == Refinement::all);
+    EXPECT_EQ(features.find_patch(0) != nullptr, refinement == Refinement::all);
     std::vector<double> errors;
     for (const Keypoint& keypoint : features.keypoints()) {
       if (!keypoint.has_disparity()) continue;

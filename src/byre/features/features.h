@@ -51,15 +51,20 @@ class Features {
   // Reorders all three by grid cell. Precondition: equal sizes; keypoints lie in the image.
   Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
            std::vector<Patch> patches);
+  // With patches of some keypoints only: patch_of_keypoint is an index into patches, or -1. Sized like keypoints.
+  Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
+           std::vector<Patch> patches, std::vector<int> patch_of_keypoint);
 
   int size() const { return static_cast<int>(keypoints_.size()); }
-  bool has_patches() const { return !patches_.empty(); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }
   const std::vector<Descriptor>& descriptors() const { return descriptors_; }
-  const std::vector<Patch>& patches() const { return patches_; }
   const Keypoint& keypoint(int i) const { return keypoints_[static_cast<std::size_t>(i)]; }
   const Descriptor& descriptor(int i) const { return descriptors_[static_cast<std::size_t>(i)]; }
-  const Patch& patch(int i) const { return patches_[static_cast<std::size_t>(i)]; }
+  // nullptr where none was kept: a patch takes several times the memory of all the rest.
+  const Patch* find_patch(int i) const {
+    const int patch = patch_of_keypoint_.empty() ? -1 : patch_of_keypoint_[static_cast<std::size_t>(i)];
+    return patch < 0 ? nullptr : &patches_[static_cast<std::size_t>(patch)];
+  }
 
   // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
   // [min_octave, max_octave], in ascending order of rows of cells.
@@ -67,12 +72,13 @@ class Features {
   void visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave, Visitor visit) const;
 
  private:
-  static constexpr int kCellSize = 16;  // pixels
+  int cell_size_ = 0;  // pixels
   int columns_ = 0;
   int rows_ = 0;
   std::vector<Keypoint> keypoints_;
   std::vector<Descriptor> descriptors_;
   std::vector<Patch> patches_;
+  std::vector<int> patch_of_keypoint_;
   std::vector<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
 };
 
@@ -85,8 +91,8 @@ struct Frame {
 template <typename Visitor>
 void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave,
                           Visitor visit) const {
-  const auto cell = [](float coordinate, int count) {
-    return std::min(std::max(static_cast<int>(coordinate) / kCellSize, 0), count - 1);
+  const auto cell = [this](float coordinate, int count) {
+    return std::min(std::max(static_cast<int>(coordinate) / cell_size_, 0), count - 1);
   };
   if (columns_ == 0) return;
   const int first_column = cell(pixel.x() - radius, columns_);

@@ -97,12 +97,11 @@ TEST(FeaturesVisitArea, FindsNothingFarOutsideTheImage) {
 TEST(Features, KeepDescriptorAndPatchWithTheirKeypoint) {
   const Features features = make_features(random_keypoints(300, 4));
   ASSERT_EQ(features.size(), 300);
-  ASSERT_TRUE(features.has_patches());
   std::vector<float> names;
   for (int i = 0; i < features.size(); ++i) {
     names.push_back(features.keypoint(i).response);
     EXPECT_EQ(static_cast<float>(features.descriptor(i)[0]), names.back());
-    EXPECT_EQ(features.patch(i).centre.x(), names.back());
+    EXPECT_EQ(features.find_patch(i)->centre.x(), names.back());
   }
   std::sort(names.begin(), names.end());
   EXPECT_TRUE(std::adjacent_find(names.begin(), names.end()) == names.end()) << "each is there once";
@@ -120,14 +119,34 @@ TEST(Features, KeepTheOrderGivenWithinACell) {
 
 TEST(Features, AreUnchangedWhenOrderedAgain) {
   const Features once = make_features(random_keypoints(300, 5));
-  const Features twice(kWidth, kHeight, once.keypoints(), once.descriptors(), once.patches());
+  const Features twice(kWidth, kHeight, once.keypoints(), once.descriptors(), {});
   EXPECT_EQ(once.descriptors(), twice.descriptors());
 }
 
 TEST(Features, MayComeWithoutPatches) {
   const Features features(kWidth, kHeight, random_keypoints(5, 6), std::vector<Descriptor>(5), {});
   EXPECT_EQ(features.size(), 5);
-  EXPECT_FALSE(features.has_patches());
+  EXPECT_EQ(features.find_patch(0), nullptr);
+}
+
+TEST(Features, KeepSomePatchesOnly) {
+  const std::vector<Keypoint> keypoints = random_keypoints(3, 7);
+  std::vector<Patch> patches(1);
+  patches[0].centre.x() = keypoints[1].response;
+  const Features features(kWidth, kHeight, keypoints, std::vector<Descriptor>(3), patches, {-1, 0, -1});
+  for (int i = 0; i < features.size(); ++i) {
+    const bool kept = features.keypoint(i).response == keypoints[1].response;
+    ASSERT_EQ(features.find_patch(i) != nullptr, kept);
+    if (kept) EXPECT_EQ(features.find_patch(i)->centre.x(), keypoints[1].response);
+  }
+}
+
+TEST(Features, AreFoundInAnImageMuchLargerThanTheyAreMany) {
+  Keypoint keypoint;
+  keypoint.pixel = {15000.0f, 9000.0f};
+  const Features features(16000, 16000, {keypoint}, {{}}, {});
+  EXPECT_THAT(visited(features, {15003.0f, 9000.0f}, 5.0f, 0, 0), ElementsAre(0));
+  EXPECT_THAT(visited(features, {14000.0f, 9000.0f}, 5.0f, 0, 0), IsEmpty());
 }
 
 }  // namespace

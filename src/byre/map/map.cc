@@ -115,6 +115,13 @@ void Map::remove_keyframe(KeyframeId id) {
   --keyframe_count_;
 }
 
+void Map::set_words(KeyframeId id, std::vector<Word> words) {
+  Keyframe* keyframe = find_own_keyframe(id);
+  if (!keyframe) return;
+  assert(words.empty() || words.size() == keyframe->sightings.size());
+  keyframe->words = std::move(words);
+}
+
 void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
   Keyframe* keyframe = find_own_keyframe(id);
   if (!keyframe) return;

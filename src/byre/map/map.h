@@ -3,6 +3,7 @@
 #include "byre/features/features.h"
 #include "byre/map/ids.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,14 +35,18 @@ struct Sighting {
   float pixel_sigma = 1.0f;                         // pixels
 };
 
+using Word = std::uint32_t;  // a visual word of a vocabulary, see place/vocabulary.h
+
 struct Keyframe {
   Frame frame;
-  int rig = 0;  // index into Map::rigs()
+  int rig = 0;        // index into Map::rigs()
+  int recording = 0;  // which of the recordings the map was made from, see StoredMap
   Pose camera_from_world;
   // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<Sighting> sightings;   // one per feature
   std::optional<KeyframeId> parent;  // the keyframe of the same map it was tracked from; empty for the first
+  std::vector<Word> words;           // one per feature, or none while they are not known
 };
 
 // Where a removed keyframe was: a fixed pose relative to its parent, so that frames tracked from it keep theirs.
@@ -86,6 +91,7 @@ class Map {
   // the poses of the others hang from it.
   void remove_keyframe(KeyframeId id);
 
+  void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // A reference that does not observe the point is replaced by the point's lowest observation.
   void update_point(PointId id, const MapPoint& point);

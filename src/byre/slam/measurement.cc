@@ -35,14 +35,16 @@ PixelMeasurement corner_measurement(const Keypoint& keypoint) {
 }
 
 float reference_sigma(const Features& features, int feature) {
-  return (features.has_patches() ? kModelSigma : kCornerSigma) * scale_of(features.keypoint(feature));
+  return (features.find_patch(feature) != nullptr ? kModelSigma : kCornerSigma) * scale_of(features.keypoint(feature));
 }
 
 PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vector3d& point_in_world,
                                const CameraView& current, int feature) {
   const Keypoint& keypoint = current.features.keypoint(feature);
   const PixelMeasurement corner = corner_measurement(keypoint);
-  if (!current.features.has_patches() || !reference.view.features.has_patches()) return corner;
+  const Patch* const patch = current.features.find_patch(feature);
+  const Patch* const reference_patch = reference.view.features.find_patch(reference.feature);
+  if (patch == nullptr || reference_patch == nullptr) return corner;
 
   const Keypoint& reference_keypoint = reference.view.features.keypoint(reference.feature);
   const float reference_scale = scale_of(reference_keypoint);
@@ -51,15 +53,13 @@ PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vect
   const float magnification = octave_warp.determinant();
   if (!(magnification > 0.25f && magnification < 4.0f)) return corner;
 
-  const Patch& reference_patch = reference.view.features.patch(reference.feature);
-  const Patch& patch = current.features.patch(feature);
   const Eigen::Vector2f reference_pixel =
-      reference_patch.centre + (reference.pixel - reference_keypoint.pixel) / reference_scale;
+      reference_patch->centre + (reference.pixel - reference_keypoint.pixel) / reference_scale;
   const auto alignment =
-      align_patches(reference_patch, reference_pixel, patch, octave_warp.inverse(), patch.centre, {});
+      align_patches(*reference_patch, reference_pixel, *patch, octave_warp.inverse(), patch->centre, {});
   if (!alignment) return corner;
   const float sigma = std::sqrt(alignment->sigma * alignment->sigma + kModelSigma * kModelSigma);
-  return {keypoint.pixel + (alignment->pixel - patch.centre) * scale, sigma * scale, true};
+  return {keypoint.pixel + (alignment->pixel - patch->centre) * scale, sigma * scale, true};
 }
 
 }  // namespace byre

@@ -1,0 +1,140 @@
+#include "byre/input/binary_file.h"
+
+#include "byre/input/input_error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, std::string_view what, std::string_view remedy) {
+  throw InputError(path.string(), std::string(what) + ": " + std::strerror(errno), remedy);
+}
+
+constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
+constexpr std::string_view kWriteRemedy = "check that its folder exists, may be written to and has space";
+
+// An open file, closed at the end of its life.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& path, int flags, std::string_view remedy)
+      : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail(path, "cannot be opened", remedy);
+  }
+  ~OpenFile() { close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+
+  struct stat status() const {
+    struct stat result {};
+    if (fstat(descriptor_, &result) != 0) fail(path_, "cannot be read", kReadRemedy);
+    return result;
+  }
+
+  std::size_t read_some(std::span<std::byte> bytes) const {
+    ssize_t count = 0;
+    do {
+      count = ::read(descriptor_, bytes.data(), bytes.size());
+    } while (count < 0 && errno == EINTR);
+    if (count < 0) fail(path_, "cannot be read", kReadRemedy);
+    return static_cast<std::size_t>(count);
+  }
+
+  void write_all(std::span<const std::byte> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0 && errno != EINTR) fail(path_, "cannot be written", kWriteRemedy);
+      if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+  }
+
+  void sync() const {
+    if (fsync(descriptor_) != 0) fail(path_, "cannot be written", kWriteRemedy);
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_;
+};
+
+bool is_special(const fs::path& path) {
+  return fs::exists(path) && !fs::is_regular_file(path) && !fs::is_directory(path);
+}
+
+// The file a link stands for, so that the link survives.
+fs::path target_of(const fs::path& path) {
+  return fs::is_symlink(path) ? fs::weakly_canonical(path) : path;
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
+  const OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy);
+  file.write_all(bytes);
+  file.sync();
+}
+
+}  // namespace
+
+std::vector<std::byte> read_file(const fs::path& path) {
+  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const struct stat status = file.status();
+  if (S_ISDIR(status.st_mode)) throw InputError(path.string(), "is a folder", "name a file in it");
+  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const std::size_t count = file.read_some(std::span(bytes).subspan(filled));
+    if (count == 0) break;  // it has become shorter meanwhile
+    filled += count;
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
+  if (is_special(path)) return OpenFile(path, O_WRONLY, kWriteRemedy).write_all(bytes);
+  const fs::path target = target_of(path);
+  fs::path unfinished = target;
+  unfinished += ".unfinished";
+  try {
+    write_synced(unfinished, bytes);
+    if (rename(unfinished.c_str(), target.c_str()) != 0) fail(path, "cannot be replaced", kWriteRemedy);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw;
+  }
+  OpenFile(folder_of(target), O_RDONLY | O_DIRECTORY, kWriteRemedy).sync();
+}
+
+MappedFile::MappedFile(const fs::path& path) {
+  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const struct stat status = file.status();
+  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
+  size_ = static_cast<std::size_t>(status.st_size);
+  if (size_ == 0) return;
+  void* const address = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
+  if (address == MAP_FAILED) fail(path, "cannot be mapped into memory", kReadRemedy);
+  data_ = static_cast<const std::byte*>(address);
+}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) munmap(const_cast<std::byte*>(data_), size_);
+}
+
+}  // namespace byre

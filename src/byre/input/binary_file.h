@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace byre {
+
+// The whole file. Throws InputError when it cannot be read.
+std::vector<std::byte> read_file(const std::filesystem::path& path);
+
+// Writes beside the path ("PATH.unfinished"), syncs the file, renames it to path and syncs the folder: whenever the
+// program or the machine stops, path holds either all of what it held before or all of the new bytes. A path that is
+// a device or a pipe is written to directly. Throws InputError, and leaves path as it was, when it cannot be done.
+void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+// A file as read-only memory, loaded page by page as it is looked at; for large files of our own that nobody writes to.
+class MappedFile {
+ public:
+  explicit MappedFile(const std::filesystem::path& path);  // throws InputError when it cannot be mapped
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+ private:
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace byre

@@ -1,0 +1,82 @@
+#include "byre/input/binary_file.h"
+
+#include "byre/input/input_error.h"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+class BinaryFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("binary_file_" + std::to_string(getpid()));
+    fs::create_directory(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+TEST_F(BinaryFile, ReadsWhatWasWritten) {
+  replace_file(folder_ / "file", bytes_of("a\0b"));
+  EXPECT_EQ(text_of(read_file(folder_ / "file")), text_of(bytes_of("a\0b")));
+}
+
+TEST_F(BinaryFile, ReplacesWhatWasThereAndLeavesNothingBeside) {
+  replace_file(folder_ / "file", bytes_of("a long text"));
+  replace_file(folder_ / "file", bytes_of("short"));
+  EXPECT_EQ(text_of(read_file(folder_ / "file")), "short");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(BinaryFile, KeepsALinkAndReplacesWhatItStandsFor) {
+  replace_file(folder_ / "file", bytes_of("old"));
+  fs::create_symlink("file", folder_ / "link");
+  replace_file(folder_ / "link", bytes_of("new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(text_of(read_file(folder_ / "file")), "new");
+}
+
+TEST_F(BinaryFile, SaysWhatCannotBeReadOrWritten) {
+  EXPECT_THROW(read_file(folder_ / "absent"), InputError);
+  EXPECT_THROW(read_file(folder_), InputError);
+  EXPECT_THROW(MappedFile(folder_ / "absent"), InputError);
+  EXPECT_THROW(replace_file(folder_ / "absent" / "file", bytes_of("x")), InputError);
+}
+
+TEST_F(BinaryFile, LeavesTheOldFileWhenTheNewOneCannotBeWritten) {
+  replace_file(folder_ / "file", bytes_of("old"));
+  fs::create_directory(folder_ / "file.unfinished");  // where the new one would be written
+  EXPECT_THROW(replace_file(folder_ / "file", bytes_of("new")), InputError);
+  EXPECT_EQ(text_of(read_file(folder_ / "file")), "old");
+}
+
+TEST_F(BinaryFile, WritesToADeviceDirectly) {
+  EXPECT_NO_THROW(replace_file("/dev/null", bytes_of("gone")));
+  EXPECT_THROW(replace_file("/dev/full", bytes_of("no room")), InputError);
+}
+
+TEST_F(BinaryFile, IsMappedAsItIs) {
+  replace_file(folder_ / "file", bytes_of("mapped"));
+  EXPECT_EQ(text_of(MappedFile(folder_ / "file").bytes()), "mapped");
+  replace_file(folder_ / "empty", {});
+  EXPECT_TRUE(MappedFile(folder_ / "empty").bytes().empty());
+}
+
+}  // namespace
+}  // namespace byre

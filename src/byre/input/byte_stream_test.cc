@@ -1,0 +1,77 @@
+#include "byre/input/byte_stream.h"
+
+#include "byre/input/input_error.h"
+
+#include <array>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+ByteReader reader_of(const ByteWriter& writer) {
+  return {writer.bytes(), "file: section test", 100};
+}
+
+TEST(ByteStream, ReadsBackWhatWasWritten) {
+  ByteWriter writer;
+  writer.write(std::uint16_t{7});
+  writer.write(-1.5);
+  writer.write_all(std::span<const float>(std::array{1.0f, 2.0f}));
+  writer.write_text("barn");
+
+  ByteReader reader = reader_of(writer);
+  EXPECT_EQ(reader.read<std::uint16_t>(), 7);
+  EXPECT_EQ(reader.read<double>(), -1.5);
+  std::array<float, 2> floats{};
+  reader.read_all(std::span<float>(floats));
+  EXPECT_THAT(floats, testing::ElementsAre(1.0f, 2.0f));
+  EXPECT_EQ(reader.read_text(), "barn");
+  EXPECT_NO_THROW(reader.require_end());
+}
+
+TEST(ByteStream, LiesInAFileWithTheLowestByteFirst) {
+  ByteWriter writer;
+  writer.write(std::uint32_t{0x01020304});
+  EXPECT_THAT(writer.bytes(), testing::ElementsAre(std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}));
+}
+
+TEST(ByteStream, NamesThePlaceWhereItEndsTooEarly) {
+  ByteWriter writer;
+  writer.write(std::uint32_t{1});
+  ByteReader reader = reader_of(writer);
+  reader.read<std::uint16_t>();
+  try {
+    reader.read<std::uint64_t>();
+    FAIL() << "read beyond the end";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "file: section test at byte 102");
+  }
+}
+
+TEST(ByteStream, RefusesACountThatItsBytesCannotHold) {
+  ByteWriter writer;
+  writer.write(std::uint32_t{3});
+  writer.write(std::uint64_t{0});
+  EXPECT_EQ(reader_of(writer).read_count(2), 3u);
+  EXPECT_THROW(reader_of(writer).read_count(4), InputError);
+}
+
+TEST(ByteStream, RefusesTextLongerThanItsBytes) {
+  ByteWriter writer;
+  writer.write(std::uint32_t{1000000});
+  EXPECT_THROW(reader_of(writer).read_text(), InputError);
+}
+
+TEST(ByteStream, RefusesBytesLeftOver) {
+  ByteWriter writer;
+  writer.write(std::uint8_t{1});
+  EXPECT_THROW(reader_of(writer).require_end(), InputError);
+}
+
+TEST(Checksum, DiffersByOneBit) {
+  EXPECT_NE(checksum(std::as_bytes(std::span("byre"))), checksum(std::as_bytes(std::span("byrd"))));
+}
+
+}  // namespace
+}  // namespace byre
