@@ -9,6 +9,8 @@ struct MappingOptions {
   WindowOptions window;
   int triangulation_neighbours = 6;         // keyframes searched for new points
   int fusion_neighbours = 10;               // keyframes searched for points seen twice
+  float search_radius = 3.0f;               // pixels at octave 0, about where a point of another keyframe should be
+  double pose_sigma = 0.5;                  // pixels that errors of the poses may add between two views
   double max_relative_depth_sigma = 0.1;    // a new point's depth must be known to this share of itself
   double max_squared_error_mono = 5.991;    // squared sigmas: 95 % of chi-square, two degrees of freedom
   double max_squared_error_stereo = 7.815;  // 95 %, three degrees

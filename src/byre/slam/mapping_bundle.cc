@@ -1,6 +1,7 @@
 #include "byre/slam/mapping_steps.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace byre {
 namespace {
@@ -93,21 +94,7 @@ Matrix6 anchor_covariance(const MapWindow& window) {
   return *middle;
 }
 
-}  // namespace
-
-BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature) {
-  const Sighting& sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(feature)];
-  const Keypoint& keypoint = keyframe.keyframe.frame.features->keypoint(feature);
-  BundleObservation observation;
-  observation.measured << sighting.pixel.cast<double>(), keypoint.disparity;
-  observation.pixel_sigma = sighting.pixel_sigma;
-  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
-  return observation;
-}
-
-void adjust_bundle(MapWindow& window, const MappingOptions& options) {
-  const bool can_move = std::ranges::any_of(window.keyframes, &WindowKeyframe::movable);
-  if (!can_move) return;
+void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options) {
   BundleOptions bundle_options;
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
@@ -121,6 +108,27 @@ void adjust_bundle(MapWindow& window, const MappingOptions& options) {
     }
     remove_outliers(window, bundle, result, options);
   }
+}
+
+}  // namespace
+
+BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature) {
+  const Sighting& sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(feature)];
+  const Keypoint& keypoint = keyframe.keyframe.frame.features->keypoint(feature);
+  BundleObservation observation;
+  observation.measured << sighting.pixel.cast<double>(), keypoint.disparity;
+  observation.pixel_sigma = sighting.pixel_sigma;
+  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
+  return observation;
+}
+
+void adjust_bundle(MapWindow& window, const MappingOptions& options) {
+  if (std::ranges::any_of(window.keyframes, &WindowKeyframe::movable)) adjust_in_two_rounds(window, options);
+}
+
+void adjust_points(MapWindow& window, const MappingOptions& options) {
+  assert(std::ranges::none_of(window.keyframes, &WindowKeyframe::movable));
+  adjust_in_two_rounds(window, options);
 }
 
 }  // namespace byre

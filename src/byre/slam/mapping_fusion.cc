@@ -6,8 +6,6 @@
 namespace byre {
 namespace {
 
-constexpr SearchOptions kSearch{3.0f, 50, 0.9f};
-
 // A point found at a feature of a keyframe.
 struct Meeting {
   int point = 0;
@@ -36,7 +34,9 @@ std::vector<int> points_seen_by(const MapWindow& window, const std::vector<int>&
   return points;
 }
 
-std::vector<Meeting> look_for(const MapWindow& window, const std::vector<int>& points, int keyframe) {
+std::vector<Meeting> look_for(const MapWindow& window, const std::vector<int>& points, int keyframe,
+                              const MappingOptions& options) {
+  const SearchOptions search{options.search_radius, 50, 0.9f};
   const CameraView view = view_of(window, keyframe);
   const Eigen::Vector3d camera_in_world = inverse(view.camera_from_world).translation;
   std::vector<Meeting> meetings;
@@ -45,7 +45,7 @@ std::vector<Meeting> look_for(const MapWindow& window, const std::vector<int>& p
     if (sees(point, keyframe)) continue;
     const auto projection = project_point(point.point, view.camera_from_world, camera_in_world, view.rig);
     if (!projection) continue;
-    const auto found = find_feature(view.features, point.point.descriptor, *projection, kSearch);
+    const auto found = find_feature(view.features, point.point.descriptor, *projection, search);
     if (found) meetings.push_back({index, {keyframe, found->feature}});
   }
   return meetings;
@@ -118,12 +118,12 @@ void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& opti
     if (i == keyframe || static_cast<int>(neighbours.size()) >= options.fusion_neighbours) continue;
     neighbours.push_back(i);
   }
-  for (const Meeting& meeting : look_for(window, points_seen_by(window, neighbours), keyframe)) {
+  for (const Meeting& meeting : look_for(window, points_seen_by(window, neighbours), keyframe, options)) {
     settle(window, meeting);
   }
   const std::vector<int> own_points = points_seen_by(window, {keyframe});
   for (const int neighbour : neighbours) {
-    for (const Meeting& meeting : look_for(window, own_points, neighbour)) settle(window, meeting);
+    for (const Meeting& meeting : look_for(window, own_points, neighbour, options)) settle(window, meeting);
   }
 }
 

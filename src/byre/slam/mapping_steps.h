@@ -31,6 +31,9 @@ void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& opti
 // Local bundle adjustment in two rounds, with observations that disagree removed after each.
 void adjust_bundle(MapWindow& window, const MappingOptions& options);
 
+// The same for the points alone. Precondition: no keyframe is movable.
+void adjust_points(MapWindow& window, const MappingOptions& options);
+
 // Position covariance, descriptor, viewing direction and distances of the window's points, from their observations.
 void refresh_points(MapWindow& window);
 

@@ -100,8 +100,7 @@ std::optional<TriangulatedPoint> triangulate_match(const CameraView& first, int 
   const auto point = triangulate_pixels(first, first_keypoint.pixel, second, measured.pixel);
   if (!point) return std::nullopt;
   const double first_sigma = reference_sigma(first.features, first_feature);
-  // The poses are not exact either: half a pixel at least is granted.
-  const double allowed_sigma = std::hypot(static_cast<double>(measured.sigma), 0.5);
+  const double allowed_sigma = std::hypot(static_cast<double>(measured.sigma), options.pose_sigma);
   if (!agrees(first, *point, first_keypoint.pixel, allowed_sigma, options.max_squared_error_mono) ||
       !agrees(second, *point, measured.pixel, allowed_sigma, options.max_squared_error_mono)) {
     return std::nullopt;

@@ -101,6 +101,15 @@ MapWindow cut_window(const Map& map, const std::vector<KeyframeId>& new_keyframe
   return window;
 }
 
+MapWindow window_of(const Map& map, const std::vector<KeyframeId>& keyframes) {
+  MapWindow window;
+  window.rigs = map.rigs();
+  for (const KeyframeId id : keyframes) append_keyframe(window, map, id, false, false);
+  append_points(window, map);
+  link_observations(window, map);
+  return window;
+}
+
 void add_observation(MapWindow& window, int point, const WindowObservation& observation, const Sighting& sighting) {
   WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(observation.keyframe)];
   const auto feature = static_cast<std::size_t>(observation.feature);

@@ -53,6 +53,9 @@ struct WindowOptions {
 // empty keyframes when none does. The very first keyframe of a map is never movable: it holds the world in place.
 MapWindow cut_window(const Map& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options);
 
+// The window of just these keyframes and the points they see, none of them movable. Precondition: all exist.
+MapWindow window_of(const Map& map, const std::vector<KeyframeId>& keyframes);
+
 // Keeps both ends of an observation in step within a window.
 void add_observation(MapWindow& window, int point, const WindowObservation& observation, const Sighting& sighting);
 void remove_observation(MapWindow& window, const WindowObservation& observation);
