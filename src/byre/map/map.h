@@ -55,6 +55,13 @@ struct RemovedKeyframe {
   Pose camera_from_parent;
 };
 
+// What a map is made of; a keyframe's or point's place in its list is its number.
+struct MapParts {
+  std::vector<Rig> rigs;
+  std::vector<Keyframe> keyframes;
+  std::vector<MapPoint> points;
+};
+
 // A keyframe that sees some of the same points.
 struct Covisible {
   KeyframeId keyframe;
@@ -68,6 +75,9 @@ struct Covisible {
 class Map {
  public:
   explicit Map(Origin origin) : origin_(origin) {}
+  // All at once, which is many times faster than one by one. Preconditions: keyframes have a sighting per feature, see
+  // no point twice, and come after their parents; ids are of this origin and within the parts.
+  Map(Origin origin, MapParts parts);
 
   Origin origin() const { return origin_; }
 
@@ -136,6 +146,8 @@ class Map {
   void count_shared_point(const std::vector<Observation>& observers, KeyframeId with, int change);
   void add_shared_points(KeyframeId keyframe, KeyframeId with, int change);
   void repair_reference(PointId id);
+  void collect_observations();
+  void count_covisible_keyframes();
   void hand_children_to(KeyframeId id, KeyframeId parent);
 
   Origin origin_;

@@ -1,0 +1,64 @@
+// A map from all its parts at once: what the map maintains on each change is computed here in one go.
+
+#include "byre/map/map.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace byre {
+
+Map::Map(Origin origin, MapParts parts)
+    : origin_(origin),
+      rigs_(std::move(parts.rigs)),
+      keyframes_(parts.keyframes.size()),
+      points_(parts.points.size()),
+      keyframe_count_(static_cast<int>(parts.keyframes.size())),
+      point_count_(static_cast<int>(parts.points.size())) {
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    if (const auto parent = parts.keyframes[i].parent) slot(*parent).children.push_back({origin_, i});
+    keyframes_[i].keyframe = std::move(parts.keyframes[i]);
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].point = parts.points[i];
+  collect_observations();
+  count_covisible_keyframes();
+}
+
+// Keyframes come in ascending order, so the observations of a point do too.
+void Map::collect_observations() {
+  std::vector<std::size_t> observers(points_.size(), 0);
+  for (const KeyframeSlot& keyframe_slot : keyframes_) {
+    for (const Sighting& sighting : keyframe_slot.keyframe->sightings) {
+      if (sighting.point) ++observers[sighting.point->number];
+    }
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].observations.reserve(observers[i]);
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    const std::vector<Sighting>& sightings = keyframes_[i].keyframe->sightings;
+    for (std::size_t feature = 0; feature < sightings.size(); ++feature) {
+      if (!sightings[feature].point) continue;
+      points_[sightings[feature].point->number].observations.push_back({{origin_, i}, static_cast<int>(feature)});
+    }
+  }
+}
+
+void Map::count_covisible_keyframes() {
+  std::vector<int> shared_points(keyframes_.size(), 0);
+  std::vector<std::uint32_t> seen;  // keyframes whose count is not zero
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    for (const Sighting& sighting : keyframes_[i].keyframe->sightings) {
+      if (!sighting.point) continue;
+      for (const Observation& other : points_[sighting.point->number].observations) {
+        if (shared_points[other.keyframe.number]++ == 0) seen.push_back(other.keyframe.number);
+      }
+    }
+    std::ranges::sort(seen);
+    keyframes_[i].covisible.reserve(seen.size());
+    for (const std::uint32_t other : seen) {
+      const int count = std::exchange(shared_points[other], 0);
+      if (other != i) keyframes_[i].covisible.push_back({{origin_, other}, count});
+    }
+    seen.clear();
+  }
+}
+
+}  // namespace byre

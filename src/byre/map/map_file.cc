@@ -1,0 +1,230 @@
+#include "byre/map/map_file.h"
+
+#include "byre/input/binary_file.h"
+#include "byre/input/input_error.h"
+#include "byre/map/map_sections.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <string_view>
+
+namespace byre {
+namespace {
+
+// As PNG's: a byte that is no text, and line ends that transfers as text would change.
+constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
+constexpr std::uint32_t kFormat = 1;  // the one written, and the newest that is read
+
+enum Section : std::size_t {
+  kSummary,
+  kNotes,
+  kProvenance,
+  kRigs,
+  kKeyframes,
+  kFeatures,
+  kPatches,
+  kPoints,
+  kObservations,
+  kWords,
+  kSectionCount
+};
+constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
+    "summary", "notes", "provenance", "rigs", "keyframes", "features", "patches", "points", "observations", "words"};
+
+constexpr std::size_t kNameBytes = 16;
+constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
+constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
+constexpr std::size_t kHeaderBytes =
+    kFixedHeaderBytes + kSectionCount * kTableEntryBytes + sizeof(std::uint64_t);  // with its own checksum
+
+using Bytes = std::span<const std::byte>;
+
+// Of sections one after the other, the place where each ends.
+using SectionEnds = std::array<std::size_t, kSectionCount>;
+
+SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {
+  const Keyframes all = keyframes_of(stored.map);
+  SectionEnds ends{};
+  write_summary(summarise(stored.map), writer);
+  ends[kSummary] = writer.size();
+  write_notes(stored.notes, writer);
+  ends[kNotes] = writer.size();
+  write_provenance(stored, writer);
+  ends[kProvenance] = writer.size();
+  write_rigs(stored.map.rigs(), writer);
+  ends[kRigs] = writer.size();
+  write_keyframes(all, writer);
+  ends[kKeyframes] = writer.size();
+  write_features(all, writer);
+  ends[kFeatures] = writer.size();
+  write_patches(all, writer);
+  ends[kPatches] = writer.size();
+  write_points(stored.map, writer);
+  ends[kPoints] = writer.size();
+  write_observations(all, writer);
+  ends[kObservations] = writer.size();
+  write_words(all, stored.vocabulary_checksum, writer);
+  ends[kWords] = writer.size();
+  return ends;
+}
+
+void write_name(std::string_view name, ByteWriter& writer) {
+  std::array<char, kNameBytes> padded{};
+  std::ranges::copy(name, padded.begin());
+  writer.write_all<char>(padded);
+}
+
+void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
+  writer.write_all<std::uint8_t>(kSignature);
+  writer.write(kFormat);
+  writer.write(static_cast<std::uint32_t>(kSectionCount));
+  writer.write(std::uint64_t{kHeaderBytes + content.size()});
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    const Bytes section = content.subspan(begin, ends[i] - begin);
+    write_name(kSectionNames[i], writer);
+    writer.write(std::uint64_t{kHeaderBytes + begin});
+    writer.write(std::uint64_t{section.size()});
+    writer.write(checksum(section));
+    begin = ends[i];
+  }
+  writer.write(checksum(writer.bytes()));
+}
+
+// A section as the header describes it, whose bytes are not looked at yet.
+struct SectionPlace {
+  std::size_t offset = 0;
+  std::size_t size = 0;
+  std::uint64_t checksum = 0;
+};
+using SectionTable = std::array<SectionPlace, kSectionCount>;
+
+void require_format(ByteReader& header, const std::string& name) {
+  const auto format = header.read<std::uint32_t>();
+  if (format == 0) header.fail("has the format 0, which never was");
+  if (format > kFormat) {
+    throw InputError(
+        name + ": header",
+        "has format " + std::to_string(format) + ", this program knows formats up to " + std::to_string(kFormat),
+        "use the version of byre that wrote it, or a newer one");
+  }
+}
+
+SectionPlace read_place(ByteReader& header, std::string_view expected_name, std::size_t expected_offset,
+                        std::size_t file_size) {
+  std::array<char, kNameBytes> padded{};
+  std::ranges::copy(expected_name, padded.begin());
+  std::array<char, kNameBytes> found;
+  header.read_all<char>(found);
+  if (found != padded) header.fail("does not list the section " + std::string(expected_name) + " in its place");
+  SectionPlace place;
+  place.offset = header.read<std::uint64_t>();
+  place.size = header.read<std::uint64_t>();
+  place.checksum = header.read<std::uint64_t>();
+  if (place.offset != expected_offset || place.size > file_size - place.offset) {
+    header.fail("places the section " + std::string(expected_name) + " wrong");
+  }
+  return place;
+}
+
+SectionTable read_table(Bytes bytes, const std::string& name) {
+  if (bytes.size() < kSignature.size() ||
+      !std::ranges::equal(bytes.first(kSignature.size()), std::as_bytes(std::span(kSignature)))) {
+    throw InputError(name, "is no map of byre: it does not begin as one", "name a file that byre has saved a map in");
+  }
+  ByteReader header(bytes, name + ": header", 0);
+  header.take(kSignature.size());
+  require_format(header, name);
+  if (header.read<std::uint32_t>() != kSectionCount) header.fail("has not the sections of its format");
+  if (header.read<std::uint64_t>() != bytes.size()) {
+    header.fail("is of a file of another length than its " + std::to_string(bytes.size()) + " bytes");
+  }
+  SectionTable table;
+  std::size_t offset = kHeaderBytes;
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    table[i] = read_place(header, kSectionNames[i], offset, bytes.size());
+    offset += table[i].size;
+  }
+  const std::uint64_t expected = checksum(bytes.first(kHeaderBytes - sizeof(std::uint64_t)));
+  if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
+  if (offset != bytes.size()) header.fail("leaves bytes to no section");
+  return table;
+}
+
+// Opens sections of a file whose table is known.
+class SectionOpener {
+ public:
+  SectionOpener(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name), table_(read_table(bytes, name)) {}
+
+  ByteReader operator()(Section section) const {
+    const auto& [offset, size, expected_checksum] = table_[section];
+    const Bytes content = bytes_.subspan(offset, size);
+    ByteReader reader(content, name_ + ": section " + std::string(kSectionNames[section]), offset);
+    if (checksum(content) != expected_checksum) reader.fail("has a wrong checksum");
+    return reader;
+  }
+
+ private:
+  Bytes bytes_;
+  const std::string& name_;
+  SectionTable table_;
+};
+
+}  // namespace
+
+std::vector<std::byte> write_map(const StoredMap& stored) {
+  ByteWriter content;
+  const SectionEnds ends = write_sections(stored, content);
+  ByteWriter header;
+  write_header(content.bytes(), ends, header);
+  std::vector<std::byte> file = header.bytes();
+  file.insert(file.end(), content.bytes().begin(), content.bytes().end());
+  return file;
+}
+
+StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
+  const SectionOpener open(bytes, name);
+  StoredMap stored;
+  stored.notes = read_notes(open(kNotes));
+  Provenance provenance = read_provenance(open(kProvenance));
+  stored.scale = provenance.scale;
+  stored.pose_source = provenance.pose_source;
+  stored.recordings = std::move(provenance.recordings);
+
+  MapParts parts;
+  parts.rigs = read_rigs(open(kRigs));
+  parts.keyframes = read_keyframes(open(kKeyframes), parts.rigs.size(), stored.recordings.size());
+  read_features(open(kFeatures), open(kPatches), parts.rigs, parts.keyframes);
+  parts.points = read_points(open(kPoints));
+  read_observations(open(kObservations), parts.points, parts.keyframes);
+  stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
+  stored.map = Map(Origin::offline, std::move(parts));
+
+  ByteReader summary = open(kSummary);
+  if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");
+  return stored;
+}
+
+std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
+  const SectionTable table = read_table(bytes, name);
+  std::vector<SectionSize> sizes = {{"header", kHeaderBytes}};
+  for (std::size_t i = 0; i < kSectionCount; ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
+  return sizes;
+}
+
+StoredMap load_map(const std::filesystem::path& path) {
+  return read_map(read_file(path), path.string());
+}
+
+void save_map(const StoredMap& stored, const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = write_map(stored);
+  try {
+    read_map(bytes, path.string());
+  } catch (const InputError& error) {
+    throw InputError(path.string(), "is not written: the map is unsound: " + error.reason(), "");
+  }
+  replace_file(path, bytes);
+}
+
+}  // namespace byre

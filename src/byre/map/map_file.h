@@ -1,0 +1,72 @@
+#pragma once
+
+#include "byre/geometry/camera.h"
+#include "byre/map/map.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// A recording that keyframes of a map come from.
+struct SourceRecording {
+  std::string name;         // as the user called it
+  Calibration calibration;  // of the cameras that took its images, before rectification
+  Timestamp first_time{};   // of its frames, whether keyframes or not
+  Timestamp last_time{};
+};
+
+// What the positions of a map are measured in.
+enum class MapScale : std::uint8_t {
+  metric,   // metres, from a stereo baseline or a given scale
+  unknown,  // the model's own unit: one camera alone does not tell
+};
+
+// Where the poses of a map's keyframes come from.
+enum class PoseSource : std::uint8_t {
+  slam,     // byre's own tracking and mapping
+  given,    // a trajectory from elsewhere, such as a ground truth
+  imported  // a structure-from-motion model
+};
+
+// A map and all that is kept with it between missions. Its ids are of the origin offline and without gaps.
+struct StoredMap {
+  Map map{Origin::offline};
+  std::vector<SourceRecording> recordings;  // Keyframe::recording is an index
+  MapScale scale = MapScale::metric;
+  PoseSource pose_source = PoseSource::slam;
+  std::uint64_t vocabulary_checksum = 0;     // of the vocabulary that keyframes' words are of; 0 while they have none
+  std::map<std::string, std::string> notes;  // free text by key, such as site and software
+};
+
+// A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes are forgotten, and
+// of the patches those stay that define a point in the image.
+Map offline_copy(const Map& online);
+
+// All faults of find_faults(Map), and what a stored map must hold beyond them.
+std::vector<std::string> find_faults(const StoredMap& stored);
+
+// The bytes of a section of a map file, as `byre inspect` lists them.
+struct SectionSize {
+  std::string name;
+  std::size_t bytes = 0;
+};
+
+// The layout is described in docs/map_format.md. Equal maps give equal bytes.
+std::vector<std::byte> write_map(const StoredMap& stored);
+
+// All or nothing: throws InputError naming section and byte for any damage, any broken invariant, and a format that is
+// newer than this program's. name: of the file, for messages.
+StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
+std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
+
+// The same on files. Saving replaces a file as a whole, see replace_file.
+StoredMap load_map(const std::filesystem::path& path);
+void save_map(const StoredMap& stored, const std::filesystem::path& path);
+
+}  // namespace byre

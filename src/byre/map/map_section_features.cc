@@ -1,0 +1,136 @@
+// Keypoints and descriptors of all keyframes, and the patches that are kept of them.
+
+#include "byre/map/map_numbers.h"
+#include "byre/map/map_sections.h"
+#include "byre/map/map_values.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace byre {
+namespace {
+
+constexpr std::size_t kKeypointBytes = 6 * sizeof(float) + 1;
+constexpr std::size_t kDescriptorBytes = sizeof(Descriptor);
+constexpr std::size_t kPatchBytes = sizeof(std::uint32_t) + Patch::kSize * Patch::kSize + 2 * sizeof(float);
+
+void write_keypoint(const Keypoint& keypoint, ByteWriter& writer) {
+  write_vector(keypoint.pixel, writer);
+  for (const float value : {keypoint.disparity, keypoint.disparity_sigma, keypoint.angle, keypoint.response}) {
+    writer.write(value);
+  }
+  writer.write(keypoint.octave);
+}
+
+Keypoint read_keypoint(ByteReader& reader) {
+  std::array<float, 6> values;
+  reader.read_all<float>(values);
+  const auto octave = reader.read<std::uint8_t>();
+  return {{values[0], values[1]}, values[2], values[3], values[4], values[5], octave};
+}
+
+std::vector<Keypoint> read_keypoints(ByteReader& reader, std::uint32_t count, const Rig& rig, std::size_t keyframe) {
+  std::vector<Keypoint> keypoints;
+  keypoints.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    keypoints.push_back(read_keypoint(reader));
+    require_no_fault(reader, fault_in(keypoints.back(), rig), "keyframe", keyframe);
+  }
+  return keypoints;
+}
+
+std::vector<Descriptor> read_descriptors(ByteReader& reader, std::uint32_t count) {
+  std::vector<Descriptor> descriptors(count);
+  const std::span<const std::byte> bytes = reader.take(count * kDescriptorBytes);
+  std::ranges::copy(bytes, std::as_writable_bytes(std::span(descriptors)).begin());
+  return descriptors;
+}
+
+struct KeptPatches {
+  std::vector<Patch> patches;
+  std::vector<int> patch_of_keypoint;  // -1: none
+};
+
+KeptPatches read_kept_patches(ByteReader& reader, std::size_t feature_count, std::size_t keyframe) {
+  const std::uint32_t count = reader.read_count(kPatchBytes);
+  KeptPatches kept;
+  kept.patches.resize(count);
+  kept.patch_of_keypoint.assign(feature_count, -1);
+  std::size_t first_free_feature = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t feature = read_index(reader, feature_count, "feature");
+    if (feature < first_free_feature) reader.fail("has features out of order");
+    first_free_feature = feature + 1;
+    kept.patch_of_keypoint[feature] = static_cast<int>(i);
+    reader.read_all<std::uint8_t>(kept.patches[i].pixels);
+    kept.patches[i].centre = read_vector<Eigen::Vector2f>(reader);
+    require_no_fault(reader, fault_in(kept.patches[i]), "keyframe", keyframe);
+  }
+  return kept;
+}
+
+std::shared_ptr<const Features> read_features_of(std::size_t keyframe, ByteReader& reader, ByteReader& patch_reader,
+                                                 const Rig& rig) {
+  const std::uint32_t count = reader.read_count(kKeypointBytes + kDescriptorBytes);
+  const std::vector<Keypoint> keypoints = read_keypoints(reader, count, rig, keyframe);
+  std::vector<Descriptor> descriptors = read_descriptors(reader, count);
+  KeptPatches kept = read_kept_patches(patch_reader, count, keyframe);
+  auto features = std::make_shared<const Features>(rig.width, rig.height, keypoints, std::move(descriptors),
+                                                   std::move(kept.patches), std::move(kept.patch_of_keypoint));
+  if (!std::ranges::equal(features->keypoints(), keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
+    require_no_fault(reader, "has keypoints that are not sorted by the cells of their grid", "keyframe", keyframe);
+  }
+  return features;
+}
+
+std::vector<int> features_with_patch(const Features& features) {
+  std::vector<int> with_patch;
+  for (int i = 0; i < features.size(); ++i) {
+    if (features.find_patch(i)) with_patch.push_back(i);
+  }
+  return with_patch;
+}
+
+}  // namespace
+
+const Features& features_of(const Keyframe& keyframe) {
+  static const Features kNone;
+  return keyframe.frame.features ? *keyframe.frame.features : kNone;
+}
+
+void write_features(const Keyframes& keyframes, ByteWriter& writer) {
+  for (const Keyframe* const keyframe : keyframes) {
+    const Features& features = features_of(*keyframe);
+    writer.write(static_cast<std::uint32_t>(features.size()));
+    for (const Keypoint& keypoint : features.keypoints()) write_keypoint(keypoint, writer);
+    writer.write_bytes(std::as_bytes(std::span(features.descriptors())));
+  }
+}
+
+void write_patches(const Keyframes& keyframes, ByteWriter& writer) {
+  for (const Keyframe* const keyframe : keyframes) {
+    const Features& features = features_of(*keyframe);
+    const std::vector<int> with_patch = features_with_patch(features);
+    writer.write(static_cast<std::uint32_t>(with_patch.size()));
+    for (const int feature : with_patch) {
+      const Patch& patch = *features.find_patch(feature);
+      writer.write(static_cast<std::uint32_t>(feature));
+      writer.write_all<std::uint8_t>(patch.pixels);
+      write_vector(patch.centre, writer);
+    }
+  }
+}
+
+void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
+                   std::vector<Keyframe>& keyframes) {
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    Keyframe& keyframe = keyframes[i];
+    const Rig& rig = rigs[static_cast<std::size_t>(keyframe.rig)];
+    keyframe.frame.features = read_features_of(i, features, patches, rig);
+    keyframe.sightings.resize(static_cast<std::size_t>(keyframe.frame.features->size()));
+  }
+  features.require_end();
+  patches.require_end();
+}
+
+}  // namespace byre

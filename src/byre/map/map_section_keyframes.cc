@@ -1,0 +1,87 @@
+// Keyframes without their features: times and poses, and words.
+
+#include "byre/map/map_numbers.h"
+#include "byre/map/map_sections.h"
+#include "byre/map/map_values.h"
+
+#include <limits>
+
+namespace byre {
+namespace {
+
+constexpr std::size_t kKeyframeBytes =
+    sizeof(std::int64_t) + 3 * sizeof(std::uint32_t) + kPoseBytes + kSymmetricBytes<6>;
+constexpr auto kNoParent = std::numeric_limits<std::uint32_t>::max();
+
+void write_keyframe(const Keyframe& keyframe, ByteWriter& writer) {
+  writer.write(std::int64_t{keyframe.frame.time.count()});
+  writer.write(static_cast<std::uint32_t>(keyframe.rig));
+  writer.write(static_cast<std::uint32_t>(keyframe.recording));
+  writer.write(keyframe.parent ? keyframe.parent->number : kNoParent);
+  write_pose(keyframe.camera_from_world, writer);
+  write_symmetric(keyframe.covariance, writer);
+}
+
+std::optional<KeyframeId> read_parent(ByteReader& reader, std::uint32_t child) {
+  const auto parent = reader.read<std::uint32_t>();
+  if (parent == kNoParent) return std::nullopt;
+  if (parent >= child) {
+    reader.fail("keyframe " + std::to_string(child) + " has the younger parent " + std::to_string(parent));
+  }
+  return KeyframeId{Origin::offline, parent};
+}
+
+Keyframe read_keyframe(ByteReader& reader, std::uint32_t number, std::size_t rig_count, std::size_t recording_count) {
+  Keyframe keyframe;
+  keyframe.frame.time = Timestamp(reader.read<std::int64_t>());
+  keyframe.rig = static_cast<int>(read_index(reader, rig_count, "rig"));
+  keyframe.recording = static_cast<int>(read_index(reader, recording_count, "recording"));
+  keyframe.parent = read_parent(reader, number);
+  keyframe.camera_from_world = read_pose(reader);
+  keyframe.covariance = read_symmetric<6>(reader);
+  require_no_fault(reader, fault_in(keyframe.camera_from_world), "keyframe", number);
+  if (!keyframe.covariance.allFinite()) require_no_fault(reader, "has no finite covariance", "keyframe", number);
+  return keyframe;
+}
+
+}  // namespace
+
+void write_keyframes(const Keyframes& keyframes, ByteWriter& writer) {
+  writer.write(static_cast<std::uint32_t>(keyframes.size()));
+  for (const Keyframe* const keyframe : keyframes) write_keyframe(*keyframe, writer);
+}
+
+std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count) {
+  const std::uint32_t count = reader.read_count(kKeyframeBytes);
+  std::vector<Keyframe> keyframes;
+  keyframes.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    keyframes.push_back(read_keyframe(reader, i, rig_count, recording_count));
+  }
+  reader.require_end();
+  return keyframes;
+}
+
+void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer) {
+  writer.write(vocabulary_checksum);
+  for (const Keyframe* const keyframe : keyframes) {
+    writer.write(!keyframe->words.empty());
+    writer.write_all<Word>(keyframe->words);
+  }
+}
+
+std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
+  const auto vocabulary_checksum = reader.read<std::uint64_t>();
+  for (Keyframe& keyframe : keyframes) {
+    if (!read_bool(reader)) continue;
+    if (keyframe.sightings.empty()) reader.fail("has words of a keyframe without features");
+    if (vocabulary_checksum == 0) reader.fail("has words of no vocabulary");
+    const std::span<const std::byte> bytes = reader.take(keyframe.sightings.size() * sizeof(Word));
+    keyframe.words.resize(keyframe.sightings.size());
+    std::memcpy(keyframe.words.data(), bytes.data(), bytes.size());
+  }
+  reader.require_end();
+  return vocabulary_checksum;
+}
+
+}  // namespace byre

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "byre/input/byte_stream.h"
+#include "byre/map/map_file.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// The sections of a map file, in their order; docs/map_format.md describes each. Readers take the whole section and
+// throw InputError for every value that a sound map cannot hold. What equals nothing that a writer writes is refused
+// too, so that a file that can be read is written again byte by byte.
+
+using Keyframes = std::vector<const Keyframe*>;  // all of a map, by number
+Keyframes keyframes_of(const Map& map);
+
+// Of a keyframe that may have none.
+const Features& features_of(const Keyframe& keyframe);
+
+// Numbers of things, kept to tell a file whose sections do not belong together.
+struct MapSummary {
+  std::uint64_t keyframes = 0;
+  std::uint64_t points = 0;
+  std::uint64_t features = 0;
+  std::uint64_t observations = 0;
+  std::uint64_t patches = 0;
+  bool operator==(const MapSummary&) const = default;
+};
+MapSummary summarise(const Map& map);
+void write_summary(const MapSummary& summary, ByteWriter& writer);
+MapSummary read_summary(ByteReader reader);
+
+void write_notes(const std::map<std::string, std::string>& notes, ByteWriter& writer);
+std::map<std::string, std::string> read_notes(ByteReader reader);
+
+struct Provenance {
+  MapScale scale = MapScale::metric;
+  PoseSource pose_source = PoseSource::slam;
+  std::vector<SourceRecording> recordings;
+};
+void write_provenance(const StoredMap& stored, ByteWriter& writer);
+Provenance read_provenance(ByteReader reader);
+
+void write_rigs(const std::vector<Rig>& rigs, ByteWriter& writer);
+std::vector<Rig> read_rigs(ByteReader reader);
+
+// Times, rigs, parents, poses and their covariances.
+void write_keyframes(const Keyframes& keyframes, ByteWriter& writer);
+std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count);
+
+// Keypoints and descriptors.
+void write_features(const Keyframes& keyframes, ByteWriter& writer);
+// Patches of some of them, in a section of their own.
+void write_patches(const Keyframes& keyframes, ByteWriter& writer);
+// Fills in the features of the keyframes.
+void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
+                   std::vector<Keyframe>& keyframes);
+
+void write_points(const Map& map, ByteWriter& writer);
+std::vector<MapPoint> read_points(ByteReader reader);
+
+void write_observations(const Keyframes& keyframes, ByteWriter& writer);
+// Fills in the sightings of the keyframes. Every point's reference must be one of them.
+void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes);
+
+void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer);
+// Fills in the words of the keyframes and gives the checksum of their vocabulary.
+std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
+
+}  // namespace byre

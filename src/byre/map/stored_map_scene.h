@@ -1,0 +1,146 @@
+#pragma once
+
+#include "byre/map/map_file.h"
+
+#include <memory>
+#include <random>
+
+namespace byre {
+
+// A small map made by hand, with everything a map file can hold: two recordings, rigs with and without a baseline, a
+// keyframe without features, features with and without patches and disparities, keyframes with and without words, and
+// two keyframes without parent. Nothing in it is computed by a map's functions, so that its bytes stay.
+class StoredMapScene {
+ public:
+  explicit StoredMapScene(int keyframes = 5, int features = 9, std::uint64_t seed = 1)
+      : random_(seed), features_(features) {
+    add_origin();
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(keyframes); ++i) parts_.keyframes.push_back(keyframe(i));
+    add_points();
+    Keyframe empty = keyframe(static_cast<std::uint32_t>(keyframes));
+    empty.frame.features = std::make_shared<const Features>();
+    empty.sightings.clear();
+    empty.words.clear();
+    parts_.keyframes.push_back(empty);
+    stored_.map = Map(Origin::offline, parts_);
+  }
+
+  const StoredMap& stored() const { return stored_; }
+  // For a map that differs in one thing.
+  const MapParts& parts() const { return parts_; }
+
+ private:
+  float between(float low, float high) {
+    return low + (high - low) * static_cast<float>(random_() >> 40) / static_cast<float>(1 << 24);
+  }
+
+  Pose pose() {
+    Pose pose;
+    pose.rotation.coeffs() << between(-1, 1), between(-1, 1), between(-1, 1), 2.0;
+    pose.rotation.normalize();
+    pose.translation << between(-5, 5), between(-5, 5), between(0, 2);
+    return pose;
+  }
+
+  void add_origin() {
+    const Camera left{CameraModel::radial_tangential, 320, 240, 190.0, 191.0, 158.5, 119.5, {-0.28, 0.07, 2e-4, 1e-5}};
+    const Camera fisheye{CameraModel::equidistant, 200, 160, 90.0, 91.0, 99.5, 79.5, {0.01, -0.002, 0.0, 0.0}};
+    const Calibration stereo{left, StereoPartner{left, pose()}, pose()};
+    stored_.recordings = {
+        {"barn_morning", stereo, std::chrono::seconds(100), std::chrono::seconds(200)},
+        {"barn_evening", {fisheye, std::nullopt, {}}, std::chrono::seconds(300), std::chrono::seconds(300)}};
+    parts_.rigs = {{320, 240, 188.0, 158.0, 119.0, 0.11, pose()}, {200, 160, 88.0, 99.0, 79.0, 0.0, {}}};
+    stored_.notes = {{"site", "barn 3"}, {"software", "byre"}};
+    stored_.vocabulary_checksum = 0x0123456789abcdef;
+    stored_.pose_source = PoseSource::given;
+  }
+
+  Keypoint keypoint(const Rig& rig, int number) {
+    Keypoint keypoint;
+    keypoint.pixel = {between(0, static_cast<float>(rig.width - 1)), between(0, static_cast<float>(rig.height - 1))};
+    if (rig.is_stereo() && number % 3 > 0) {
+      keypoint.disparity = between(1, 40);
+      keypoint.disparity_sigma = 0.25f;
+    }
+    keypoint.angle = between(-3, 3);
+    keypoint.response = between(20, 120);
+    keypoint.octave = static_cast<std::uint8_t>(number % kOctaves);
+    return keypoint;
+  }
+
+  // Every second feature has a patch.
+  std::shared_ptr<const Features> features(const Rig& rig) {
+    const auto count = static_cast<std::size_t>(features_);
+    std::vector<Keypoint> keypoints;
+    std::vector<Descriptor> descriptors(count);
+    std::vector<Patch> patches((count + 1) / 2);
+    std::vector<int> patch_of_keypoint(count, -1);
+    for (int i = 0; i < features_; ++i) {
+      keypoints.push_back(keypoint(rig, i));
+      if (i % 2 == 0) patch_of_keypoint[static_cast<std::size_t>(i)] = i / 2;
+    }
+    for (Descriptor& descriptor : descriptors) std::ranges::generate(descriptor, std::ref(random_));
+    for (Patch& patch : patches) {
+      for (std::uint8_t& grey : patch.pixels) grey = static_cast<std::uint8_t>(random_() >> 56);
+      patch.centre = Eigen::Vector2f::Constant(Patch::kSize / 2);
+    }
+    return std::make_shared<const Features>(rig.width, rig.height, keypoints, descriptors, patches, patch_of_keypoint);
+  }
+
+  Keyframe keyframe(std::uint32_t number) {
+    Keyframe keyframe;
+    keyframe.rig = number % 4 == 3 ? 1 : 0;
+    keyframe.recording = keyframe.rig;
+    keyframe.frame.time = std::chrono::seconds(100) + number * std::chrono::milliseconds(50);
+    keyframe.frame.features = features(parts_.rigs[static_cast<std::size_t>(keyframe.rig)]);
+    keyframe.camera_from_world = pose();
+    keyframe.covariance = 1e-4 * Matrix6::Identity();
+    keyframe.covariance(0, 5) = keyframe.covariance(5, 0) = 1e-6;
+    if (number > 0 && keyframe.rig == 0) keyframe.parent = KeyframeId{Origin::offline, number - 1};
+    keyframe.sightings.resize(static_cast<std::size_t>(features_));
+    if (number % 2 == 0) {
+      for (int i = 0; i < features_; ++i) keyframe.words.push_back(static_cast<Word>(random_() >> 48));
+    }
+    return keyframe;
+  }
+
+  // Point i is feature i of up to three keyframes in a row; the last feature of each keyframe sees nothing.
+  void add_points() {
+    const auto seen_features = static_cast<std::uint32_t>(features_ - 1);
+    for (std::uint32_t first = 0; first < parts_.keyframes.size(); first += 3) {
+      const auto end = std::min<std::uint32_t>(first + 3, static_cast<std::uint32_t>(parts_.keyframes.size()));
+      for (std::uint32_t feature = 0; feature < seen_features; ++feature) {
+        for (std::uint32_t i = first; i < end; ++i) add_sighting(i, feature);
+        parts_.points.push_back(point({{Origin::offline, end - 1}, static_cast<int>(feature)}));
+      }
+    }
+  }
+
+  // Of the point that is added next.
+  void add_sighting(std::uint32_t number, std::uint32_t feature) {
+    Keyframe& keyframe = parts_.keyframes[number];
+    const PointId point{Origin::offline, static_cast<std::uint32_t>(parts_.points.size())};
+    const Eigen::Vector2f pixel = keyframe.frame.features->keypoint(static_cast<int>(feature)).pixel;
+    keyframe.sightings[feature] = {point, pixel + Eigen::Vector2f(0.25f, -0.125f), 0.5f};
+  }
+
+  MapPoint point(const Observation& reference) {
+    MapPoint point;
+    point.position_in_world << between(-10, 10), between(-10, 10), between(-1, 3);
+    point.covariance = 1e-3 * Eigen::Matrix3d::Identity();
+    point.covariance(0, 2) = point.covariance(2, 0) = 1e-5;
+    point.mean_viewing_direction = Eigen::Vector3f(between(-1, 1), between(-1, 1), 1.0f).normalized();
+    point.descriptor = parts_.keyframes[reference.keyframe.number].frame.features->descriptor(reference.feature);
+    point.min_distance = between(0.5, 1);
+    point.max_distance = between(2, 4);
+    point.reference = reference;
+    return point;
+  }
+
+  std::mt19937_64 random_;
+  int features_;
+  MapParts parts_;
+  StoredMap stored_;
+};
+
+}  // namespace byre
