@@ -1,0 +1,87 @@
+#include "byre/dataset/colmap_model.h"
+
+#include "byre/dataset/colmap_files.h"
+#include "byre/input/input_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_model(const fs::path& folder, const std::string& suffix) {
+  return std::ranges::all_of(std::array{"cameras", "images", "points3D"},
+                             [&](const std::string& name) { return fs::is_regular_file(folder / (name + suffix)); });
+}
+
+std::string image_place(const fs::path& folder, std::uint32_t id) {
+  return (folder / "images").string() + ": image " + std::to_string(id);
+}
+
+std::string point_place(const fs::path& folder, std::uint64_t id) {
+  return (folder / "points3D").string() + ": point " + std::to_string(id);
+}
+
+void require_known_camera_and_points(const ColmapModel& model, const fs::path& folder) {
+  for (const auto& [id, image] : model.images) {
+    if (!model.cameras.contains(image.camera_id)) {
+      throw InputError(image_place(folder, id),
+                       "was taken by camera " + std::to_string(image.camera_id) + ", which is not in the model");
+    }
+    for (const ColmapKeypoint& keypoint : image.keypoints) {
+      if (!keypoint.point_id || model.points.contains(*keypoint.point_id)) continue;
+      throw InputError(image_place(folder, id),
+                       "sees point " + std::to_string(*keypoint.point_id) + ", which is not in the model");
+    }
+  }
+}
+
+void require_mutual_tracks(const ColmapModel& model, const fs::path& folder) {
+  for (const auto& [id, point] : model.points) {
+    for (const ColmapTrackEntry& entry : point.track) {
+      const auto image = model.images.find(entry.image_id);
+      if (image == model.images.end()) {
+        throw InputError(point_place(folder, id),
+                         "is seen in image " + std::to_string(entry.image_id) + ", which is not in the model");
+      }
+      const std::vector<ColmapKeypoint>& keypoints = image->second.keypoints;
+      if (entry.keypoint >= keypoints.size() || keypoints[entry.keypoint].point_id != id) {
+        throw InputError(point_place(folder, id), "is said to be keypoint " + std::to_string(entry.keypoint) +
+                                                      " of image " + std::to_string(entry.image_id) + ", which is not");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Eigen::Quaterniond> colmap_rotation(double w, double x, double y, double z) {
+  const Eigen::Quaterniond rotation(w, x, y, z);
+  if (!(std::abs(rotation.norm() - 1.0) < 0.01)) return std::nullopt;
+  return rotation.normalized();
+}
+
+ColmapModel read_colmap_model(const fs::path& folder) {
+  ColmapModel model;
+  if (has_model(folder, ".bin")) {
+    model = {read_colmap_cameras_binary(folder / "cameras.bin"), read_colmap_images_binary(folder / "images.bin"),
+             read_colmap_points_binary(folder / "points3D.bin")};
+  } else if (has_model(folder, ".txt")) {
+    model = {read_colmap_cameras_text(folder / "cameras.txt"), read_colmap_images_text(folder / "images.txt"),
+             read_colmap_points_text(folder / "points3D.txt")};
+  } else {
+    throw InputError(folder.string(), "holds no COLMAP model",
+                     "name the folder with cameras, images and points3D, all .bin or all .txt, such as sparse/0");
+  }
+  require_known_camera_and_points(model, folder);
+  require_mutual_tracks(model, folder);
+  return model;
+}
+
+void write_colmap_model(const ColmapModel& model, const fs::path& folder, ColmapFormat format) {
+  format == ColmapFormat::text ? write_colmap_text(model, folder) : write_colmap_binary(model, folder);
+}
+
+}  // namespace byre
