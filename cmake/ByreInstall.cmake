@@ -37,3 +37,12 @@ function(byre_install_library)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/byreConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/byreConfigVersion.cmake
           DESTINATION ${package_dir})
 endfunction()
+
+# The vocabulary that comes with byre, and where place/default_vocabulary.cc looks for it.
+function(byre_install_vocabulary)
+  set(folder share/byre)
+  install(FILES ${folder}/default.vocabulary DESTINATION ${CMAKE_INSTALL_DATADIR}/byre)
+  file(RELATIVE_PATH from_program ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/byre)
+  set_source_files_properties(src/byre/place/default_vocabulary.cc PROPERTIES COMPILE_DEFINITIONS
+    "BYRE_DATA_FROM_PROGRAM=\"${from_program}\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
+endfunction()
