@@ -39,6 +39,7 @@ MappedRecording map_recording(const fs::path& folder, const FrameRange& range, s
   }
   session.finish();
   mapped.final = session.final_trajectory();
+  mapped.map = session.map().online();
   return mapped;
 }
 

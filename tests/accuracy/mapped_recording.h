@@ -17,6 +17,7 @@ struct MappedRecording {
   std::vector<Timestamp> frame_times;
   Trajectory causal;  // poses as they were published when their frame came
   Trajectory final;   // the same frames after all corrections
+  Map map{Origin::online};
 };
 
 MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,

@@ -18,5 +18,6 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 // the command line is parsed.
 Action declare_map(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
+Action declare_localise(CLI::App& command);
 
 }  // namespace byre::cli

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/evaluation_report.h"
+#include "byre/cli/trajectory_input.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/input/input_error.h"
@@ -37,18 +38,6 @@ constexpr const char* kFooter = R"(Examples:
 
 Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera.)";
 
-Trajectory load_trajectory(const fs::path& path, const std::optional<fs::path>& times) {
-  if (times && guess_trajectory_format(path) == TrajectoryFormat::kitti) return read_kitti_poses(path, *times);
-  return read_trajectory(path);
-}
-
-Trajectory load_truth(const EvaluateOptions& options) {
-  if (!fs::is_directory(options.truth)) return load_trajectory(options.truth, options.times);
-  const std::optional<fs::path> file = find_ground_truth(options.truth);
-  if (!file) throw InputError(options.truth.string(), "is a recording without ground truth", "name the file with it");
-  return load_trajectory(*file, options.times.value_or(options.truth / "times.txt"));
-}
-
 std::optional<ExpectedFrames> expected_frames(const EvaluateOptions& options) {
   if (options.frames_of) {
     return ExpectedFrames{open_recording(*options.frames_of, {})->times(), "frames of " + options.frames_of->string()};
@@ -73,7 +62,7 @@ Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport
 
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
   const Trajectory estimate = load_trajectory(options.estimate, options.times);
-  const Trajectory truth = load_truth(options);
+  const Trajectory truth = load_truth(options.truth, options.times);
   Protocol protocol = options.protocol;
   protocol.association.time_offset = from_seconds(options.time_offset_s);
   protocol.association.max_gap = from_seconds(options.max_gap_s);

@@ -25,7 +25,8 @@ struct Command {
 };
 
 constexpr std::array kCommands = {
-    Command{"map", "Turn a stereo recording into a trajectory", declare_map},
+    Command{"map", "Turn a stereo recording into a map and a trajectory", declare_map},
+    Command{"localise", "Find frames in a map, each without a guess", declare_localise},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
 };
 

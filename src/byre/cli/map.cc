@@ -3,36 +3,31 @@
 #include "byre/cli/map_options.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/output_file.h"
+#include "byre/cli/posed_map.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
+#include "byre/cli/stored_map.h"
+#include "byre/cli/warnings.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
+#include "byre/map/map_file.h"
 
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <memory>
 
-#include <unistd.h>
-
 namespace byre::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kShownWarnings = 20;
 
 std::unique_ptr<Recording> open_stereo_recording(const MapOptions& options) {
   std::unique_ptr<Recording> recording = open_recording(options.recording, options.range);
   if (recording->calibration().right) return recording;
   throw InputError(options.recording.string(), "has no right camera: only stereo recordings can be mapped",
                    "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
-}
-
-ProgressStyle progress_style(bool quiet) {
-  if (quiet) return ProgressStyle::none;
-  return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
 }
 
 std::string_view state_after(const MappedFrame& frame) {
@@ -53,15 +48,6 @@ MapRun run_with_progress(Recording& recording, const MapRunOptions& run_options,
   return run;
 }
 
-void show_warnings(const std::vector<std::string>& warnings) {
-  for (std::size_t i = 0; i < std::min(warnings.size(), kShownWarnings); ++i) {
-    std::cerr << "byre: warning: " << warnings[i] << "\n";
-  }
-  if (warnings.size() > kShownWarnings) {
-    std::cerr << "byre: warning: " << warnings.size() - kShownWarnings << " more of this kind\n";
-  }
-}
-
 void write_text(const std::string& text, const fs::path& path) {
   std::ofstream file(path);
   file << text;
@@ -71,7 +57,9 @@ void write_text(const std::string& text, const fs::path& path) {
 
 void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
                    const ResourceUse& resources) {
-  write_whole(options.trajectory, [&run](const fs::path& path) { write_trajectory(run.final, path); });
+  if (options.trajectory) {
+    write_whole(*options.trajectory, [&run](const fs::path& path) { write_trajectory(run.final, path); });
+  }
   if (options.causal_trajectory) {
     write_whole(*options.causal_trajectory, [&run](const fs::path& path) { write_trajectory(run.causal, path); });
   }
@@ -86,8 +74,11 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files) {
   return names;
 }
 
-ExitCode run_map_command(const MapOptions& options, std::ostream& result) {
+ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
+  if (options.given_poses) return run_posed_map(options, result);
+  std::optional<Vocabulary> vocabulary;  // found to be missing now, not after an hour of mapping
+  if (options.map) vocabulary = open_vocabulary(options.vocabulary);
   const std::unique_ptr<Recording> recording = open_stereo_recording(options);
   MapProtocol protocol{
       options.recording.string(), guess_format(options.recording), options.range, recording->size(), {}};
@@ -97,9 +88,16 @@ ExitCode run_map_command(const MapOptions& options, std::ostream& result) {
   limit_image_threads(1);
   const InterruptCatcher interrupt;
   const MapRun run = run_with_progress(*recording, protocol.options, interrupt, progress_style(options.quiet));
-  if (!options.quiet) show_warnings(run.warnings);
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
   const ResourceUse resources = resources_used_so_far();
   write_results(options, run, protocol, resources);
+  if (run.causal.empty()) options.map.reset();  // there is nothing to keep
+  if (options.map) {
+    StoredMap stored;
+    stored.map = run.map;
+    stored.recordings = {describe_source(options.recording, *recording)};
+    save_for_use(std::move(stored), *vocabulary, options.site, *options.map);
+  }
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;
   if (run.causal.empty())

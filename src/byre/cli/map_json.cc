@@ -67,8 +67,8 @@ Json counts_json(const MapRun& run) {
           {"frames_unreadable", counts.unreadable},
           {"frames_without_right_image", counts.without_right_image},
           {"keyframes_made", counts.keyframes},
-          {"keyframes_left", run.keyframes_left},
-          {"points", run.points_left},
+          {"keyframes_left", run.map.keyframe_count()},
+          {"points", run.map.point_count()},
           {"lost_episodes", counts.lost_episodes},
           {"frames_lost", counts.lost},
           {"resets", counts.resets}};

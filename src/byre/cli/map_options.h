@@ -4,7 +4,7 @@
 
 #include <filesystem>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -14,9 +14,13 @@ namespace byre::cli {
 // The command line of "byre map".
 struct MapOptions {
   std::filesystem::path recording;
-  std::filesystem::path trajectory;
+  std::optional<std::filesystem::path> map;
+  std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> causal_trajectory;
   std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> given_poses;  // a trajectory of the recording; else it is estimated
+  std::optional<std::filesystem::path> vocabulary;   // else the one that comes with byre
+  std::string site;
   FrameRange range;
   Pace pace = Pace::paced;
   Refinement refinement = Refinement::all;
@@ -27,8 +31,5 @@ struct MapOptions {
 
 // The options must outlive the parsing of the command line.
 void declare_map_options(CLI::App& command, MapOptions& options);
-
-// "FIRST:END", END exclusive; either may be left out. Empty for anything else, and for a range without a frame.
-std::optional<FrameRange> parse_frames(std::string_view text);
 
 }  // namespace byre::cli

@@ -4,6 +4,8 @@
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
+#include "byre/map/map_file.h"
+#include "byre/place/vocabulary.h"
 
 #include <chrono>
 #include <csignal>
@@ -80,7 +82,7 @@ TEST_F(MapProgram, ExplainsItself) {
   const Outcome help = run("map --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, AllOf(HasSubstr("--causal-trajectory"), HasSubstr("--pace"), HasSubstr("--stride"),
-                                 HasSubstr("Examples:\n  byre map MH_01_easy --trajectory out.txt\n")));
+                                 HasSubstr("Examples:\n  byre map MH_01_easy -o barn.byre\n")));
 }
 
 TEST_F(MapProgram, WritesWhatItWasAskedFor) {
@@ -94,6 +96,34 @@ TEST_F(MapProgram, WritesWhatItWasAskedFor) {
   EXPECT_THAT(outcome.output, HasSubstr("written      final.txt, causal.txt, stats.json\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("24 of 24 frames, "));
   EXPECT_EQ(files_left(), 5) << "three results and the two streams";
+}
+
+TEST_F(MapProgram, KeepsTheMapWithItsWordsAndItsOrigin) {
+  const Outcome outcome = map("-o room.byre --site 'Test room' --quiet");
+  EXPECT_EQ(outcome.exit_code, 0);
+  const StoredMap stored = load_map(folder_ / "room.byre");
+  EXPECT_GT(stored.map.keyframe_count(), 1);
+  EXPECT_EQ(stored.vocabulary_checksum, Vocabulary::load(default_vocabulary_path()).checksum());
+  EXPECT_EQ(stored.notes.at("site"), "Test room");
+  ASSERT_THAT(stored.recordings, SizeIs(1));
+  EXPECT_EQ(stored.recordings.front().name, RenderedFixture::shared().folder().filename());
+  EXPECT_EQ(stored.recordings.front().last_time, RenderedFixture::shared().truth().back().time);
+  EXPECT_THAT(outcome.output, HasSubstr("written      room.byre\n"));
+}
+
+TEST_F(MapProgram, KeepsTheSameBytesWhenItMapsTheSameAgain) {
+  ASSERT_EQ(map("-o once.byre --quiet").exit_code, 0);
+  ASSERT_EQ(map("-o again.byre --quiet").exit_code, 0);
+  EXPECT_EQ(read("once.byre"), read("again.byre"));
+}
+
+TEST_F(MapProgram, TakesPosesThatAreGivenAndSaysSo) {
+  const Outcome outcome = map("-o posed.byre --stride 4 --quiet --poses " + quoted(RenderedFixture::shared().folder()));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("not estimated"));
+  const StoredMap stored = load_map(folder_ / "posed.byre");
+  EXPECT_EQ(stored.pose_source, PoseSource::given);
+  EXPECT_EQ(stored.map.keyframe_count(), 6);
 }
 
 TEST_F(MapProgram, SaysNothingOnTheWayWhenQuiet) {
@@ -118,7 +148,8 @@ TEST_F(MapProgram, MapsThePartAskedFor) {
 
 TEST_F(MapProgram, RefusesWrongUsage) {
   for (const char* const arguments :
-       {"", "--trajectory", "--trajectory out.txt --frames 5", "--trajectory out.txt --frames 9:3",
+       {"", "--poses truth.txt --trajectory out.txt", "-o map.byre --poses truth.txt --trajectory out.txt",
+        "--trajectory", "--trajectory out.txt --frames 5", "--trajectory out.txt --frames 9:3",
         "--trajectory out.txt --start 2 --end 2", "--trajectory out.txt --start -1", "--trajectory out.txt --stride 0",
         "--trajectory out.txt --pace fast", "--trajectory out.txt --stats ./out.txt",
         "--trajectory out.txt another_recording"}) {
@@ -159,8 +190,9 @@ TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {
   const RenderedFixture blind("byre_blind_room", 2, 20.0);
   fs::remove(blind.image("cam1", 0));
   const Outcome outcome =
-      run("map " + quoted(blind.folder()) + " --frames 0:1 --trajectory out.txt --stats stats.json");
+      run("map " + quoted(blind.folder()) + " --frames 0:1 -o map.byre --trajectory out.txt --stats stats.json");
   EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "map.byre"));
   EXPECT_THAT(outcome.errors, HasSubstr("byre: error: no frame got a pose"));
   EXPECT_THAT(outcome.errors, HasSubstr("byre: warning: "));
   EXPECT_EQ(json::parse(read("stats.json")).at("counts").at("frames_without_right_image"), 1);

@@ -79,8 +79,8 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   std::string text = row("recording", describe_recording(run, protocol));
   text += row("pace", std::string(name_of(protocol.options.pace)));
   text += row("poses", describe_poses(counts));
-  text += row("map",
-              formatted("%d keyframes, of %d made; %d points", run.keyframes_left, counts.keyframes, run.points_left));
+  text += row("map", formatted("%d keyframes, of %d made; %d points", run.map.keyframe_count(), counts.keyframes,
+                               run.map.point_count()));
   text += row("path", formatted("%.2f m", path_length(run.final)));
   text += row("frame time", describe_frame_time(run, protocol.options.pace));
   text += row("mapping", describe_mapping(run));

@@ -49,8 +49,8 @@ MapRun small_run() {
     run.final.push_back({run.frames[static_cast<std::size_t>(i)].time,
                          *run.frames[static_cast<std::size_t>(i)].report->world_from_body});
   run.causal = run.final;
-  run.keyframes_left = 1;
-  run.points_left = 1234;
+  run.map.add_keyframe({});
+  for (int i = 0; i < 1234; ++i) run.map.add_point({});
   run.job_seconds = {0.0305, 0.0105};
   run.warnings = {"2.png: is not a whole image"};
   run.wall_seconds = 2.0;

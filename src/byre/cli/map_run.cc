@@ -69,8 +69,7 @@ class FrameThread {
 
 void take_over_result(const FrameThread& thread, MapRun& run) {
   run.final = thread.session().final_trajectory();
-  run.keyframes_left = thread.session().map().online().keyframe_count();
-  run.points_left = thread.session().map().online().point_count();
+  run.map = offline_copy(thread.session().map().online());
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {
     if (frame.report && frame.report->world_from_body)

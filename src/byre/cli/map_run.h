@@ -2,6 +2,7 @@
 
 #include "byre/dataset/recording.h"
 #include "byre/features/extract.h"
+#include "byre/map/map_file.h"
 #include "byre/session/session.h"
 
 #include <cstdint>
@@ -49,11 +50,10 @@ struct MappedFrame {
 };
 
 struct MapRun {
-  std::vector<MappedFrame> frames;  // one for each frame of the recording, fewer when the run was stopped
-  Trajectory causal;                // poses as published when their frames came
-  Trajectory final;                 // as recomputed after the last frame
-  int keyframes_left = 0;           // of those made, others were found redundant
-  int points_left = 0;
+  std::vector<MappedFrame> frames;    // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                  // poses as published when their frames came
+  Trajectory final;                   // as recomputed after the last frame
+  Map map{Origin::offline};           // as it is kept; of the keyframes made, others were found redundant
   std::vector<double> job_seconds;    // wall time of each mapping job
   std::vector<std::string> warnings;  // of the recording
   std::vector<double> lateness;       // live: seconds by which frames were fed too late, of those that were

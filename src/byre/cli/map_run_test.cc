@@ -45,8 +45,8 @@ TEST(RunMap, FollowsARecordingInEveryPace) {
     EXPECT_THAT(mapped.final, SizeIs(rendered.truth().size()));
     EXPECT_LT(error_m(mapped.causal, rendered.truth()), 0.1);
     EXPECT_LT(error_m(mapped.final, rendered.truth()), 0.1);
-    EXPECT_GT(mapped.keyframes_left, 1);
-    EXPECT_GT(mapped.points_left, 100);
+    EXPECT_GT(mapped.map.keyframe_count(), 1);
+    EXPECT_GT(mapped.map.point_count(), 100);
     EXPECT_FALSE(mapped.job_seconds.empty());
   }
 }

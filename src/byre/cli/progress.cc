@@ -5,6 +5,8 @@
 #include <cmath>
 #include <ostream>
 
+#include <unistd.h>
+
 namespace byre::cli {
 namespace {
 
@@ -18,16 +20,21 @@ std::string bar(int done, int total) {
   return std::string(kBarWidth, '.').replace(0, filled, filled, '#');
 }
 
-std::string describe(int done, int total, double elapsed_s, std::string_view state) {
-  std::string text = formatted("%d of %d frames", done, total);
+std::string describe(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
+  std::string text = formatted("%d of %d %s", done, total, unit.c_str());
   if (elapsed_s > 0.0) {
     const double rate = done / elapsed_s;
-    text += formatted(", %.1f frames/s, %s left", rate, format_duration((total - done) / rate).c_str());
+    text += formatted(", %.1f %s/s, %s left", rate, unit.c_str(), format_duration((total - done) / rate).c_str());
   }
   return text + ", " + std::string(state);
 }
 
 }  // namespace
+
+ProgressStyle progress_style(bool quiet) {
+  if (quiet) return ProgressStyle::none;
+  return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
+}
 
 bool Progress::is_due(int done, double elapsed_s) const {
   if (style_ == ProgressStyle::none) return false;
@@ -40,7 +47,7 @@ bool Progress::is_due(int done, double elapsed_s) const {
 
 void Progress::update(int done, double elapsed_s, std::string_view state) {
   if (!is_due(done, elapsed_s)) return;
-  const std::string text = describe(done, total_, elapsed_s, state);
+  const std::string text = describe(done, total_, unit_, elapsed_s, state);
   if (style_ == ProgressStyle::bar) {
     constexpr const char* kClearToEnd = "\x1b[K";
     stream_ << "\r[" << bar(done, total_) << "] " << text << kClearToEnd << std::flush;

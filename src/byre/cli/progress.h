@@ -4,6 +4,7 @@
 #include <iosfwd>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace byre::cli {
 
@@ -11,14 +12,17 @@ namespace byre::cli {
 //   lines  a line every tenth of the work or ten seconds: for a log
 enum class ProgressStyle : std::uint8_t { none, bar, lines };
 
-// Tells how far the frames are, how fast they go, and for how long they still will.
+// What suits the standard error stream.
+ProgressStyle progress_style(bool quiet);
+
+// Tells how far the frames, or other things, are, how fast they go, and for how long they still will.
 class Progress {
  public:
-  // The stream must outlive it.
-  Progress(std::ostream& stream, ProgressStyle style, int total_frames)
-      : stream_(stream), style_(style), total_(total_frames) {}
+  // unit: what is counted, in the plural. The stream must outlive it.
+  Progress(std::ostream& stream, ProgressStyle style, int total, std::string unit = "frames")
+      : stream_(stream), style_(style), total_(total), unit_(std::move(unit)) {}
 
-  // After each frame: how many are done, in how many seconds, and what state the last one left.
+  // After each one: how many are done, in how many seconds, and what state the last one left.
   void update(int done, double elapsed_s, std::string_view state);
 
   // Leaves the bar standing; call it before anything else is printed.
@@ -30,6 +34,7 @@ class Progress {
   std::ostream& stream_;
   const ProgressStyle style_;
   const int total_;
+  const std::string unit_;
   int shown_done_ = 0;
   double shown_elapsed_s_ = 0.0;
 };

@@ -27,6 +27,12 @@ struct Candidate {
   int inlier_count = 0;
 };
 
+// Of left and right pixel; the disparity's part is zero where there is none.
+StereoPixel error_of(const PointSighting& sighting, const StereoPixel& projected) {
+  const double disparity = sighting.disparity.value_or(projected.z());
+  return projected - StereoPixel(sighting.pixel.x(), sighting.pixel.y(), disparity);
+}
+
 // Gives up once the cost exceeds cost_to_beat; the candidate's counts are then partial.
 Candidate score(const Problem& problem, const Pose& camera_from_world, double cost_to_beat) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
@@ -35,7 +41,7 @@ Candidate score(const Problem& problem, const Pose& camera_from_world, double co
     const Eigen::Vector3d point_in_camera = rotation * sighting.point_in_world + camera_from_world.translation;
     double squared_error = problem.max_squared_error;
     if (point_in_camera.z() > 0.0) {
-      squared_error = (problem.rig.project(point_in_camera).head<2>() - sighting.pixel).squaredNorm();
+      squared_error = error_of(sighting, problem.rig.project(point_in_camera)).squaredNorm();
     }
     const bool inlier = squared_error < problem.max_squared_error;
     candidate.inlier_count += inlier;
@@ -57,10 +63,11 @@ NormalEquations linearise(const Problem& problem, const Pose& camera_from_world)
   for (const PointSighting& sighting : problem.sightings) {
     const Eigen::Vector3d point_in_camera = rotation * sighting.point_in_world + camera_from_world.translation;
     if (!(point_in_camera.z() > 0.0)) continue;
-    const Eigen::Vector2d error = problem.rig.project(point_in_camera).head<2>() - sighting.pixel;
+    const StereoPixel error = error_of(sighting, problem.rig.project(point_in_camera));
     if (!(error.squaredNorm() < problem.max_squared_error)) continue;
-    const Eigen::Matrix<double, 2, 3> by_point = problem.rig.projection_jacobian(point_in_camera).topRows<2>();
-    Eigen::Matrix<double, 2, 6> jacobian;
+    StereoJacobian by_point = problem.rig.projection_jacobian(point_in_camera);
+    if (!sighting.disparity) by_point.row(2).setZero();
+    Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << by_point, by_point * -skew(point_in_camera);
     equations.information.noalias() += jacobian.transpose() * jacobian;
     equations.gradient.noalias() += jacobian.transpose() * error;

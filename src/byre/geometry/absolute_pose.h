@@ -9,10 +9,11 @@
 
 namespace byre {
 
-// A known point seen at a pixel of a rectified image.
+// A known point seen at a pixel of a rectified image, and in the right image where there is a disparity.
 struct PointSighting {
   Eigen::Vector3d point_in_world;
   Eigen::Vector2d pixel;
+  std::optional<double> disparity{};  // pixels; must agree too
 };
 
 struct AbsolutePose {

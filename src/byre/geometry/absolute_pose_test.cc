@@ -91,6 +91,18 @@ TEST(EstimateAbsolutePose, WithstandsFourInFiveBeingWrong) {
   EXPECT_THAT(found->camera_from_world, PoseNear(kCameraFromWorld, 0.02, 0.006));
 }
 
+TEST(EstimateAbsolutePose, TakesNobodyForAnInlierWhoseDisparityDisagrees) {
+  Sightings sightings = seen(60, 0, 0.0, 7);
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const double disparity = kRig.project(kCameraFromWorld * sightings[i].point_in_world).z();
+    sightings[i].disparity = i < 20 ? disparity + 30.0 : disparity;
+  }
+  const auto found = estimate_absolute_pose(sightings, kRig, {});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->inlier_count, 40);
+  EXPECT_THAT(found->camera_from_world, PoseNear(kCameraFromWorld, 1e-9, 1e-9));
+}
+
 TEST(EstimateAbsolutePose, CountsItsInliers) {
   const Sightings sightings = seen(100, 30, 1.0, 4);
   const auto found = estimate_absolute_pose(sightings, kRig, {});

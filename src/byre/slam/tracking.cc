@@ -82,6 +82,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   TrackedFrame tracked;
   tracked.camera_from_world = refined->camera_from_world;
   tracked.covariance = refined->covariance;
+  tracked.match_covariance = refined->covariance;
   tracked.matches = static_cast<int>(matches.size());
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (refined->inliers[i]) tracked.features.push_back(features[i]);

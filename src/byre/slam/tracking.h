@@ -20,6 +20,7 @@ struct TrackedFrame {
   // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin: what the matches leave open, and
   // what the reference keyframe's own pose does.
   Matrix6 covariance = Matrix6::Zero();
+  Matrix6 match_covariance = Matrix6::Zero();  // of that, what the matches leave open: relative to the map around it
   KeyframeId reference;                  // the keyframe that shares most points
   std::vector<TrackedFeature> features;  // inliers only, ascending
   int expected = 0;                      // map points in the frustum

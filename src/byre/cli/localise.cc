@@ -1,0 +1,147 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/frame_range_options.h"
+#include "byre/cli/interrupt.h"
+#include "byre/cli/localise_report.h"
+#include "byre/cli/localise_run.h"
+#include "byre/cli/output_file.h"
+#include "byre/cli/progress.h"
+#include "byre/cli/stopwatch.h"
+#include "byre/cli/stored_map.h"
+#include "byre/cli/trajectory_input.h"
+#include "byre/cli/warnings.h"
+#include "byre/evaluation/trajectory_file.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/input_error.h"
+#include "byre/place/map_words.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LocaliseCommandOptions {
+  fs::path map;
+  std::vector<fs::path> inputs;
+  FrameRange range;
+  std::optional<fs::path> truth;
+  std::optional<fs::path> map_truth;
+  std::optional<fs::path> trajectory;
+  std::optional<fs::path> vocabulary;
+  bool json = false;
+  bool quiet = false;
+};
+
+constexpr const char* kFooter = R"(Examples:
+  byre localise barn.byre evening_round --truth evening_round
+  byre localise barn.byre MH_01_easy --frames 150:300 --trajectory found.txt
+  byre localise barn.byre photo1.png photo2.png --json
+
+Each frame is looked for in the whole map, without tracking and without a guess. Images are taken for the left camera's
+of the map's first recording. With truth, errors are those in the map's frame: the map, not the frames, is aligned to
+the truth by its keyframes where the truth covers them; for a map of another recording name that one's truth too
+(--map-truth). Exit code 0 also when no frame is found.)";
+
+bool is_recording(const std::vector<fs::path>& inputs) {
+  return inputs.size() == 1 && fs::is_directory(inputs.front());
+}
+
+const Calibration& camera_of(const StoredMap& stored, const fs::path& path) {
+  if (!stored.recordings.empty()) return stored.recordings.front().calibration;
+  throw InputError(path.string(), "does not say with which camera it was made, so images cannot be localised in it",
+                   "localise a recording instead");
+}
+
+struct Work {
+  LocaliseRun run;
+  LocaliseProtocol protocol;
+};
+
+Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored, const Vocabulary& vocabulary,
+                  const InterruptCatcher& interrupt) {
+  const SearchableMap map(stored, vocabulary);
+  std::unique_ptr<Recording> recording;
+  if (is_recording(options.inputs)) recording = open_recording(options.inputs.front(), options.range);
+  const int frames = recording ? recording->size() : static_cast<int>(options.inputs.size());
+  Progress progress(std::cerr, progress_style(options.quiet), frames);
+  const Stopwatch watch;
+  LocaliseHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_frame = [&](int done, const LocalisedFrame& frame) {
+    progress.update(done, watch.seconds(), frame.world_from_body ? "found" : to_string(frame.localisation.failure));
+  };
+  LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
+                              : localise_images(map, options.inputs, camera_of(stored, options.map), hooks);
+  progress.close();
+  return {std::move(run), {options.map.string(), recording ? options.inputs.front().string() : "images", frames}};
+}
+
+std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, const LocaliseRun& run,
+                                        const StoredMap& stored) {
+  if (!options.truth) return std::nullopt;
+  const Trajectory truth = load_truth(*options.truth);
+  return errors_in_map(run, stored, options.map_truth ? load_truth(*options.map_truth) : truth, truth);
+}
+
+void write_found(const LocaliseRun& run, const fs::path& path) {
+  Trajectory found;
+  for (const LocalisedFrame& frame : run.frames) {
+    if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
+  }
+  write_whole(path, [&found](const fs::path& unfinished) { write_trajectory(found, unfinished); });
+}
+
+ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
+  if (options.trajectory) require_writable(*options.trajectory);
+  StoredMap stored = load_map(options.map);
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  add_words(stored, vocabulary);
+
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  const Work work = localise_all(options, stored, vocabulary, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
+  if (options.trajectory) write_found(work.run, *options.trajectory);
+  const auto print = options.json ? to_json : to_text;
+  result << print(work.run, work.protocol, judge(options, work.run, stored));
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
+void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
+  command.add_option("MAP", options.map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
+  command.add_option("INPUT", options.inputs, "Folder of a recording, or image files")
+      ->type_name("RECORDING|IMAGES...")
+      ->required();
+  declare_frame_range(command, options.range);
+  command.add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
+      ->type_name("FILE|FOLDER");
+  command
+      .add_option("--map-truth", options.map_truth,
+                  "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+      ->type_name("FILE|FOLDER")
+      ->needs("--truth");
+}
+
+}  // namespace
+
+Action declare_localise(CLI::App& command) {
+  const auto options = std::make_shared<LocaliseCommandOptions>();
+  declare_inputs(command, *options);
+  command.add_option("--trajectory", options->trajectory, "Write the poses found, in the map's frame. TUM format")
+      ->type_name("FILE");
+  command
+      .add_option("--vocabulary", options->vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.parse_complete_callback([options] { require_sense(options->range); });
+  command.footer(kFooter);
+  return [options](std::ostream& result) { return run_localise(*options, result); };
+}
+
+}  // namespace byre::cli

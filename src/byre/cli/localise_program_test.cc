@@ -1,0 +1,84 @@
+// "byre localise" as a user runs it.
+
+#include "byre/cli/formatted.h"
+#include "byre/cli/program_fixture.h"
+#include "byre/cli/rendered_fixture.h"
+#include "byre/evaluation/trajectory_file.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::string quoted(const std::filesystem::path& path) {
+  return formatted("'%s'", path.c_str());
+}
+
+const std::string kRoom = quoted(RenderedFixture::shared().folder());
+
+// Every other frame of the room is mapped, and the others are looked for.
+class LocaliseProgram : public ProgramTest {
+ protected:
+  LocaliseProgram() { EXPECT_EQ(run("map " + kRoom + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+
+  Outcome localise(const std::string& arguments) const { return run("localise room.byre " + arguments); }
+};
+
+TEST_F(LocaliseProgram, FindsTheOtherFrames) {
+  const Outcome outcome = localise(kRoom + " --frames 1: --stride 2 --trajectory found.txt --truth " + kRoom);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("found        12 of 12 frames (100.0 %)"));
+  EXPECT_THAT(outcome.output, HasSubstr("found within 0.1 m and 2 deg"));
+  EXPECT_THAT(read_trajectory(folder_ / "found.txt"), SizeIs(12));
+}
+
+TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
+  const Outcome outcome = localise(kRoom + " --frames 1:4 --stride 2 --json --quiet --truth " + kRoom);
+  const json report = json::parse(outcome.output);
+  EXPECT_EQ(report.at("frames_found"), 2);
+  ASSERT_EQ(report.at("per_frame").size(), 2);
+  EXPECT_EQ(report.at("per_frame").at(0).at("found"), true);
+  EXPECT_EQ(report.at("per_frame").at(0).at("position_in_map_m").size(), 3);
+  EXPECT_LT(report.at("errors").at("position_m").at("max"), 0.05);
+  EXPECT_THAT(outcome.errors, IsEmpty());
+}
+
+TEST_F(LocaliseProgram, TakesImagesForTheMapsCamera) {
+  const Outcome outcome = localise(quoted(RenderedFixture::shared().image("cam0", 1)) + " " +
+                                   quoted(RenderedFixture::shared().image("cam0", 3)));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("found        2 of 2 frames"));
+}
+
+TEST_F(LocaliseProgram, RefusesAnotherRoomAndSaysWhy) {
+  const std::filesystem::path elsewhere = folder_ / "elsewhere";
+  RenderedRoomOptions other;
+  other.seed = 99;
+  const Calibration calibration = euroc_like_calibration(4);
+  write_euroc_recording(RenderedRoom(other), calibration,
+                        figure_eight_trajectory(4, 20.0, 3.0, 0.05, calibration.body_from_left), elsewhere, {});
+  const Outcome outcome = localise(quoted(elsewhere));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("found        0 of 4 frames"));
+  EXPECT_THAT(outcome.output, HasSubstr("not found    "));
+}
+
+TEST_F(LocaliseProgram, NamesBadInput) {
+  EXPECT_EQ(localise("absent").exit_code, 0) << "an image that cannot be read is a warning";
+  EXPECT_THAT(localise("absent").errors, HasSubstr("absent: is not a whole image"));
+  write("torn.byre", read("room.byre").substr(0, 1000));
+  const Outcome outcome = run("localise torn.byre " + kRoom);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("torn.byre"));
+  EXPECT_EQ(run("localise room.byre").exit_code, 2);
+  EXPECT_EQ(localise(kRoom + " --map-truth " + kRoom).exit_code, 2) << "without --truth";
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "byre/cli/localise_run.h"
+#include "byre/evaluation/trajectory_error.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre::cli {
+
+// A frame that was found and has truth.
+struct LocalisationError {
+  Timestamp time{};
+  double position = 0.0;  // metres, or the map's unit
+  double rotation = 0.0;  // degrees
+};
+
+// Errors in the map's frame: the map is aligned to the truth once, by its own keyframes, not by what was localised.
+struct LocalisationErrors {
+  std::vector<LocalisationError> errors;
+  int alignment_keyframes = 0;  // zero: the truth is taken for given in the map's frame
+};
+
+// map_truth holds the truth at the times of the map's keyframes, where it does: with less than three of them aligned
+// nothing is.
+LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored, const Trajectory& map_truth,
+                                 const Trajectory& truth);
+
+// How the run was made.
+struct LocaliseProtocol {
+  std::string map;
+  std::string input;  // recording, or number of images
+  int frames = 0;     // asked for
+};
+
+std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
+                    const std::optional<LocalisationErrors>& errors);
+// With an object for each frame.
+std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
+                    const std::optional<LocalisationErrors>& errors);
+
+}  // namespace byre::cli

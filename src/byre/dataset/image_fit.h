@@ -1,0 +1,10 @@
+#pragma once
+
+#include "byre/features/image.h"
+
+namespace byre {
+
+// The image scaled until it covers the size, and cut to it about its centre.
+Image fit(const Image& image, int width, int height);
+
+}  // namespace byre

@@ -1,0 +1,166 @@
+#include "byre/slam/localisation.h"
+
+#include "byre/geometry/absolute_pose.h"
+#include "byre/slam/keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+namespace byre {
+namespace {
+
+using Failure = LocalisationFailure;
+
+// What is needed wherever the frame is looked for.
+struct Query {
+  const Frame& frame;
+  const Rig& rig;
+  const MapView& map;
+  const Vocabulary& vocabulary;
+  std::span<const Word> words;
+  const LocaliseOptions& options;
+};
+
+Localisation failed(Failure failure, int matches, std::size_t inliers) {
+  return {std::nullopt, failure, 0, matches, static_cast<int>(inliers)};
+}
+
+PointSighting sighting_of(const Query& query, const PointMatch& match) {
+  const Keypoint& keypoint = query.frame.features->keypoint(match.feature);
+  PointSighting sighting{query.map.find_point(match.point)->position_in_world, keypoint.pixel.cast<double>()};
+  if (keypoint.has_disparity()) sighting.disparity = keypoint.disparity;
+  return sighting;
+}
+
+std::optional<AbsolutePose> pose_from_matches(const Query& query, const std::vector<PointMatch>& matches) {
+  std::vector<PointSighting> sightings;
+  sightings.reserve(matches.size());
+  for (const PointMatch& match : matches) sightings.push_back(sighting_of(query, match));
+  return estimate_absolute_pose(sightings, query.rig, query.options.ransac);
+}
+
+// Looks for the points around a first pose, then for those around the keyframe that shares most of them.
+std::optional<TrackedFrame> refine(const Query& query, const Pose& camera_from_world, KeyframeId place) {
+  const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
+    return track(query.frame, predicted, query.rig, query.map,
+                 local_points(query.map, reference, query.options.local_keyframes), query.options.track);
+  };
+  const std::optional<TrackedFrame> first = track_near(camera_from_world, place);
+  if (!first || first->reference == place) return first;
+  const std::optional<TrackedFrame> second = track_near(first->camera_from_world, first->reference);
+  return second && second->features.size() > first->features.size() ? second : first;
+}
+
+// Standard deviation of the pixels along the direction in which they spread least, as a share of the image's diagonal.
+double spread(const std::vector<TrackedFeature>& features, const Rig& rig) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const TrackedFeature& feature : features) mean += feature.pixel.cast<double>();
+  mean /= static_cast<double>(features.size());
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const TrackedFeature& feature : features) {
+    const Eigen::Vector2d offset = feature.pixel.cast<double>() - mean;
+    covariance += offset * offset.transpose();
+  }
+  covariance /= static_cast<double>(features.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) / std::hypot(rig.width, rig.height);
+}
+
+Failure reason_to_doubt(const TrackedFrame& tracked, const Query& query) {
+  const LocaliseOptions& options = query.options;
+  if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
+  if (spread(tracked.features, query.rig) < options.min_spread) return Failure::clustered;
+  const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
+  const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
+  const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, query.map) &&
+                          rotation_sigma <= options.max_rotation_sigma;
+  return determined ? Failure::none : Failure::uncertain;
+}
+
+Localisation localise_at(const PlaceCandidate& place, const Query& query) {
+  const LocaliseOptions& options = query.options;
+  const std::vector<PointMatch> matches =
+      match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, options.matching);
+  const int match_count = static_cast<int>(matches.size());
+  if (match_count < options.min_matches) return failed(Failure::too_few_matches, match_count, matches.size());
+
+  const std::optional<AbsolutePose> pose = pose_from_matches(query, matches);
+  const int agreeing = pose ? pose->inlier_count : 0;
+  if (agreeing < options.min_pose_inliers) {
+    return failed(Failure::geometry_disagrees, match_count, static_cast<std::size_t>(agreeing));
+  }
+  const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
+  if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
+  const Failure doubt = reason_to_doubt(*tracked, query);
+  if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
+  return {tracked, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
+}
+
+// Whether two poses cannot both be right about where the camera is.
+bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapView& map) {
+  constexpr double kMaxShift = 0.05;  // of the median depth
+  constexpr double kMaxTurn = 0.05;   // radians
+  const Pose motion = one.camera_from_world * inverse(other.camera_from_world);
+  return motion.translation.norm() > kMaxShift * median_depth(one, map) ||
+         rotation_log(motion.rotation).norm() > kMaxTurn;
+}
+
+// The attempt that came further; of two successes the one with more inliers, unless the other is nearly as good
+// somewhere else.
+Localisation better_of(const Localisation& best, const Localisation& other, const Query& query) {
+  if (!best.tracked || !other.tracked) {
+    const bool other_is_further = other.tracked || (!best.tracked && other.failure > best.failure);
+    return other_is_further ? other : best;
+  }
+  const auto& [more, fewer] = best.inliers >= other.inliers ? std::tie(best, other) : std::tie(other, best);
+  const bool rivals =
+      fewer.inliers >= query.options.rival_share * more.inliers && contradict(*more.tracked, *fewer.tracked, query.map);
+  return rivals ? failed(Failure::ambiguous, more.matches, static_cast<std::size_t>(more.inliers)) : more;
+}
+
+}  // namespace
+
+std::string_view to_string(LocalisationFailure failure) {
+  switch (failure) {
+    case Failure::none:
+      return "none";
+    case Failure::too_few_features:
+      return "too few features";
+    case Failure::no_similar_keyframe:
+      return "no similar keyframe";
+    case Failure::too_few_matches:
+      return "too few matches";
+    case Failure::geometry_disagrees:
+      return "geometry does not agree";
+    case Failure::too_few_inliers:
+      return "too few inliers";
+    case Failure::clustered:
+      return "inliers are clustered";
+    case Failure::uncertain:
+      return "pose is uncertain";
+    case Failure::ambiguous:
+      return "two places fit";
+  }
+  return "";
+}
+
+Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
+                      const LocaliseOptions& options) {
+  if (frame.features->size() < options.min_features) return failed(Failure::too_few_features, 0, 0);
+  const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
+  const std::vector<PlaceCandidate> places = find_places(index, map, words, options.places);
+  const Query query{frame, rig, map, index.vocabulary(), words, options};
+  Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
+  for (const PlaceCandidate& place : places) {
+    best = better_of(best, localise_at(place, query), query);
+    if (best.failure == Failure::ambiguous) break;
+  }
+  best.places = static_cast<int>(places.size());
+  return best;
+}
+
+}  // namespace byre

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "byre/geometry/robust.h"
+#include "byre/map/map_view.h"
+#include "byre/place/place_index.h"
+#include "byre/slam/place_matching.h"
+#include "byre/slam/tracking.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace byre {
+
+// Why a frame was not found in a map; ordered by how far the attempt came.
+enum class LocalisationFailure : std::uint8_t {
+  none,
+  too_few_features,     // the image is dark, blurred or blank
+  no_similar_keyframe,  // nothing in the map looks like it
+  too_few_matches,      // of the frame's features with the points of the places that do
+  geometry_disagrees,   // no pose explains the matches
+  too_few_inliers,      // a pose was found, but too few of the points around it are where they should be
+  clustered,            // the points that agree lie in a small part of the image
+  uncertain,            // they leave the pose open by more than is useful
+  ambiguous             // two places explain the image
+};
+
+std::string_view to_string(LocalisationFailure failure);
+
+struct LocaliseOptions {
+  PlaceQueryOptions places{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
+  PlaceMatchOptions matching;
+  TrackOptions track;
+  int min_features = 50;
+  int min_matches = 10;      // before a pose is looked for
+  int min_pose_inliers = 8;  // of the matches, for a first pose
+  RansacOptions ransac{.max_iterations = 2000, .confidence = 0.999, .max_error = 6.0, .seed = 0};
+  int local_keyframes = 20;          // whose points are looked for around the first pose
+  int min_inliers = 40;              // at the end
+  double min_spread = 0.05;          // of the image's diagonal: deviation of the inliers where they spread least
+  double max_position_sigma = 0.02;  // over the median depth of the inliers
+  double max_rotation_sigma = 0.02;  // radians
+  double rival_share = 0.7;          // of the best place's inliers at a second place: the frame could be at either
+};
+
+struct Localisation {
+  std::optional<TrackedFrame> tracked;  // empty when the frame was not found
+  LocalisationFailure failure = LocalisationFailure::too_few_features;
+  int places = 0;   // tried
+  int matches = 0;  // by words, at the place that came furthest; zero before any was tried
+  int inliers = 0;  // of its last step
+};
+
+// Finds a frame in the map without any guess of its pose: places that share visual words, matches of their points,
+// a pose from three points at a time, points looked for around it, and refinement on all of them. Accepted only when
+// many points agree, spread over the image, and determine the pose, and no other place does as well.
+Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
+                      const LocaliseOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,34 @@
+#pragma once
+
+// A simulated room that was mapped before, and its vocabulary, as the tests of place recognition need them.
+
+#include "byre/place/place_index.h"
+#include "byre/slam/mission_scene.h"
+
+namespace byre {
+
+inline Vocabulary vocabulary_of(const SimulatedMission& mission) {
+  std::vector<std::vector<Descriptor>> images;
+  for (std::size_t i = 0; i < mission.frames.size(); i += 5)
+    images.push_back(mission.frames[i].features->descriptors());
+  return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
+}
+
+// A map of the mission with every fifth frame a keyframe, in its true place.
+struct MappedPlace {
+  explicit MappedPlace(const SimulatedMission& mission)
+      : map(true_map(mission, 5, Origin::offline)), index(vocabulary_of(mission)) {
+    for (const KeyframeId id : map.keyframe_ids()) {
+      map.set_words(id, index.vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+      index.add(id, map.find_keyframe(id)->words);
+    }
+  }
+
+  MapView view() const { return {&map, nothing_online}; }
+
+  Map map;
+  Map nothing_online{Origin::online};
+  PlaceIndex index;
+};
+
+}  // namespace byre
