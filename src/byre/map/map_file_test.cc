@@ -2,9 +2,8 @@
 
 #include "byre/input/binary_file.h"
 #include "byre/input/input_error.h"
+#include "byre/map/map_bytes_scene.h"
 #include "byre/map/stored_map_scene.h"
-
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -14,18 +13,112 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using testing::AllOf;
-using testing::Each;
 using testing::ElementsAre;
-using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 using testing::StartsWith;
 
+MapBytes scene_bytes() {
+  return write_map(StoredMapScene().stored());
+}
+
+// What is wrong with the bytes; empty for a map.
+std::string refusal_of(const MapBytes& bytes) {
+  try {
+    read_map(bytes, "barn.byre");
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(MapFile, GivesBackWhatTheSceneHolds) {
+  const StoredMapScene scene;
+  const StoredMap read = read_map(scene_bytes(), "file");
+  EXPECT_THAT(find_faults(scene.stored()), IsEmpty());
+  EXPECT_THAT(find_faults(read), IsEmpty());
+  EXPECT_EQ(read.notes, scene.stored().notes);
+  EXPECT_EQ(read.vocabulary_checksum, scene.stored().vocabulary_checksum);
+  EXPECT_EQ(read.pose_source, PoseSource::given);
+  EXPECT_EQ(read.scale, MapScale::metric);
+  EXPECT_EQ(read.map.origin(), Origin::offline);
+  EXPECT_EQ(read.map.rigs().size(), 2u);
+  EXPECT_EQ(read.recordings.at(0).name, "barn_morning");
+  EXPECT_EQ(read.recordings.at(0).last_time, std::chrono::seconds(200));
+  EXPECT_TRUE(read.recordings.at(0).calibration.right.has_value());
+  EXPECT_EQ(read.recordings.at(1).calibration.left.model, CameraModel::equidistant);
+  EXPECT_EQ(read.recordings.at(1).calibration.left.distortion[1], -0.002);
+}
+
+TEST(MapFile, GivesBackEveryKeyframeExactly) {
+  const StoredMapScene scene;
+  const StoredMap read = read_map(scene_bytes(), "file");
+  ASSERT_EQ(read.map.keyframe_ids(), scene.stored().map.keyframe_ids());
+  for (const KeyframeId id : read.map.keyframe_ids()) {
+    const Keyframe& expected = *scene.stored().map.find_keyframe(id);
+    const Keyframe& keyframe = *read.map.find_keyframe(id);
+    EXPECT_EQ(keyframe.frame.time, expected.frame.time);
+    EXPECT_EQ(keyframe.rig, expected.rig);
+    EXPECT_EQ(keyframe.recording, expected.recording);
+    EXPECT_EQ(keyframe.parent, expected.parent);
+    EXPECT_EQ(keyframe.camera_from_world.rotation.coeffs(), expected.camera_from_world.rotation.coeffs());
+    EXPECT_EQ(keyframe.camera_from_world.translation, expected.camera_from_world.translation);
+    EXPECT_EQ(keyframe.covariance, expected.covariance);
+    EXPECT_EQ(keyframe.words, expected.words);
+    ASSERT_EQ(keyframe.sightings.size(), expected.sightings.size());
+    for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
+      EXPECT_EQ(keyframe.sightings[i].point, expected.sightings[i].point);
+      EXPECT_EQ(keyframe.sightings[i].pixel, expected.sightings[i].pixel);
+      EXPECT_EQ(keyframe.sightings[i].pixel_sigma, expected.sightings[i].pixel_sigma);
+    }
+  }
+}
+
+TEST(MapFile, GivesBackEveryFeatureExactly) {
+  const StoredMapScene scene;
+  const StoredMap read = read_map(scene_bytes(), "file");
+  for (const KeyframeId id : read.map.keyframe_ids()) {
+    const Features& expected = *scene.stored().map.find_keyframe(id)->frame.features;
+    const Features& features = *read.map.find_keyframe(id)->frame.features;
+    EXPECT_EQ(features.descriptors(), expected.descriptors());
+    for (int i = 0; i < features.size(); ++i) {
+      EXPECT_EQ(features.keypoint(i).pixel, expected.keypoint(i).pixel);
+      EXPECT_EQ(features.keypoint(i).disparity, expected.keypoint(i).disparity);
+      EXPECT_EQ(features.keypoint(i).disparity_sigma, expected.keypoint(i).disparity_sigma);
+      EXPECT_EQ(features.keypoint(i).angle, expected.keypoint(i).angle);
+      EXPECT_EQ(features.keypoint(i).response, expected.keypoint(i).response);
+      EXPECT_EQ(features.keypoint(i).octave, expected.keypoint(i).octave);
+      ASSERT_EQ(features.find_patch(i) == nullptr, expected.find_patch(i) == nullptr);
+      if (!features.find_patch(i)) continue;
+      EXPECT_EQ(features.find_patch(i)->pixels, expected.find_patch(i)->pixels);
+      EXPECT_EQ(features.find_patch(i)->centre, expected.find_patch(i)->centre);
+    }
+  }
+}
+
+TEST(MapFile, GivesBackEveryPointExactly) {
+  const StoredMapScene scene;
+  const StoredMap read = read_map(scene_bytes(), "file");
+  ASSERT_EQ(read.map.point_ids(), scene.stored().map.point_ids());
+  for (const PointId id : read.map.point_ids()) {
+    const MapPoint& expected = *scene.stored().map.find_point(id);
+    const MapPoint& point = *read.map.find_point(id);
+    EXPECT_EQ(point.position_in_world, expected.position_in_world);
+    EXPECT_EQ(point.covariance, expected.covariance);
+    EXPECT_EQ(point.mean_viewing_direction, expected.mean_viewing_direction);
+    EXPECT_EQ(point.descriptor, expected.descriptor);
+    EXPECT_EQ(point.min_distance, expected.min_distance);
+    EXPECT_EQ(point.max_distance, expected.max_distance);
+    EXPECT_EQ(point.reference, expected.reference);
+    EXPECT_EQ(read.map.observations(id), scene.stored().map.observations(id));
+  }
+}
+
 TEST(MapFile, IsTheSameAfterASecondSave) {
-  const std::vector<std::byte> bytes = write_map(StoredMapScene().stored());
-  EXPECT_EQ(write_map(read_map(bytes, "file")), bytes);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const MapBytes bytes = write_map(StoredMapScene(7, 40, seed).stored());
+    EXPECT_EQ(write_map(read_map(bytes, "file")), bytes);
+  }
 }
 
 TEST(MapFile, KeepsAnEmptyMap) {
@@ -35,10 +128,136 @@ TEST(MapFile, KeepsAnEmptyMap) {
   EXPECT_THAT(find_faults(read), IsEmpty());
 }
 
-TEST(MapFile, Sound) {
+TEST(MapFile, WritesAKeyframeWithoutFeaturesAsOneWithNone) {
   const StoredMapScene scene;
-  EXPECT_THAT(find_faults(scene.stored()), IsEmpty());
-  EXPECT_THAT(find_faults(read_map(write_map(scene.stored()), "file")), IsEmpty());
+  MapParts parts = scene.parts();
+  parts.keyframes.back().frame.features.reset();
+  StoredMap stored = scene.stored();
+  stored.map = Map(Origin::offline, parts);
+  EXPECT_EQ(write_map(stored), scene_bytes());
+}
+
+TEST(MapFile, TellsTheSizesOfItsSections) {
+  const MapBytes bytes = scene_bytes();
+  std::size_t sum = 0;
+  std::vector<std::string> names;
+  for (const SectionSize& section : section_sizes(bytes, "file")) {
+    sum += section.bytes;
+    names.push_back(section.name);
+  }
+  EXPECT_EQ(sum, bytes.size());
+  EXPECT_THAT(names, ElementsAre("header", "summary", "notes", "provenance", "rigs", "keyframes", "features", "patches",
+                                 "points", "observations", "words"));
+}
+
+TEST(MapFile, RefusesWhatIsNoMap) {
+  const std::string message = "barn.byre: is no map of byre: it does not begin as one (name a file that byre has ";
+  EXPECT_THAT(refusal_of({}), StartsWith(message));
+  EXPECT_THAT(refusal_of(MapBytes(1000)), StartsWith(message));
+}
+
+TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
+  MapBytes bytes = scene_bytes();
+  put_at(bytes, kFormatAt, std::uint32_t{2});
+  refresh_checksums(bytes);
+  EXPECT_EQ(refusal_of(bytes),
+            "barn.byre: header: has format 2, this program knows formats up to 1 "
+            "(use the version of byre that wrote it, or a newer one)");
+}
+
+TEST(MapFile, RefusesAFormatThatNeverWas) {
+  MapBytes bytes = scene_bytes();
+  put_at(bytes, kFormatAt, std::uint32_t{0});
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: header at byte 12: has the format 0, which never was"));
+}
+
+TEST(MapFile, RefusesEveryShorterFile) {
+  const MapBytes bytes = scene_bytes();
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(size);
+    EXPECT_THROW(read_map(MapBytes(bytes.begin(), end), "file"), InputError) << size << " bytes";
+  }
+}
+
+TEST(MapFile, RefusesEveryFlippedBit) {
+  MapBytes bytes = scene_bytes();
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::byte bit{static_cast<unsigned char>(1u << (i % 8))};
+    bytes[i] ^= bit;
+    EXPECT_THROW(read_map(bytes, "file"), InputError) << "byte " << i;
+    bytes[i] ^= bit;
+  }
+}
+
+TEST(MapFile, NamesTheSectionWhoseChecksumIsWrong) {
+  const MapBytes sound = scene_bytes();
+  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+    MapBytes bytes = sound;
+    const TableEntry section = table_entry(bytes, i);
+    bytes[section.offset + section.size / 2] ^= std::byte{1};
+    EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: section " + section.name + " at byte " +
+                                              std::to_string(section.offset) + ": has a wrong checksum"));
+  }
+}
+
+TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
+  const MapBytes sound = scene_bytes();
+  const auto refusal_with = [&sound](std::size_t place, auto value) {
+    MapBytes bytes = sound;
+    put_at(bytes, place, value);
+    refresh_checksums(bytes);
+    return refusal_of(bytes);
+  };
+  EXPECT_THAT(refusal_with(kSectionCountAt, std::uint32_t{9}), HasSubstr("has not the sections of its format"));
+  EXPECT_THAT(refusal_with(kFileSizeAt, std::uint64_t{5}), HasSubstr("is of a file of another length"));
+  EXPECT_THAT(refusal_with(kTableAt, 'S'), HasSubstr("does not list the section summary in its place"));
+  EXPECT_THAT(refusal_with(kTableAt + 15, 'S'), HasSubstr("does not list the section summary in its place"));
+  EXPECT_THAT(refusal_with(kTableAt + 16, std::uint64_t{0}), HasSubstr("places the section summary wrong"));
+  EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("places the section summary wrong"));
+  MapBytes bytes = sound;
+  bytes[kHeaderChecksumAt] ^= std::byte{1};
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 432: has a wrong checksum"));
+}
+
+TEST(MapFile, RefusesBytesThatBelongToNoSection) {
+  MapBytes bytes = scene_bytes();
+  bytes.push_back({});
+  put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("leaves bytes to no section"));
+}
+
+class MapFileOnDisk : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("map_file_" + std::to_string(getpid()));
+    fs::create_directory(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+TEST_F(MapFileOnDisk, HoldsTheMap) {
+  const StoredMapScene scene;
+  save_map(scene.stored(), folder_ / "barn.byre");
+  EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
+  EXPECT_EQ(write_map(load_map(folder_ / "barn.byre")), scene_bytes());
+}
+
+TEST_F(MapFileOnDisk, IsNotReplacedByAnUnsoundMap) {
+  const StoredMapScene scene;
+  save_map(scene.stored(), folder_ / "barn.byre");
+  StoredMap unsound = scene.stored();
+  unsound.recordings.clear();
+  try {
+    save_map(unsound, folder_ / "barn.byre");
+    FAIL() << "an unsound map was saved";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is not written: the map is unsound: names recording 0 of 0"));
+  }
+  EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
 }
 
 }  // namespace

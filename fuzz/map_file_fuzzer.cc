@@ -1,0 +1,38 @@
+// Reads whatever bytes it is given as a map file: it must be refused, or be a sound map that is written back the same.
+
+#include "byre/input/input_error.h"
+#include "byre/map/map_bytes_scene.h"
+#include "byre/map/stored_map_scene.h"
+
+#include <cstdint>
+#include <cstdlib>
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
+  try {
+    const byre::StoredMap map = byre::read_map(bytes, "fuzz.byre");
+    if (!byre::find_faults(map).empty()) std::abort();
+    if (!std::ranges::equal(byre::write_map(map), bytes)) std::abort();
+  } catch (const byre::InputError&) {
+  }
+  return 0;
+}
+
+// Random bytes would never become a map: mutations begin with one, and mostly get right checksums.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  if (size < byre::kHeaderSize) {
+    static const byre::MapBytes original = byre::write_map(byre::StoredMapScene(2, 4).stored());
+    size = std::min(original.size(), max_size);
+    std::memcpy(data, original.data(), size);
+  }
+  size = LLVMFuzzerMutate(data, size, max_size);
+  if (seed % 4 == 0) return size;
+  byre::MapBytes bytes(size);
+  std::memcpy(bytes.data(), data, size);
+  byre::refresh_checksums(bytes);
+  std::memcpy(data, bytes.data(), size);
+  return size;
+}

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Fuzzes the reading of map files under the address and undefined-behaviour sanitizers, which needs Clang.
+# Usage: fuzz.sh [SECONDS]        30 unless given; inputs that reach new code are kept in build/fuzz/corpus
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+seconds=${1:-30}
+[[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
+clang=$(command -v clang++ || command -v clang++-14) || { echo "fuzz.sh: Clang is not installed" >&2; exit 1; }
+
+cmake -S fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=None >/dev/null
+cmake --build build/fuzz
+mkdir -p build/fuzz/corpus
+# The sanitizers cannot start where the kernel spreads addresses wider than they expect.
+runner=()
+! setarch --addr-no-randomize true 2>/dev/null || runner=(setarch --addr-no-randomize)
+"${runner[@]}" build/fuzz/map_file_fuzzer build/fuzz/corpus -max_total_time="$seconds" -max_len=20000 -timeout=5 \
+  -malloc_limit_mb=16 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1

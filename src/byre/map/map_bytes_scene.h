@@ -1,0 +1,97 @@
+#pragma once
+
+#include "byre/input/byte_stream.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// The bytes of a map file for tests that change them on purpose; written down apart from what byre reads and writes
+// them with, so that a change of the format does not go unnoticed. See docs/map_format.md.
+
+using MapBytes = std::vector<std::byte>;
+
+inline constexpr std::size_t kFormatAt = 8;
+inline constexpr std::size_t kSectionCountAt = 12;
+inline constexpr std::size_t kFileSizeAt = 16;
+inline constexpr std::size_t kTableAt = 24;
+inline constexpr std::size_t kTableEntrySize = 40;
+inline constexpr std::size_t kSectionCountOfFormat = 10;
+inline constexpr std::size_t kHeaderChecksumAt = kTableAt + kSectionCountOfFormat * kTableEntrySize;
+inline constexpr std::size_t kHeaderSize = kHeaderChecksumAt + 8;
+
+// Precondition: the value lies within the bytes.
+template <PlainNumber T>
+T value_at(const MapBytes& bytes, std::size_t place) {
+  T value;
+  std::memcpy(&value, bytes.data() + place, sizeof(T));
+  return value;
+}
+template <PlainNumber T>
+void put_at(MapBytes& bytes, std::size_t place, T value) {
+  std::memcpy(bytes.data() + place, &value, sizeof(T));
+}
+
+// A section's entry in the table of the header.
+struct TableEntry {
+  std::size_t at = 0;  // the entry's place
+  std::string name;
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+};
+
+// Precondition: the bytes hold a header, which may be damaged.
+inline TableEntry table_entry(const MapBytes& bytes, std::size_t index) {
+  const std::size_t at = kTableAt + index * kTableEntrySize;
+  std::string name(reinterpret_cast<const char*>(bytes.data() + at), 16);
+  name.resize(std::min(name.find('\0'), name.size()));
+  return {at, name, value_at<std::uint64_t>(bytes, at + 16), value_at<std::uint64_t>(bytes, at + 24)};
+}
+
+inline void write_entry(MapBytes& bytes, const TableEntry& entry) {
+  put_at(bytes, entry.at + 16, entry.offset);
+  put_at(bytes, entry.at + 24, entry.size);
+}
+
+inline TableEntry section_of(const MapBytes& bytes, std::string_view name) {
+  TableEntry entry;
+  for (std::size_t i = 0; i < kSectionCountOfFormat && entry.name != name; ++i) entry = table_entry(bytes, i);
+  return entry;
+}
+
+// Makes all checksums right again, so that a change is found by nothing else. Leaves sections alone that the table
+// places outside the bytes, and bytes without a whole header.
+inline void refresh_checksums(MapBytes& bytes) {
+  if (bytes.size() < kHeaderSize) return;
+  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+    const TableEntry entry = table_entry(bytes, i);
+    if (entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) continue;
+    put_at(bytes, entry.at + 32, checksum(std::span(bytes).subspan(entry.offset, entry.size)));
+  }
+  put_at(bytes, kHeaderChecksumAt, checksum(std::span(bytes).first(kHeaderChecksumAt)));
+}
+
+// Cuts out bytes of a section and puts others in their place; sizes and places of the sections are made to fit.
+// Precondition: a sound table; begin and count lie within the section.
+inline void replace_in_section(MapBytes& bytes, std::size_t index, std::size_t begin, std::size_t count,
+                               const MapBytes& replacement) {
+  TableEntry changed = table_entry(bytes, index);
+  const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(changed.offset + begin);
+  const auto rest = bytes.erase(first, first + static_cast<std::ptrdiff_t>(count));
+  bytes.insert(rest, replacement.begin(), replacement.end());
+  const std::uint64_t growth = replacement.size() - count;  // may wrap around, and then does so again below
+  changed.size += growth;
+  write_entry(bytes, changed);
+  for (std::size_t i = index + 1; i < kSectionCountOfFormat; ++i) {
+    TableEntry later = table_entry(bytes, i);
+    later.offset += growth;
+    write_entry(bytes, later);
+  }
+  put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
+}
+
+}  // namespace byre

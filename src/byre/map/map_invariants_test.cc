@@ -1,0 +1,334 @@
+// Every invariant of a stored map, broken once: find_faults names it, and no file with it is read. And every way to
+// break the bytes of a section that no map can be made of.
+
+#include "byre/input/input_error.h"
+#include "byre/map/map_bytes_scene.h"
+#include "byre/map/map_file.h"
+#include "byre/map/stored_map_scene.h"
+
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string refusal_of(const MapBytes& bytes) {
+  try {
+    read_map(bytes, "barn.byre");
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+struct BrokenInvariant {
+  const char* name;
+  const char* section;  // that is refused
+  const char* fault;
+  std::function<void(StoredMap&, MapParts&)> break_it;
+};
+
+std::ostream& operator<<(std::ostream& out, const BrokenInvariant& broken) {
+  return out << broken.name;
+}
+
+StoredMap broken_map(const BrokenInvariant& broken) {
+  const StoredMapScene scene;
+  StoredMap stored = scene.stored();
+  MapParts parts = scene.parts();
+  broken.break_it(stored, parts);
+  stored.map = Map(Origin::offline, parts);
+  return stored;
+}
+
+// Of a keyframe of the first rig, without patches.
+void with_keypoints(Keyframe& keyframe, const std::function<void(std::vector<Keypoint>&)>& change) {
+  std::vector<Keypoint> keypoints = keyframe.frame.features->keypoints();
+  change(keypoints);
+  keyframe.frame.features = std::make_shared<const Features>(
+      320, 240, keypoints, keyframe.frame.features->descriptors(), std::vector<Patch>{});
+}
+
+auto with_keypoint(const std::function<void(Keypoint&)>& change) {
+  return [change](StoredMap&, MapParts& parts) {
+    with_keypoints(parts.keyframes[0], [&](std::vector<Keypoint>& keypoints) { change(keypoints[0]); });
+  };
+}
+
+auto with_recording(const std::function<void(SourceRecording&)>& change) {
+  return [change](StoredMap& stored, MapParts&) { change(stored.recordings[0]); };
+}
+auto with_camera(const std::function<void(Camera&)>& change) {
+  return with_recording([change](SourceRecording& recording) { change(recording.calibration.left); });
+}
+auto with_rig(const std::function<void(Rig&)>& change) {
+  return [change](StoredMap&, MapParts& parts) { change(parts.rigs[0]); };
+}
+auto with_keyframe(const std::function<void(Keyframe&)>& change) {
+  return [change](StoredMap&, MapParts& parts) { change(parts.keyframes[2]); };
+}
+auto with_point(const std::function<void(MapPoint&)>& change) {
+  return [change](StoredMap&, MapParts& parts) { change(parts.points[3]); };
+}
+
+std::shared_ptr<const Features> with_patch_at(const Features& features, const Eigen::Vector2f& centre) {
+  std::vector<Patch> patches(features.keypoints().size());
+  for (Patch& patch : patches) patch.centre = centre;
+  return std::make_shared<const Features>(320, 240, features.keypoints(), features.descriptors(), patches);
+}
+
+const std::vector<BrokenInvariant>& broken_invariants() {
+  static const std::vector<BrokenInvariant> all = {
+      {"CameraSize", "provenance", "recording 0 has no proper image size", with_camera([](Camera& c) { c.width = 0; })},
+      {"HugeCamera", "provenance", "no proper image size", with_camera([](Camera& c) { c.height = 16385; })},
+      {"CameraFocal", "provenance", "recording 0 has no proper camera", with_camera([](Camera& c) { c.fx = 0.0; })},
+      {"CameraFocalNan", "provenance", "no proper camera", with_camera([](Camera& c) { c.fy = kNan; })},
+      {"CameraCentre", "provenance", "no proper camera", with_camera([](Camera& c) { c.cx = kInfinity; })},
+      {"Distortion", "provenance", "no proper camera", with_camera([](Camera& c) { c.distortion[4] = kNan; })},
+      {"RightCamera", "provenance", "no proper camera",
+       with_recording([](SourceRecording& r) { r.calibration.right->camera.fx = -1.0; })},
+      {"RightPose", "provenance", "recording 0 has no proper pose",
+       with_recording([](SourceRecording& r) { r.calibration.right->right_from_left.translation.x() = kNan; })},
+      {"BodyPose", "provenance", "recording 0 has no proper pose",
+       with_recording([](SourceRecording& r) { r.calibration.body_from_left.rotation.coeffs().setZero(); })},
+      {"Times", "provenance", "recording 0 ends before it begins",
+       with_recording([](SourceRecording& r) { r.first_time = r.last_time + Timestamp(1); })},
+      {"RigSize", "rigs", "rig 0 has no proper image size", with_rig([](Rig& rig) { rig.height = -1; })},
+      {"RigFocal", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.focal = 0.0; })},
+      {"RigCentre", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.cy = kNan; })},
+      {"RigBaseline", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.baseline = -0.1; })},
+      {"RigPose", "rigs", "rig 0 has no proper pose",
+       with_rig([](Rig& rig) { rig.body_from_camera.rotation.coeffs() *= 1.1; })},
+      {"NoRig", "keyframes", "keyframe offline 2 has no rig", with_keyframe([](Keyframe& k) { k.rig = 2; })},
+      {"NoRecording", "keyframes", "keyframe 2 is of a recording that is not listed",
+       with_keyframe([](Keyframe& k) { k.recording = 2; })},
+      {"KeyframePose", "keyframes", "keyframe offline 2 has no proper pose",
+       with_keyframe([](Keyframe& k) { k.camera_from_world.translation.y() = kInfinity; })},
+      {"KeyframeRotation", "keyframes", "keyframe offline 2 has no proper pose",
+       with_keyframe([](Keyframe& k) { k.camera_from_world.rotation.w() += 0.01; })},
+      {"KeyframeCovariance", "keyframes", "keyframe 2 has no finite covariance",
+       with_keyframe([](Keyframe& k) { k.covariance(1, 2) = k.covariance(2, 1) = kNan; })},
+      {"OwnParent", "keyframes", "keyframe offline 2 has no living, older parent",
+       with_keyframe([](Keyframe& k) { k.parent->number = 2; })},
+      {"YoungerParent", "keyframes", "keyframe offline 2 has no living, older parent",
+       with_keyframe([](Keyframe& k) { k.parent->number = 4; })},
+      {"KeypointOutside", "features", "keyframe 0 has a keypoint outside its image",
+       with_keypoint([](Keypoint& k) { k.pixel.x() = 320.0f; })},
+      {"KeypointOctave", "features", "keyframe 0 has a keypoint in an octave that does not exist",
+       with_keypoint([](Keypoint& k) { k.octave = kOctaves; })},
+      {"KeypointAngle", "features", "keypoint without proper values",
+       with_keypoint([](Keypoint& k) { k.angle = kNan; })},
+      {"KeypointResponse", "features", "keypoint without proper values",
+       with_keypoint([](Keypoint& k) { k.response = kNan; })},
+      {"KeypointDisparity", "features", "keypoint without proper values",
+       with_keypoint([](Keypoint& k) { k.disparity = std::numeric_limits<float>::infinity(); })},
+      {"KeypointDisparitySigma", "features", "keypoint without proper values", with_keypoint([](Keypoint& k) {
+         k.disparity = 3.0f;
+         k.disparity_sigma = 0.0f;
+       })},
+      {"PatchCentre", "patches", "keyframe 0 has a patch without its centre",
+       [](StoredMap&, MapParts& parts) {
+         parts.keyframes[0].frame.features = with_patch_at(*parts.keyframes[0].frame.features, {8.0f, 15.5f});
+       }},
+      {"PatchCentreNan", "patches", "keyframe 0 has a patch without its centre",
+       [](StoredMap&, MapParts& parts) {
+         parts.keyframes[0].frame.features = with_patch_at(*parts.keyframes[0].frame.features, {kNan, 8.0f});
+       }},
+      {"PointPosition", "points", "has no finite position",
+       with_point([](MapPoint& p) { p.position_in_world.z() = kNan; })},
+      {"PointCovariance", "points", "point 3 has no finite covariance",
+       with_point([](MapPoint& p) { p.covariance(0, 0) = kInfinity; })},
+      {"PointDirection", "points", "no unit viewing direction",
+       with_point([](MapPoint& p) { p.mean_viewing_direction *= 1.1f; })},
+      {"PointDistance", "points", "no proper range of distances",
+       with_point([](MapPoint& p) { p.min_distance = p.max_distance * 1.1f; })},
+      {"PointDistanceInfinite", "points", "no proper range of distances",
+       with_point([](MapPoint& p) { p.max_distance = std::numeric_limits<float>::infinity(); })},
+      {"PointReference", "observations", "has a reference that does not see it",
+       with_point([](MapPoint& p) { ++p.reference.feature; })},
+      {"PointReferenceKeyframe", "observations", "has a reference that does not see it",
+       with_point([](MapPoint& p) { p.reference.keyframe.number = 1000; })},
+      {"PointUnseen", "observations", "is seen by no keyframe",
+       [](StoredMap&, MapParts& parts) { parts.points.push_back(parts.points.back()); }},
+      {"SightingPixel", "observations", "keyframe 2 has a sighting without proper values",
+       with_keyframe([](Keyframe& k) { k.sightings[1].pixel.x() = kNan; })},
+      {"SightingSigma", "observations", "keyframe 2 has a sighting without proper values",
+       with_keyframe([](Keyframe& k) { k.sightings[1].pixel_sigma = 0.0f; })},
+      {"WordsOfNoVocabulary", "words", "has words of no vocabulary",
+       [](StoredMap& stored, MapParts&) { stored.vocabulary_checksum = 0; }},
+      {"TooFewWords", "words", "keyframe 2 has not one word per feature",
+       with_keyframe([](Keyframe& k) { k.words.pop_back(); })},
+  };
+  return all;
+}
+
+class BrokenMap : public testing::TestWithParam<BrokenInvariant> {};
+
+TEST_P(BrokenMap, HasAFaultInWords) {
+  EXPECT_THAT(find_faults(broken_map(GetParam())), Contains(HasSubstr(GetParam().fault)));
+}
+
+TEST_P(BrokenMap, IsRefusedByItsSection) {
+  EXPECT_THAT(refusal_of(write_map(broken_map(GetParam()))),
+              StartsWith("barn.byre: section " + std::string(GetParam().section) + " at byte "));
+}
+
+INSTANTIATE_TEST_SUITE_P(Invariants, BrokenMap, testing::ValuesIn(broken_invariants()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(StoredMapFaults, NameWhatAFileCannotEvenHold) {
+  const StoredMapScene scene;
+  StoredMap stored = scene.stored();
+  MapParts parts = scene.parts();
+  parts.keyframes[2].covariance(0, 1) = 1.0;
+  parts.points[3].covariance(0, 1) = 1.0;
+  stored.map = Map(Origin::offline, parts);
+  EXPECT_THAT(find_faults(stored), AllOf(Contains("keyframe 2 has an unsymmetric covariance"),
+                                         Contains("point 3 has an unsymmetric covariance")));
+  stored.map = Map(Origin::online);
+  EXPECT_THAT(find_faults(stored), Contains("the map is not offline"));
+  stored = scene.stored();
+  stored.map.remove_point({Origin::offline, 0});
+  stored.map.remove_keyframe({Origin::offline, 1});
+  EXPECT_THAT(find_faults(stored),
+              AllOf(Contains("the numbers of keyframes have gaps"), Contains("the numbers of points have gaps")));
+}
+
+// A value in the bytes of a section that no map leads to.
+struct BrokenValue {
+  const char* name;
+  const char* section;
+  const char* refusal;
+  std::size_t place;  // in the section
+  MapBytes value;
+};
+
+std::ostream& operator<<(std::ostream& out, const BrokenValue& broken) {
+  return out << broken.name;
+}
+
+template <typename T>
+MapBytes bytes_of(T value) {
+  MapBytes bytes(sizeof(T));
+  put_at(bytes, 0, value);
+  return bytes;
+}
+
+constexpr std::uint32_t kHuge = 0xfffffff0;
+
+// Places follow docs/map_format.md; the scene's keyframes have 9 features each, of which 8 see a point.
+const std::vector<BrokenValue>& broken_values() {
+  static const std::vector<BrokenValue> all = {
+      {"Summary", "summary", "does not tell what the other sections hold", 8, bytes_of(std::uint64_t{1})},
+      {"NoteCount", "notes", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"NoteLength", "notes", "claims 4294967280 entries", 4, bytes_of(kHuge)},
+      {"NoteOrder", "notes", "has notes out of order", 8, bytes_of('z')},
+      {"Scale", "provenance", "knows no value 2 here", 0, bytes_of(std::uint8_t{2})},
+      {"PoseSource", "provenance", "knows no value 3 here", 1, bytes_of(std::uint8_t{3})},
+      {"RecordingCount", "provenance", "claims 4294967280 entries", 2, bytes_of(kHuge)},
+      {"CameraModel", "provenance", "knows no value 3 here", 22, bytes_of(std::uint8_t{3})},
+      {"HasRight", "provenance", "knows no value 2 here", 22 + 81, bytes_of(std::uint8_t{2})},
+      {"RigCount", "rigs", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"FewerRigs", "rigs", "bytes are left over", 0, bytes_of(std::uint32_t{1})},
+      {"KeyframeCount", "keyframes", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"FewerKeyframes", "keyframes", "bytes are left over", 0, bytes_of(std::uint32_t{5})},
+      {"FeatureCount", "features", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"PatchCount", "patches", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"PatchFeature", "patches", "names feature 9 of 9", 4, bytes_of(std::uint32_t{9})},
+      {"PatchOrder", "patches", "has features out of order", 4 + 268, bytes_of(std::uint32_t{0})},
+      {"PointCount", "points", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"FewerPoints", "points", "bytes are left over", 0, bytes_of(std::uint32_t{1})},
+      {"ReferenceFeature", "points", "names feature 4294967280", 4 + 128, bytes_of(kHuge)},
+      {"ObservationCount", "observations", "claims 4294967280 entries", 0, bytes_of(kHuge)},
+      {"ObservationFeature", "observations", "names feature 9 of 9", 4, bytes_of(std::uint32_t{9})},
+      {"ObservationOrder", "observations", "has features out of order", 4 + 20, bytes_of(std::uint32_t{0})},
+      {"ObservationPoint", "observations", "names point 4294967280 of", 8, bytes_of(kHuge)},
+      {"ObservationTwice", "observations", "point 0 is seen twice by a keyframe", 8 + 20, bytes_of(std::uint32_t{0})},
+      {"HasWords", "words", "knows no value 2 here", 8, bytes_of(std::uint8_t{2})},
+  };
+  return all;
+}
+
+class BrokenSection : public testing::TestWithParam<BrokenValue> {};
+
+TEST_P(BrokenSection, IsRefused) {
+  const auto& [name, section, refusal, place, value] = GetParam();
+  MapBytes bytes = write_map(StoredMapScene().stored());
+  std::ranges::copy(value, bytes.begin() + static_cast<std::ptrdiff_t>(section_of(bytes, section).offset + place));
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes),
+              AllOf(StartsWith("barn.byre: section " + std::string(section) + " at byte "), HasSubstr(refusal)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Values, BrokenSection, testing::ValuesIn(broken_values()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(BrokenSections, AreRefusedWhenKeypointsAreNotInGridOrder) {
+  MapBytes bytes = write_map(StoredMapScene().stored());
+  const std::size_t first = section_of(bytes, "features").offset + 4;
+  constexpr std::size_t kKeypointBytes = 25;
+  constexpr std::size_t kLast = 8;
+  std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(first),
+                   bytes.begin() + static_cast<std::ptrdiff_t>(first + kKeypointBytes),
+                   bytes.begin() + static_cast<std::ptrdiff_t>(first + kLast * kKeypointBytes));
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("keyframe 0 has keypoints that are not sorted by the cells of their grid"));
+}
+
+TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
+  MapBytes bytes = write_map(StoredMapScene().stored());
+  const TableEntry words = section_of(bytes, "words");
+  bytes[words.offset + words.size - 1] = std::byte{1};
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has words of a keyframe without features"));
+}
+
+TEST(BrokenSections, AreRefusedWhenTheyAreTooShortOrTooLong) {
+  const MapBytes sound = write_map(StoredMapScene().stored());
+  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+    const TableEntry section = table_entry(sound, i);
+    MapBytes shorter = sound;
+    replace_in_section(shorter, i, section.size - 1, 1, {});
+    refresh_checksums(shorter);
+    EXPECT_THAT(refusal_of(shorter), HasSubstr("section " + section.name + " at byte "));
+    MapBytes longer = sound;
+    replace_in_section(longer, i, section.size, 0, MapBytes(1));
+    refresh_checksums(longer);
+    EXPECT_THAT(refusal_of(longer), AllOf(HasSubstr("section " + section.name), HasSubstr("1 bytes are left over")));
+  }
+}
+
+// Every keyframe sees the one point with its one feature: little in the file, much in a map.
+StoredMap crowd(std::uint32_t keyframes) {
+  const StoredMapScene scene;
+  StoredMap stored = scene.stored();
+  MapParts parts{scene.parts().rigs, {}, {scene.parts().points[0]}};
+  Keyframe keyframe;
+  keyframe.frame.features = std::make_shared<const Features>(320, 240, std::vector<Keypoint>(1, {{1.0f, 1.0f}}),
+                                                             std::vector<Descriptor>(1), std::vector<Patch>{});
+  keyframe.sightings.push_back({PointId{Origin::offline, 0}, {1.0f, 1.0f}});
+  parts.keyframes.assign(keyframes, keyframe);
+  parts.points[0].reference = {{Origin::offline, 0}, 0};
+  stored.map = Map(Origin::offline, parts);
+  return stored;
+}
+
+TEST(BrokenSections, AreRefusedWhenKeyframesThatShareAPointOutgrowTheFile) {
+  EXPECT_EQ(refusal_of(write_map(crowd(700))), "");
+  EXPECT_THAT(refusal_of(write_map(crowd(1000))),
+              HasSubstr("has more keyframes that share points than a file of this"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "byre/map/map_bytes_scene.h"
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// A map file that was damaged.
+struct Mutant {
+  MapBytes bytes;
+  std::string damage;  // what was done to it
+  bool has_right_checksums = false;
+};
+
+// Damages map files in ever new ways: flipped bits, other numbers (huge counts, NaN, indices out of range), cut-off
+// and appended bytes, sections swapped, cut and grown, and pieces copied. Every second mutant gets right checksums, so
+// that the damage reaches the parser. The same seed gives the same mutants.
+class MapMutator {
+ public:
+  // Precondition: sound map files, at least one.
+  MapMutator(std::vector<MapBytes> originals, std::uint64_t seed) : originals_(std::move(originals)), random_(seed) {}
+
+  Mutant next();
+
+ private:
+  std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_() % limit); }
+
+  std::string damage(MapBytes& bytes);
+  std::size_t any_filled_section(const MapBytes& bytes);
+  std::size_t place_in_any_section(const MapBytes& bytes);
+  void flip_bits(MapBytes& bytes);
+  void write_number(MapBytes& bytes);
+  void change_header(MapBytes& bytes);
+  void cut_end(MapBytes& bytes);
+  void append(MapBytes& bytes);
+  void swap_sections(MapBytes& bytes);
+  void swap_table_entries(MapBytes& bytes);
+  void cut_from_section(MapBytes& bytes);
+  void grow_section(MapBytes& bytes);
+  void copy_piece(MapBytes& bytes);
+  void zero_piece(MapBytes& bytes);
+
+  std::vector<MapBytes> originals_;
+  std::mt19937_64 random_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace byre
