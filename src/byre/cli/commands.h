@@ -19,5 +19,7 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 Action declare_map(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_localise(CLI::App& command);
+Action declare_inspect(CLI::App& command);
+Action declare_validate(CLI::App& command);
 
 }  // namespace byre::cli

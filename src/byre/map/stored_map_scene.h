@@ -2,6 +2,8 @@
 
 #include "byre/map/map_file.h"
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <random>
 

@@ -1,0 +1,26 @@
+// Files of every format that byre ever wrote stay readable. A file here is never changed; a new format adds one.
+
+#include "byre/input/binary_file.h"
+#include "byre/map/map_file.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::IsEmpty;
+
+const std::filesystem::path kFormats = std::filesystem::path(BYRE_SOURCE_DIR) / "tests/robustness/formats";
+
+TEST(OldFormats, FirstIsReadAndWrittenTheSame) {
+  const StoredMap stored = load_map(kFormats / "format_1.byre");
+  EXPECT_THAT(find_faults(stored), IsEmpty());
+  EXPECT_EQ(stored.notes.at("site"), "barn 3");
+  EXPECT_EQ(stored.recordings.at(1).name, "barn_evening");
+  EXPECT_EQ(stored.map.keyframe_count(), 5);
+  EXPECT_EQ(stored.map.point_count(), 6);
+  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_1.byre"));
+}
+
+}  // namespace
+}  // namespace byre
