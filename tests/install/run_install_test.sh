@@ -15,3 +15,10 @@ cmake --build "$work/build"
 said=$("$work/build/consumer")
 echo "$said"
 [[ $said == "moved by 1.000 2.000 3.000" ]]
+
+# The installed program uses what was installed with it.
+if [[ -x $work/prefix/bin/byre ]]; then
+  shown=$("$work/prefix/bin/byre" vocabulary show)
+  echo "$shown"
+  [[ $shown == "vocabulary   $work/prefix/share/byre/default.vocabulary"* ]]
+fi

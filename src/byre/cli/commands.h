@@ -21,5 +21,6 @@ Action declare_evaluate(CLI::App& command);
 Action declare_localise(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
+Action declare_vocabulary(CLI::App& command);
 
 }  // namespace byre::cli

@@ -30,6 +30,7 @@ constexpr std::array kCommands = {
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},
     Command{"validate", "Check that a map is sound", declare_validate},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
+    Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
 };
 
 // Declares all commands; the one on the command line becomes the action when that is parsed.

@@ -3,8 +3,10 @@
 #include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 
 namespace byre {

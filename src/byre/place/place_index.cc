@@ -1,7 +1,6 @@
 #include "byre/place/place_index.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace byre {
@@ -113,14 +112,12 @@ std::vector<PlaceCandidate> find_places(const PlaceIndex& index, const MapView& 
       candidates.push_back(take_group(match, map, options.group_size, ungrouped));
     }
   }
+  if (candidates.empty()) return candidates;
   std::sort(candidates.begin(), candidates.end(), has_better_group);
-  std::erase_if(candidates, [&, least = candidates.empty() ? 0.0f : candidates.front().group_score](
-                                const PlaceCandidate& candidate) {
-    return candidate.group_score < options.min_score_share * least;
-  });
-  if (static_cast<int>(candidates.size()) > options.max_candidates) {
-    candidates.resize(static_cast<std::size_t>(std::max(options.max_candidates, 0)));
-  }
+  const float least = options.min_score_share * candidates.front().group_score;
+  std::erase_if(candidates, [least](const PlaceCandidate& candidate) { return candidate.group_score < least; });
+  const auto kept = std::min(candidates.size(), static_cast<std::size_t>(std::max(options.max_candidates, 0)));
+  candidates.resize(kept);
   return candidates;
 }
 

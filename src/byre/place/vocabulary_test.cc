@@ -3,6 +3,7 @@
 #include "byre/input/input_error.h"
 #include "byre/place/vocabulary_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
