@@ -31,7 +31,7 @@ struct PlaceQueryOptions {
 };
 
 // An inverted file from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the words kept with keyframes
-// when a map is loaded, in milliseconds; never saved.
+// when a map is loaded, in a tenth of a millisecond per keyframe; never saved.
 class PlaceIndex {
  public:
   explicit PlaceIndex(Vocabulary vocabulary);
