@@ -8,13 +8,13 @@
 namespace byre {
 namespace {
 
-constexpr int kRooms = 10;
-constexpr int kKeyframesPerRoom = 100;
+constexpr int kRooms = 11;
+constexpr int kKeyframesPerRoom = 91;
 
-// A map of one room: about 10,000 points, each keyframe with up to 1000 features.
+// A map of one room: about 9,300 points, each keyframe with up to 1000 features.
 Map room_map(int room) {
   SimulationOptions options;
-  options.landmarks = 27000;
+  options.landmarks = 25000;
   options.room_size = {20.0, 16.0, 4.0};
   options.seed = options.noise_seed = static_cast<std::uint64_t>(room + 1);
   const Trajectory path = circling_trajectory(kKeyframesPerRoom, 2.0, 5.0, 1.0);
@@ -57,7 +57,7 @@ void add_room(const Map& room, MapParts& parts) {
   }
 }
 
-// A building of ten rooms: 1,000 keyframes and about 100,000 points.
+// A building of eleven rooms: about 1,000 keyframes and 100,000 points.
 const StoredMap& building() {
   static const StoredMap stored = [] {
     StoredMap made;

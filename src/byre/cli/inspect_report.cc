@@ -18,8 +18,12 @@ std::string row(std::string_view name, const std::string& content) {
   return padded + content + "\n";
 }
 
-std::string megabytes(std::size_t bytes) {
-  return formatted("%.2f MB", 1e-6 * static_cast<double>(bytes));
+std::string size_text(std::size_t bytes) {
+  constexpr double kKilobyte = 1e3;
+  constexpr double kMegabyte = 1e6;
+  const auto size = static_cast<double>(bytes);
+  if (size < kKilobyte) return formatted("%zu B", bytes);
+  return size < kMegabyte ? formatted("%.1f kB", size / kKilobyte) : formatted("%.1f MB", size / kMegabyte);
 }
 
 // A map of unknown scale has a unit of its own.
@@ -84,7 +88,7 @@ std::string describe(const SourceRecording& recording) {
 template <typename Size>
 std::string listing(const std::vector<Size>& sizes) {
   std::string text;
-  for (const Size& size : sizes) text += (text.empty() ? "" : ", ") + size.name + " " + megabytes(size.bytes);
+  for (const Size& size : sizes) text += (text.empty() ? "" : ", ") + size.name + " " + size_text(size.bytes);
   return text;
 }
 
@@ -95,7 +99,7 @@ std::size_t sum_of(const std::vector<PartSize>& parts) {
 }
 
 std::string describe_file(const InspectedFile& file, int keyframes) {
-  std::string text = megabytes(file.bytes);
+  std::string text = size_text(file.bytes);
   if (keyframes > 0) {
     text += formatted(", %.1f kB per keyframe", 1e-3 * static_cast<double>(file.bytes) / keyframes);
   }
@@ -190,7 +194,7 @@ std::string to_text(const StoredMap& stored, const MapInspection& inspection, co
   text += row("path", formatted("%.2f %s", inspection.path_length, unit));
   text += row("file", describe_file(file, counts.keyframes));
   text += row("", listing(file.sections));
-  text += row("memory", "about " + megabytes(sum_of(inspection.memory)));
+  text += row("memory", "about " + size_text(sum_of(inspection.memory)));
   text += row("", listing(inspection.memory));
   return text + fault_text(inspection.faults);
 }

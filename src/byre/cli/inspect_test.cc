@@ -98,8 +98,8 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
   EXPECT_THAT(text, HasSubstr("keyframes      5, with 36 features, 20 with a patch\n"));
   EXPECT_THAT(text, HasSubstr("words          of 2 keyframes, by the vocabulary 0123456789abcdef\n"));
-  EXPECT_THAT(text, HasSubstr("file           12.35 MB, 2469.1 kB per keyframe\n"));
-  EXPECT_THAT(text, HasSubstr("points 2.00 MB"));
+  EXPECT_THAT(text, HasSubstr("file           12.3 MB, 2469.1 kB per keyframe\n"));
+  EXPECT_THAT(text, HasSubstr("header 432 B, points 2.0 MB"));
   EXPECT_THAT(text, HasSubstr("faults         none\n"));
   inspection.faults = {"point 3 is seen by no keyframe"};
   EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is seen by no keyframe\n"));
