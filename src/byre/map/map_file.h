@@ -44,20 +44,21 @@ struct StoredMap {
   std::map<std::string, std::string> notes;  // free text by key, such as site and software
 };
 
-// A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes are forgotten, and
-// of the patches those stay that define a point in the image.
+// A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes and sightings of
+// another map's points are forgotten, and of the patches those stay that define a point in the image; all features
+// stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
 // All faults of find_faults(Map), and what a stored map must hold beyond them.
 std::vector<std::string> find_faults(const StoredMap& stored);
 
-// The bytes of a section of a map file, as `byre inspect` lists them.
+// The bytes of a section of a map file, or of its header, as `byre inspect` lists them.
 struct SectionSize {
   std::string name;
   std::size_t bytes = 0;
 };
 
-// The layout is described in docs/map_format.md. Equal maps give equal bytes.
+// The layout is described in docs/map_format.md. Equal maps give equal bytes. Precondition: ids without gaps.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
 // All or nothing: throws InputError naming section and byte for any damage, any broken invariant, and a format that is
@@ -65,7 +66,8 @@ std::vector<std::byte> write_map(const StoredMap& stored);
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 
-// The same on files. Saving replaces a file as a whole, see replace_file.
+// The same on files. Saving replaces a file as a whole, see replace_file, once the bytes have been read back: a map
+// that could not be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
 void save_map(const StoredMap& stored, const std::filesystem::path& path);
 
