@@ -29,7 +29,7 @@ PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_b
     throw InputError("trajectory", "has no pose for any frame of the recording",
                      "check that both count time from the same epoch");
   }
-  run.map = offline_copy(map_from_poses(extractor.rig(), frames, options.map));
+  run.map = offline_copy(map_from_poses({extractor.rig()}, frames, options.map));
   return run;
 }
 

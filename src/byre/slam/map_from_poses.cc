@@ -61,13 +61,13 @@ double overlap(const SeenPart& first, const SeenPart& second, const Rig& first_r
   return in_second == 0.0 ? 0.0 : std::min(in_second, share(second, first, first_rig));
 }
 
-void add_frames(Map& map, const Rig& rig, const std::vector<PosedFrame>& frames) {
-  const int rig_index = map.add_rig(rig);
+void add_frames(Map& map, const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames) {
   std::optional<KeyframeId> previous;
   for (const PosedFrame& posed : frames) {
+    const Rig& rig = rigs[static_cast<std::size_t>(posed.rig)];
     TrackedFrame without_points;
     without_points.camera_from_world = posed.camera_from_world;
-    Keyframe keyframe = make_keyframe(posed.frame, without_points, rig_index);
+    Keyframe keyframe = make_keyframe(posed.frame, without_points, map.add_rig(rig));
     keyframe.parent = previous;
     previous = map.add_keyframe(std::move(keyframe));
     if (rig.is_stereo()) add_stereo_points(map, *previous);
@@ -138,9 +138,10 @@ std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const
   return neighbours;
 }
 
-Map map_from_poses(const Rig& rig, const std::vector<PosedFrame>& frames, const KnownPoseOptions& options) {
+Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
+                   const KnownPoseOptions& options) {
   Map map(Origin::online);
-  add_frames(map, rig, frames);
+  add_frames(map, rigs, frames);
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   const auto neighbours = overlapping_keyframes(map, options);
   for (std::size_t i = 0; i < ids.size(); ++i) connect(map, ids[i], neighbours[i], options);

@@ -10,6 +10,7 @@ namespace byre {
 struct PosedFrame {
   Frame frame;
   Pose camera_from_world;
+  int rig = 0;  // that took it: which of those given beside
 };
 
 struct KnownPoseOptions {
@@ -24,7 +25,8 @@ struct KnownPoseOptions {
 // Points come from disparities and from triangulation between views that overlap, however far apart in time; those
 // seen twice are fused, those whose views disagree are left out. Keyframes' covariances are zero: the poses are taken
 // for exact, their errors for those of measurements.
-Map map_from_poses(const Rig& rig, const std::vector<PosedFrame>& frames, const KnownPoseOptions& options);
+Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
+                   const KnownPoseOptions& options);
 
 // Of a map, for each keyframe in ascending order: others whose views overlap with its own, most overlap first.
 std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const KnownPoseOptions& options);

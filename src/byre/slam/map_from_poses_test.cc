@@ -47,7 +47,7 @@ Placement placement(const Map& map, const SimulatedMission& mission) {
 TEST(MapFromPoses, HoldsThePosesItIsGiven) {
   const SimulatedMission mission = quarter_circle({});
   const std::vector<PosedFrame> frames = posed_frames(mission, 8);
-  const Map map = map_from_poses(mission.rig, frames, {});
+  const Map map = map_from_poses({mission.rig}, frames, {});
   EXPECT_THAT(find_faults(map), IsEmpty());
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   ASSERT_THAT(ids, SizeIs(frames.size()));
@@ -61,7 +61,7 @@ TEST(MapFromPoses, HoldsThePosesItIsGiven) {
 
 TEST(MapFromPoses, PutsCleanPointsOnTheirLandmarksAndFindsThemAgainHalfAMetreOn) {
   const SimulatedMission mission = quarter_circle(without_noise());
-  const Map map = map_from_poses(mission.rig, posed_frames(mission, 8), {});
+  const Map map = map_from_poses({mission.rig}, posed_frames(mission, 8), {});
   const Placement placed = placement(map, mission);
   EXPECT_GT(map.point_count(), 400);
   EXPECT_GT(placed.right_share, 0.99);
@@ -82,7 +82,7 @@ TEST(MapFromPoses, KnowsHowFarItsPointsMayBeOffWithNoiseAndOutliers) {
   SimulationOptions noisy;
   noisy.outlier_ratio = 0.1;
   const SimulatedMission mission = quarter_circle(noisy);
-  const Map map = map_from_poses(mission.rig, posed_frames(mission, 4), {});
+  const Map map = map_from_poses({mission.rig}, posed_frames(mission, 4), {});
   constexpr double kChiSquare99 = 11.345;  // three degrees of freedom
   int confirmed = 0, right = 0;
   for (const PointId id : map.point_ids()) {
@@ -103,8 +103,8 @@ TEST(MapFromPoses, StandsPosesThatAreOffByPixels) {
     frames[i].camera_from_world = displaced_from_camera * frames[i].camera_from_world;
   }
   const double with_truth =
-      placement(map_from_poses(mission.rig, posed_frames(mission, 4), {}), mission).mean_observations;
-  const Map displaced = map_from_poses(mission.rig, frames, {});
+      placement(map_from_poses({mission.rig}, posed_frames(mission, 4), {}), mission).mean_observations;
+  const Map displaced = map_from_poses({mission.rig}, frames, {});
   EXPECT_GT(placement(displaced, mission).mean_observations, 0.9 * with_truth);
 }
 
@@ -112,7 +112,7 @@ TEST(MapFromPoses, TriangulatesWhatOneCameraSees) {
   Rig mono = simulated_rig();
   mono.baseline = 0.0;
   const SimulatedMission mission = simulate_mission(mono, circling_trajectory(40, 10.0, 2.0, 0.25), without_noise());
-  const Map map = map_from_poses(mono, posed_frames(mission, 4), {});
+  const Map map = map_from_poses({mono}, posed_frames(mission, 4), {});
   EXPECT_GT(map.point_count(), 200);
   EXPECT_GT(placement(map, mission).right_share, 0.95);
   for (const PointId id : map.point_ids()) EXPECT_GE(map.observations(id).size(), 2u);
@@ -120,15 +120,15 @@ TEST(MapFromPoses, TriangulatesWhatOneCameraSees) {
 
 TEST(MapFromPoses, MakesAMapOfOneFrameAndOfNone) {
   const SimulatedMission mission = quarter_circle({});
-  const Map one = map_from_poses(mission.rig, {posed_frames(mission, 4).front()}, {});
+  const Map one = map_from_poses({mission.rig}, {posed_frames(mission, 4).front()}, {});
   EXPECT_EQ(one.keyframe_count(), 1);
   EXPECT_GT(one.point_count(), 100);
-  EXPECT_EQ(map_from_poses(mission.rig, {}, {}).keyframe_count(), 0);
+  EXPECT_EQ(map_from_poses({mission.rig}, {}, {}).keyframe_count(), 0);
 }
 
 TEST(OverlappingKeyframes, AreThoseThatSeeTheSameThoughTakenMuchLater) {
   const SimulatedMission lap = simulate_mission(simulated_rig(), circling_trajectory(80, 10.0, 2.0, 2.0), {});
-  const Map map = map_from_poses(lap.rig, posed_frames(lap, 4), {});  // ten keyframes a lap, two laps
+  const Map map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes a lap, two laps
   const auto neighbours = overlapping_keyframes(map, {});
   ASSERT_THAT(neighbours, SizeIs(20));
   EXPECT_EQ(neighbours[0].front(), (KeyframeId{Origin::online, 10}));
