@@ -22,5 +22,7 @@ Action declare_localise(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
 Action declare_vocabulary(CLI::App& command);
+Action declare_import_colmap(CLI::App& command);
+Action declare_export_colmap(CLI::App& command);
 
 }  // namespace byre::cli

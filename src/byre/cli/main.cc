@@ -31,6 +31,8 @@ constexpr std::array kCommands = {
     Command{"validate", "Check that a map is sound", declare_validate},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
     Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
+    Command{"import-colmap", "Make a map of a COLMAP model and its images", declare_import_colmap},
+    Command{"export-colmap", "Write a map as a COLMAP model", declare_export_colmap},
 };
 
 // Declares all commands; the one on the command line becomes the action when that is parsed.

@@ -1,0 +1,108 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/formatted.h"
+#include "byre/cli/import_colmap_run.h"
+#include "byre/cli/interrupt.h"
+#include "byre/cli/output_file.h"
+#include "byre/cli/progress.h"
+#include "byre/cli/stopwatch.h"
+#include "byre/cli/stored_map.h"
+#include "byre/cli/warnings.h"
+#include "byre/dataset/recording.h"
+#include "byre/features/image_threads.h"
+
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportCommandOptions {
+  fs::path model;
+  fs::path images;
+  fs::path map;
+  std::optional<double> scale;
+  std::optional<fs::path> body_of;
+  std::optional<fs::path> vocabulary;
+  std::string site;
+  bool quiet = false;
+};
+
+constexpr const char* kFooter = R"(Examples:
+  byre import-colmap sparse/0 images -o site.byre
+  byre import-colmap sparse/0 images -o site.byre --scale 0.25 --site "Barn 2"
+
+Every image of the model becomes a keyframe with the pose it has there. Corners of the images become features, and each
+point of the model gets those that lie where it projects and look alike; points with fewer than two are left out.
+Corners that are none of the model's points become points of their own. The map has the model's own unit until --scale
+tells how many metres that is.)";
+ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOptions& options,
+                               const InterruptCatcher& interrupt) {
+  Progress progress(std::cerr, progress_style(options.quiet), static_cast<int>(model.images.size()));
+  const Stopwatch watch;
+  ColmapImportHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_image = [&](int done) { progress.update(done, watch.seconds(), "extracting"); };
+  ColmapImportOptions import_options;
+  import_options.metres_per_unit = options.scale;
+  if (options.body_of)
+    import_options.body_from_camera = open_recording(*options.body_of, {})->calibration().body_from_left;
+  const std::string name = fs::weakly_canonical(options.model).string();
+  ColmapImport imported = import_colmap(model, name, options.images, import_options, hooks);
+  progress.close();
+  return imported;
+}
+
+void print(const ColmapImport& imported, const fs::path& path, std::ostream& result) {
+  result << to_text(imported) << "map                " << path.string() << "\n";
+}
+
+ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
+  require_writable(options.map);
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  const ColmapModel model = read_colmap_model(options.model);
+
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  const ColmapImport imported = run_with_progress(model, options, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, imported.warnings);
+  if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
+  save_for_use(imported.stored, vocabulary, options.site, options.map);
+  print(imported, options.map, result);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_import_colmap(CLI::App& command) {
+  const auto options = std::make_shared<ImportCommandOptions>();
+  command.add_option("MODEL", options->model, "Folder with cameras, images and points3D, .bin or .txt, of COLMAP")
+      ->type_name("MODEL_DIR")
+      ->required();
+  command.add_option("IMAGES", options->images, "Folder that the names of the model's images are relative to")
+      ->type_name("IMAGES_DIR")
+      ->required();
+  command.add_option("-o,--output", options->map, "The map")->type_name("FILE")->required();
+  auto* const scale =
+      command
+          .add_option("--scale", options->scale, "Length of the model's unit; without it the map has no metric scale")
+          ->type_name("METRES")
+          ->check(CLI::Range(1e-9, 1e9).description(""));
+  command
+      .add_option("--body-of", options->body_of,
+                  "Recording whose calibration says where the camera sits in the body (body and camera are one)")
+      ->type_name("FOLDER")
+      ->needs(scale);
+  command.add_option("--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
+  command
+      .add_option("--vocabulary", options->vocabulary, "Vocabulary of the map's words (the one that comes with byre)")
+      ->type_name("FILE");
+  command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
+  command.footer(kFooter);
+  return [options](std::ostream& result) { return run_import(*options, result); };
+}
+
+}  // namespace byre::cli
