@@ -37,6 +37,11 @@ TEST_F(ColmapCommands, TakeAMapToAModelAndBack) {
   EXPECT_EQ(stored.pose_source, PoseSource::imported);
   EXPECT_EQ(stored.notes.at("site"), "Barn");
   EXPECT_NE(stored.vocabulary_checksum, 0u);
+
+  const Outcome model_only =
+      run("import-colmap model/of/room " + images() + " -o model_only.byre --model-points-only --quiet");
+  EXPECT_THAT(model_only.output, HasSubstr("and 0 of byre's own"));
+  EXPECT_LT(load_map(folder_ / "model_only.byre").map.point_count(), stored.map.point_count());
 }
 
 TEST_F(ColmapCommands, ReportBadInputWithItsOwnExitCode) {

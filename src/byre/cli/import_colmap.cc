@@ -28,6 +28,7 @@ struct ImportCommandOptions {
   std::optional<fs::path> body_of;
   std::optional<fs::path> vocabulary;
   std::string site;
+  bool model_points_only = false;
   bool quiet = false;
 };
 
@@ -48,6 +49,7 @@ ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOpti
   hooks.after_image = [&](int done) { progress.update(done, watch.seconds(), "extracting"); };
   ColmapImportOptions import_options;
   import_options.metres_per_unit = options.scale;
+  import_options.map.add_own_points = !options.model_points_only;
   if (options.body_of)
     import_options.body_from_camera = open_recording(*options.body_of, {})->calibration().body_from_left;
   const std::string name = fs::weakly_canonical(options.model).string();
@@ -96,6 +98,8 @@ Action declare_import_colmap(CLI::App& command) {
                   "Recording whose calibration says where the camera sits in the body (body and camera are one)")
       ->type_name("FOLDER")
       ->needs(scale);
+  command.add_flag("--model-points-only", options->model_points_only,
+                   "Add no points for corners that are none of the model's points");
   command.add_option("--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
   command
       .add_option("--vocabulary", options->vocabulary, "Vocabulary of the map's words (the one that comes with byre)")
