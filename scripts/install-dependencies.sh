@@ -10,8 +10,8 @@ packages=(
   libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev
   # the program
   libcli11-dev
-  # tests, benchmarks, rules
-  libgtest-dev libgmock-dev libbenchmark-dev clang-format python3
+  # tests, fuzzing, benchmarks, rules
+  libgtest-dev libgmock-dev clang libbenchmark-dev clang-format python3
 )
 
 is_installed() {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
 # benchmark runs), checks the formatting, then runs the unit tests under the address and undefined-behaviour sanitizers
-# and those of the threads under the thread sanitizer. Says which tests were skipped for lack of their recordings.
-# Usage: test.sh [--quick]        --quick leaves the sanitizers out
+# and those of the threads under the thread sanitizer, and fuzzes the reading of map files. Says which tests were skipped for lack of their recordings.
+# Usage: test.sh [--quick]        --quick leaves sanitizers and fuzzing out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -70,6 +70,15 @@ if ! $quick; then
   headline "Thread sanitizer: tests of the session"
   scripts/build.sh tsan byre_session_tests
   run_tests tsan
+
+  headline "Fuzzing: map files, for 20 s"
+  if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then
+    grep -E 'stat::number_of_executed_units' build/fuzz.log || true
+    passed=$((passed + 1))
+  else
+    tail -n 40 build/fuzz.log
+    failed=$((failed + 1))
+  fi
 fi
 
 echo
