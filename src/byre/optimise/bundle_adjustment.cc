@@ -2,6 +2,7 @@
 
 #include "byre/optimise/bundle_cost.h"
 #include "byre/optimise/bundle_covariance.h"
+#include "byre/optimise/rotation_manifold.h"
 
 #include <algorithm>
 #include <cassert>

@@ -27,27 +27,6 @@ void write_by_point(const Eigen::Matrix3d& by_camera, const Eigen::Quaterniond& 
 
 }  // namespace
 
-bool RotationManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
-  const Eigen::Quaterniond moved = rotation_exp(Eigen::Vector3d(delta)) * Eigen::Quaterniond(x);
-  Eigen::Map<Eigen::Quaterniond>{x_plus_delta} = moved.normalized();
-  return true;
-}
-
-bool RotationManifold::PlusJacobian(const double*, double* jacobian) const {
-  Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>>{jacobian}.setIdentity();
-  return true;
-}
-
-bool RotationManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  write(rotation_log(Eigen::Quaterniond(y) * Eigen::Quaterniond(x).conjugate()), y_minus_x);
-  return true;
-}
-
-bool RotationManifold::MinusJacobian(const double*, double* jacobian) const {
-  Eigen::Map<RowMajor34>{jacobian}.setIdentity();
-  return true;
-}
-
 bool PoseAndPointCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   const Eigen::Quaterniond rotation(parameters[0]);
   const Eigen::Vector3d rotated_point = rotation * Eigen::Vector3d(parameters[2]);

@@ -3,7 +3,6 @@
 #include "byre/geometry/pose.h"
 #include "byre/optimise/reprojection.h"
 
-#include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
 
 namespace byre {
@@ -11,19 +10,7 @@ namespace byre {
 // Costs between camera_from_world, which Ceres gets as two blocks (rotation as quaternion x, y, z, w; translation),
 // and point_in_world. All residuals have three rows and all blocks three degrees of freedom, because for these sizes
 // Ceres has a Schur complement compiled for the purpose; a monocular row of zeros costs less than a general one.
-
-// A rotation moves as rotation_exp(delta) * rotation. The costs below give their derivatives by delta in the first
-// three of four columns, and the Jacobian of Plus is the identity above a row of zeros: the chain through the
-// quaternion would only be multiplied in and out again.
-class RotationManifold final : public ceres::Manifold {
- public:
-  int AmbientSize() const override { return 4; }
-  int TangentSize() const override { return 3; }
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
-  bool PlusJacobian(const double* x, double* jacobian) const override;
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
-  bool MinusJacobian(const double* x, double* jacobian) const override;
-};
+// Rotations move on the RotationManifold.
 
 // Both the pose and the point move. Parameters: rotation, translation, point.
 class PoseAndPointCost final : public ceres::SizedCostFunction<3, 4, 3, 3> {

@@ -1,0 +1,224 @@
+#include "byre/optimise/pose_graph.h"
+
+#include "byre/optimise/pose_graph_cost.h"
+#include "byre/optimise/rotation_manifold.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <memory>
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+namespace byre {
+
+namespace {
+
+// What takes part in the solution.
+struct Roles {
+  std::vector<bool> node_moves;
+  std::vector<int> edges;  // indices: with an end that moves
+};
+
+std::vector<std::vector<int>> neighbours(const PoseGraph& graph) {
+  std::vector<std::vector<int>> result(graph.nodes.size());
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.first == edge.second) continue;
+    result[edge.first].push_back(edge.second);
+    result[edge.second].push_back(edge.first);
+  }
+  return result;
+}
+
+// The fixed nodes; without any, the first that has an edge.
+std::vector<bool> held_nodes(const PoseGraph& graph, const std::vector<std::vector<int>>& neighbours_of) {
+  std::vector<bool> held;
+  for (const PoseGraphNode& node : graph.nodes) held.push_back(node.fixed);
+  if (std::ranges::find(held, true) != held.end()) return held;
+  const auto first = std::ranges::find(neighbours_of, false, &std::vector<int>::empty);
+  if (first != neighbours_of.end()) held[first - neighbours_of.begin()] = true;
+  return held;
+}
+
+// Which nodes paths of edges join to those given, with them.
+std::vector<bool> joined_to(std::vector<bool> reached, const std::vector<std::vector<int>>& neighbours_of) {
+  std::vector<int> open;
+  for (int node = 0; node < static_cast<int>(reached.size()); ++node) {
+    if (reached[node]) open.push_back(node);
+  }
+  while (!open.empty()) {
+    const int node = open.back();
+    open.pop_back();
+    for (const int neighbour : neighbours_of[node]) {
+      if (reached[neighbour]) continue;
+      reached[neighbour] = true;
+      open.push_back(neighbour);
+    }
+  }
+  return reached;
+}
+
+Roles choose_roles(const PoseGraph& graph) {
+  const auto neighbours_of = neighbours(graph);
+  const std::vector<bool> held = held_nodes(graph, neighbours_of);
+  Roles roles{joined_to(held, neighbours_of), {}};
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i]) roles.node_moves[i] = false;
+  }
+  for (int i = 0; i < static_cast<int>(graph.edges.size()); ++i) {
+    const PoseGraphEdge& edge = graph.edges[i];
+    const bool moves = roles.node_moves[edge.first] || roles.node_moves[edge.second];
+    if (moves && edge.first != edge.second) roles.edges.push_back(i);
+  }
+  return roles;
+}
+
+std::unique_ptr<ceres::LossFunction> make_loss(RobustLoss loss, double width) {
+  switch (loss) {
+    case RobustLoss::none:
+      return nullptr;
+    case RobustLoss::huber:
+      return std::make_unique<ceres::HuberLoss>(width);
+    case RobustLoss::cauchy:
+      return std::make_unique<ceres::CauchyLoss>(width);
+  }
+  return nullptr;
+}
+
+// A node's three blocks, as PoseGraphCost has them.
+struct NodeBlocks {
+  explicit NodeBlocks(const PoseGraphNode& node)
+      : rotation(node.camera_from_world.rotation),
+        position_in_world(inverse(node.camera_from_world).translation),
+        log_scale(std::log(node.scale)) {}
+
+  std::array<double*, 3> addresses() { return {rotation.coeffs().data(), position_in_world.data(), &log_scale}; }
+  Pose camera_from_world() const { return {rotation, -(rotation * position_in_world)}; }
+
+  Eigen::Quaterniond rotation;
+  Eigen::Vector3d position_in_world;
+  double log_scale;
+};
+
+// Ceres' view of a graph. Lives for one call.
+class CeresGraph {
+ public:
+  CeresGraph(const PoseGraph& graph, const Roles& roles, const PoseGraphOptions& options)
+      : options_(options), nodes_(graph.nodes.begin(), graph.nodes.end()) {
+    for (const int i : roles.edges) costs_.emplace_back(graph.edges[i], options.scale_is_free);
+  }
+
+  ceres::Solver::Summary solve(const PoseGraph& graph, const Roles& roles, RobustLoss robust_loss) {
+    const auto loss = make_loss(robust_loss, options_.loss_width);
+    ceres::Problem problem(problem_options());
+    auto cost = costs_.begin();
+    for (const int i : roles.edges) {
+      const auto first = nodes_[graph.edges[i].first].addresses();
+      const auto second = nodes_[graph.edges[i].second].addresses();
+      problem.AddResidualBlock(&*cost++, loss.get(), first[0], first[1], first[2], second[0], second[1], second[2]);
+    }
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (problem.HasParameterBlock(nodes_[i].addresses()[0])) set_freedom(problem, i, roles.node_moves[i]);
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver_options(), &problem, &summary);
+    return summary;
+  }
+
+  const NodeBlocks& node(std::size_t i) const { return nodes_[i]; }
+
+ private:
+  static ceres::Problem::Options problem_options() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  ceres::Solver::Options solver_options() const {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // one thread, and the same with every BLAS
+    options.max_num_iterations = options_.max_iterations;
+    options.num_threads = options_.threads;
+    options.function_tolerance = 1e-9;  // of the cost; long loops close slowly at the end
+    options.logging_type = ceres::SILENT;
+    return options;
+  }
+
+  void set_freedom(ceres::Problem& problem, std::size_t node, bool moves) {
+    const auto [rotation, position, log_scale] = nodes_[node].addresses();
+    problem.SetManifold(rotation, &manifold_);
+    if (!moves) problem.SetParameterBlockConstant(rotation);
+    if (!moves) problem.SetParameterBlockConstant(position);
+    if (!moves || !options_.scale_is_free) problem.SetParameterBlockConstant(log_scale);
+  }
+
+  const PoseGraphOptions& options_;  // owned by the caller, constant
+  std::vector<NodeBlocks> nodes_;    // written by Ceres
+  std::deque<PoseGraphCost> costs_;  // one per edge that has a say; a deque, for Ceres holds their addresses
+  RotationManifold manifold_;
+};
+
+PoseGraphResult unmoved(const PoseGraph& graph) {
+  PoseGraphResult result;
+  for (const PoseGraphNode& node : graph.nodes) {
+    result.camera_from_world.push_back(node.camera_from_world);
+    result.scales.push_back(node.scale);
+  }
+  result.usable = true;
+  return result;
+}
+
+// The losses to minimise in turn.
+std::vector<RobustLoss> stages(RobustLoss loss) {
+  if (loss == RobustLoss::cauchy) return {RobustLoss::huber, RobustLoss::cauchy};
+  return {loss};
+}
+
+PoseGraphResult solve(const PoseGraph& graph, const Roles& roles, const PoseGraphOptions& options) {
+  PoseGraphResult result = unmoved(graph);
+  if (roles.edges.empty()) return result;
+  CeresGraph ceres_graph(graph, roles, options);
+  for (const RobustLoss loss : stages(options.loss)) {
+    const ceres::Solver::Summary summary = ceres_graph.solve(graph, roles, loss);
+    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
+    result.usable = summary.IsSolutionUsable();
+    if (!result.usable) return result;
+    result.cost = summary.final_cost;
+  }
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    if (!roles.node_moves[i]) continue;
+    result.camera_from_world[i] = ceres_graph.node(i).camera_from_world();
+    if (options.scale_is_free) result.scales[i] = std::exp(ceres_graph.node(i).log_scale);
+  }
+  return result;
+}
+
+double squared_error(const PoseGraphEdge& edge, const PoseGraphResult& result, bool scale_is_free) {
+  NodeBlocks first({result.camera_from_world[edge.first], result.scales[edge.first]});
+  NodeBlocks second({result.camera_from_world[edge.second], result.scales[edge.second]});
+  const auto [r1, p1, s1] = first.addresses();
+  const auto [r2, p2, s2] = second.addresses();
+  const std::array<const double*, 6> parameters{r1, p1, s1, r2, p2, s2};
+  Vector7 error;
+  PoseGraphCost(edge, scale_is_free).Evaluate(parameters.data(), error.data(), nullptr);
+  return error.squaredNorm();
+}
+
+}  // namespace
+
+PoseGraphResult optimise_pose_graph(const PoseGraph& graph, const PoseGraphOptions& options) {
+  PoseGraphResult result = solve(graph, choose_roles(graph), options);
+  for (const PoseGraphEdge& edge : graph.edges) {
+    result.squared_errors.push_back(squared_error(edge, result, options.scale_is_free));
+  }
+  return result;
+}
+
+}  // namespace byre
