@@ -1,9 +1,15 @@
 #include "byre/optimise/bundle_adjustment.h"
+#include "byre/optimise/pose_graph_scene.h"
 #include "byre/optimise/pose_refinement.h"
 #include "byre/simulation/simulated_mission.h"
 #include "byre/slam/mission_scene.h"
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
 #include <random>
+#include <string>
 
 #include <benchmark/benchmark.h>
 
@@ -116,6 +122,159 @@ void adjust_local_bundle(benchmark::State& state) {
   state.counters["solver_iterations"] = result.iterations;
 }
 BENCHMARK(adjust_local_bundle)->Unit(benchmark::kMillisecond);
+
+// The most memory this program has used so far; of one benchmark only when it runs alone.
+double peak_megabytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024.0;
+  }
+  return 0.0;
+}
+
+// A camera that looks ahead while it goes twice round a ring of corridors, a third of a metre of corridor for each
+// keyframe, and meets in the second round what it saw in the first.
+class Building {
+ public:
+  Building(int poses, int points) : poses_(poses) {
+    problem_.rigs = {simulated_rig()};
+    for (int i = 0; i < poses; ++i) problem_.poses.push_back({true_camera_from_world(i), 0, i == 0});
+    for (int i = 0; i < points; ++i) add_point();
+    std::ranges::stable_sort(problem_.observations, {}, &BundleObservation::pose);  // as keyframes list them
+    for (BundlePose& pose : problem_.poses) {
+      if (!pose.fixed) pose.camera_from_world = exp_pose(random_motion(0.03, 0.01)) * pose.camera_from_world;
+    }
+    for (BundlePoint& point : problem_.points) point.position_in_world += random_motion(0.05, 0.0).head<3>();
+  }
+
+  const BundleProblem& problem() const { return problem_; }
+
+  // Root mean square, metres.
+  double position_error(const std::vector<Pose>& camera_from_world) const {
+    double sum = 0.0;
+    for (int i = 0; i < poses_; ++i) {
+      sum += (inverse(camera_from_world[i]).translation - inverse(true_camera_from_world(i)).translation).squaredNorm();
+    }
+    return std::sqrt(sum / poses_);
+  }
+
+ private:
+  static constexpr double kPixelSigma = 0.8;
+  static constexpr double kDisparitySigma = 0.4;
+  static constexpr double kOutliers = 0.03;  // of the observations
+
+  Pose true_camera_from_world(int pose) const {
+    const double radius = poses_ / 3.0 / (2.0 * std::numbers::pi);
+    const double angle = 4.0 * std::numbers::pi * pose / poses_;
+    const Pose world_from_turned{rotation_exp({0.0, -angle, 0.0}), Eigen::Vector3d::Zero()};
+    return inverse(world_from_turned * Pose{Eigen::Quaterniond::Identity(), {radius, 0.0, 0.0}});
+  }
+
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  double normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(generator_); }
+
+  Vector6 random_motion(double metres, double radians) {
+    Vector6 motion;
+    for (int i = 0; i < 6; ++i) motion[i] = normal(1.0) * (i < 3 ? metres : radians);
+    return motion;
+  }
+
+  bool sees(int pose, const Eigen::Vector3d& point_in_world) const {
+    const Rig& rig = problem_.rigs[0];
+    const Eigen::Vector3d point_in_camera = problem_.poses[pose].camera_from_world * point_in_world;
+    return point_in_camera.z() > 0.5 && point_in_camera.z() < 10.0 &&
+           rig.contains(rig.project(point_in_camera).head<2>());
+  }
+
+  // Of both rounds, those near the given one first.
+  std::vector<int> poses_that_see(const Eigen::Vector3d& point_in_world, int near) const {
+    constexpr int kReach = 15;
+    std::vector<int> poses;
+    for (int away = 0; away <= 2 * kReach; ++away) {
+      const int step = away % 2 == 0 ? away / 2 : -(away + 1) / 2;
+      for (const int round : {0, poses_ / 2}) {
+        const int pose = (near + step + round + poses_) % poses_;
+        if (sees(pose, point_in_world)) poses.push_back(pose);
+      }
+    }
+    return poses;
+  }
+
+  // Seen from four to eight poses.
+  void add_point() {
+    const Rig& rig = problem_.rigs[0];
+    for (;;) {
+      const int near = static_cast<int>(uniform(0.0, poses_));
+      const Eigen::Vector3d ray = rig.ray({uniform(0.0, rig.width), uniform(0.0, rig.height)});
+      const Eigen::Vector3d point_in_world =
+          inverse(problem_.poses[near].camera_from_world) * (uniform(1.5, 8.0) * ray);
+      std::vector<int> poses = poses_that_see(point_in_world, near);
+      if (poses.size() < 4) continue;
+      poses.resize(std::min(poses.size(), static_cast<std::size_t>(uniform(4.0, 9.0))));
+      problem_.points.push_back({point_in_world, false});
+      for (const int pose : poses) add_observation(pose);
+      return;
+    }
+  }
+
+  // Of the newest point.
+  void add_observation(int pose) {
+    BundleObservation observation{.pose = pose, .point = static_cast<int>(problem_.points.size()) - 1, .measured = {}};
+    observation.measured =
+        problem_.rigs[0].project(problem_.poses[pose].camera_from_world * problem_.points.back().position_in_world) +
+        Eigen::Vector3d{normal(kPixelSigma), normal(kPixelSigma), normal(kDisparitySigma)};
+    if (uniform(0.0, 1.0) < kOutliers) observation.measured += 30.0 * random_motion(1.0, 0.0).head<3>();
+    observation.pixel_sigma = kPixelSigma;
+    observation.disparity_sigma = kDisparitySigma;
+    problem_.observations.push_back(observation);
+  }
+
+  int poses_;
+  std::mt19937 generator_{1};
+  BundleProblem problem_;
+};
+
+// Global bundle adjustment, wall and CPU time; for the memory of one size, run it alone.
+void adjust_building(benchmark::State& state) {
+  const Building building(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const double before = peak_megabytes();
+  BundleOptions options;
+  options.max_iterations = 15;
+  options.threads = static_cast<int>(state.range(2));
+  BundleResult result;
+  for (auto _ : state) result = bundle_adjust(building.problem(), options);
+  state.counters["observations"] = static_cast<double>(building.problem().observations.size());
+  state.counters["solver_iterations"] = result.iterations;
+  state.counters["position_error_mm"] = 1000.0 * building.position_error(result.camera_from_world);
+  state.counters["before_MB"] = before;
+  state.counters["peak_MB"] = peak_megabytes();
+}
+BENCHMARK(adjust_building)
+    ->ArgNames({"poses", "points", "threads"})
+    ->Args({300, 40000, 1})
+    ->Args({300, 40000, 2})
+    ->Args({1000, 100000, 1})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+
+// Two rounds of odometry with loop edges between them.
+void optimise_graph(benchmark::State& state, bool scale_is_free) {
+  const PoseGraph measured = measured_graph(
+      1, {.nodes = 1000, .radius = 20.0, .links = 2, .loops = 6, .position_noise = 0.02, .rotation_noise = 0.002});
+  const PoseGraph drifted = with_odometry(measured);
+  PoseGraphOptions options;
+  options.loss = RobustLoss::cauchy;
+  options.scale_is_free = scale_is_free;
+  PoseGraphResult result;
+  for (auto _ : state) result = optimise_pose_graph(drifted, options);
+  state.counters["edges"] = static_cast<double>(drifted.edges.size());
+  state.counters["solver_iterations"] = result.iterations;
+  state.counters["drift_mm"] = 1000.0 * position_error(poses_of(drifted), measured);
+  state.counters["error_mm"] = 1000.0 * position_error(result.camera_from_world, measured);
+}
+BENCHMARK_CAPTURE(optimise_graph, rigid, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(optimise_graph, with_scales, true)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace byre

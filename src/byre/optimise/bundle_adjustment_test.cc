@@ -2,6 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/optimise/bundle_scene.h"
+#include "byre/optimise/huber.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,60 @@ TEST(BundleAdjust, RepeatsBitForBit) {
   EXPECT_EQ(first.squared_errors, second.squared_errors);
   ASSERT_TRUE(first.pose_covariance && second.pose_covariance);
   EXPECT_EQ(*first.pose_covariance, *second.pose_covariance);
+}
+
+double sum_of_huber(const std::vector<double>& squared_errors) {
+  const double width = BundleOptions{}.huber_width;
+  double sum = 0.0;
+  for (const double error : squared_errors) sum += huber_cost(error, width);
+  return sum;
+}
+
+// Asked at the start, then after each iteration.
+BundleOptions stopping_after(int iterations) {
+  BundleOptions options = patient();
+  options.should_stop = [questions = 0, iterations]() mutable { return questions++ >= iterations; };
+  return options;
+}
+
+TEST(BundleAdjust, StopsWhenAskedWithTheBestSoFar) {
+  const BundleScene scene = make_scene(17, {.noise = 1.0});
+  double previous = std::numeric_limits<double>::infinity();
+  for (const int iterations : {0, 1, 2}) {
+    const BundleResult stopped = bundle_adjust(scene.problem, stopping_after(iterations));
+    EXPECT_TRUE(stopped.usable);
+    EXPECT_EQ(stopped.iterations, iterations);
+    EXPECT_LT(sum_of_huber(stopped.squared_errors), previous);
+    previous = sum_of_huber(stopped.squared_errors);
+  }
+}
+
+TEST(BundleAdjust, StoppedIsWhereAsManyIterationsLead) {
+  const BundleScene scene = make_scene(18, {.noise = 1.0});
+  BundleOptions two_iterations;
+  two_iterations.max_iterations = 2;
+  const BundleResult stopped = bundle_adjust(scene.problem, stopping_after(2));
+  const BundleResult finished = bundle_adjust(scene.problem, two_iterations);
+  EXPECT_TRUE(std::ranges::equal(stopped.camera_from_world, finished.camera_from_world, identical));
+  EXPECT_EQ(stopped.points_in_world, finished.points_in_world);
+}
+
+TEST(BundleAdjust, DoesNotCareWhetherItMayBeStopped) {
+  const BundleScene scene = make_scene(19, {.noise = 1.0});
+  BundleOptions unstopped;
+  unstopped.should_stop = [] { return false; };
+  EXPECT_EQ(bundle_adjust(scene.problem, unstopped).points_in_world, bundle_adjust(scene.problem, {}).points_in_world);
+}
+
+TEST(BundleAdjust, FindsTheSameWhateverTheOrderOfObservations) {
+  const BundleScene scene = make_scene(20, {.moving_poses = 70, .points = 400, .noise = 1.0});
+  BundleProblem reversed = scene.problem;
+  std::ranges::reverse(reversed.observations);
+  const BundleResult forward = bundle_adjust(scene.problem, patient());
+  const BundleResult backward = bundle_adjust(reversed, patient());
+  for (std::size_t i = 0; i < forward.camera_from_world.size(); ++i) {
+    EXPECT_THAT(backward.camera_from_world[i], PoseNear(forward.camera_from_world[i], 1e-4, 1e-4)) << "pose " << i;
+  }
 }
 
 TEST(BundleAdjust, TakesAnEmptyProblem) {
