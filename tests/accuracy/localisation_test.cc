@@ -90,14 +90,14 @@ class LocalisationInV101 : public testing::Test {
   }
 
   static const KnownPlace& even_half() {
-    static const KnownPlace place(map_from_poses(all().rig, half(0), {}));
+    static const KnownPlace place(map_from_poses({all().rig}, half(0), {}));
     return place;
   }
 };
 
 TEST_F(LocalisationInV101, FindsNineInTenOfTheFramesBetweenMappedOnesAndNoneFarOff) {
   for (const std::size_t mapped : {0u, 1u}) {
-    const KnownPlace place(map_from_poses(all().rig, half(mapped), {}));
+    const KnownPlace place(map_from_poses({all().rig}, half(mapped), {}));
     const std::vector<PosedFrame> wanted = half(1 - mapped);
     int close = 0;
     for (const PosedFrame& frame : wanted) {

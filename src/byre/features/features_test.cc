@@ -137,7 +137,9 @@ TEST(Features, KeepSomePatchesOnly) {
   for (int i = 0; i < features.size(); ++i) {
     const bool kept = features.keypoint(i).response == keypoints[1].response;
     ASSERT_EQ(features.find_patch(i) != nullptr, kept);
-    if (kept) EXPECT_EQ(features.find_patch(i)->centre.x(), keypoints[1].response);
+    if (kept) {
+      EXPECT_EQ(features.find_patch(i)->centre.x(), keypoints[1].response);
+    }
   }
 }
 
