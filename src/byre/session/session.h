@@ -3,24 +3,45 @@
 #include "byre/features/features.h"
 #include "byre/map/map_view.h"
 #include "byre/session/executor.h"
+#include "byre/session/global_lane.h"
+#include "byre/slam/finishing.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/localisation.h"
+#include "byre/slam/loop_closing.h"
 #include "byre/slam/mapping.h"
 #include "byre/slam/state.h"
 #include "byre/slam/tracking.h"
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
 
 struct SessionOptions {
+  int recording = 0;             // which one the keyframes made are of, see Keyframe::recording
   int min_initial_points = 100;  // stereo points of the first keyframe
   int local_keyframes = 15;      // whose points are looked for in a frame
   double min_kept_share = 0.5;   // of the last frame's inliers; fewer, and the pose is sought without prediction too
   TrackOptions track;
   KeyframeOptions keyframes;
   MappingOptions mapping;
+  LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
+  LoopOptions loops;
+  GlobalMappingOptions global;
+  double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
+};
+
+// Where mapping runs: the neighbourhood of new keyframes, and corrections of the whole map.
+struct Lanes {
+  // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
+  Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
+  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane)
+      : local(std::move(local_lane)), global(std::move(global_lane)) {}
+
+  std::unique_ptr<Executor> local;
+  std::unique_ptr<Executor> global;
 };
 
 // What the caller learns about one frame.
@@ -34,6 +55,9 @@ struct FrameReport {
   int matches = 0;
   int inliers = 0;
   bool keyframe_added = false;
+  bool relocalised = false;           // found again after being lost
+  bool loop_found = false;            // the map met itself: its ends are fused, or a correction was begun
+  bool map_corrected = false;         // a correction of the whole map was taken over
   double track_seconds = 0.0;         // wall time on the calling thread
   double map_seconds = 0.0;           // of it for mapping: windows, deltas, new points, inline jobs
   std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
@@ -43,14 +67,25 @@ struct FrameReport {
 // another.
 class Session {
  public:
-  Session(const Rig& rig, const SessionOptions& options, std::unique_ptr<Executor> executor);
+  // With a vocabulary the session recognises places: it closes loops, and finds itself again when lost.
+  Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {});
+
+  // Goes on with a map made before, of another recording: the session is lost until it finds itself in it, and what it
+  // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
+  void continue_map(Map online);
 
   FrameReport process(const Frame& frame);
 
   // Takes over what mapping still has to give. Call it once, after the last frame.
   void finish();
 
+  // The last search for loops and adjustment of the whole map. Call it after finish().
+  FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
+
   MapView map() const { return {nullptr, online_}; }
+
+  // Places found again so far, each with what was seen of it then.
+  const std::vector<LoopEdge>& loops() const { return loops_; }
 
   // Every frame that had a pose, recomputed from its keyframe as that one lies now. world_from_body.
   Trajectory final_trajectory() const;
@@ -65,13 +100,20 @@ class Session {
 
   bool initialise(const Frame& frame);
   void take_over(const FinishedJob& job);
+  bool take_over_correction();
+  void forget_places(const MapDelta& delta);
   void start_job();
+  void index_place(KeyframeId id);
+  bool look_for_loop(const Frame& frame, bool keyframe_added);
+  void settle_loop(const LoopHypothesis& loop);
+  std::optional<TrackedFrame> relocalise(const Frame& frame) const;
   std::optional<TrackedFrame> find_pose(const Frame& frame) const;
   Pose predict(Timestamp time) const;
   Pose last_camera_from_world() const;
   KeyframeEvidence keyframe_evidence(const TrackedFrame& tracked) const;
   void add_keyframe(const Frame& frame, const TrackedFrame& tracked);
-  void remember(const Frame& frame, const TrackedFrame& tracked);
+  Vector6 velocity_to(Timestamp time, const Pose& camera_from_world) const;
+  void remember(const Frame& frame, const TrackedFrame& tracked, bool was_lost);
   FrameReport report_of(const Frame& frame, const std::optional<TrackedFrame>& tracked) const;
 
   // Constant after construction.
@@ -80,15 +122,21 @@ class Session {
 
   // Owned by the calling thread.
   std::unique_ptr<Executor> executor_;
+  GlobalLane global_;
   Map online_{Origin::online};
+  std::optional<PlaceIndex> places_;    // of the online keyframes
+  std::optional<LoopHypothesis> loop_;  // not confirmed yet
+  int frames_since_loop_ = 0;           // frames since one was confirmed
+  std::vector<LoopEdge> loops_;         // confirmed
   State state_ = State::initialising;
   std::optional<KeyframeId> last_keyframe_;
   int frames_since_keyframe_ = 0;
-  int last_inliers_ = 0;                // in the last frame tracked
-  int fresh_inliers_ = 0;               // in the first frame tracked after the last keyframe
-  std::vector<KeyframeId> pending_;     // keyframes mapping has not worked on
-  std::vector<AnchoredPose> anchored_;  // one per frame with a pose
-  Vector6 velocity_ = Vector6::Zero();  // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
+  int last_inliers_ = 0;                 // in the last frame tracked
+  int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe
+  std::optional<KeyframeId> reference_;  // of the last frame
+  std::vector<KeyframeId> pending_;      // keyframes mapping has not worked on
+  std::vector<AnchoredPose> anchored_;   // one per frame with a pose
+  Vector6 velocity_ = Vector6::Zero();   // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
 };
 
 }  // namespace byre

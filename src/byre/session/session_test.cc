@@ -217,7 +217,7 @@ class SessionWithScriptedMapping : public ::testing::Test {
 
   const SimulatedMission mission_ = turning();
   MappingJob due_;
-  Session session_{mission_.rig, options(), std::make_unique<ScriptedExecutor>(due_)};
+  Session session_{mission_.rig, options(), std::unique_ptr<Executor>(std::make_unique<ScriptedExecutor>(due_))};
 
  private:
   std::size_t processed_ = 0;

@@ -8,22 +8,23 @@
 namespace byre {
 
 struct KeyframeOptions {
-  double min_tracked_share = 0.75;  // of the points tracked right after the last keyframe: fewer ask for another
-  int min_tracked = 100;            // points: fewer ask for one too
-  double max_turn = 0.25;           // radians of rotation since the last keyframe
-  double max_shift_share = 0.15;    // of the median depth, translation since the last keyframe
-  int min_frames = 2;               // between keyframes, unless tracking is about to fail
-  int max_pending = 3;              // keyframes that wait for mapping; more are not made,
-  int max_pending_when_weak = 10;   // unless fewer than min_tracked points are left
+  double min_tracked_share =
+      0.75;                        // of the points tracked when the reference keyframe became it: fewer ask for another
+  int min_tracked = 100;           // points: fewer ask for one too
+  double max_turn = 0.25;          // radians of rotation from the reference keyframe
+  double max_shift_share = 0.15;   // of the median depth, translation from the reference keyframe
+  int min_frames = 2;              // between keyframes, unless tracking is about to fail
+  int max_pending = 3;             // keyframes that wait for mapping; more are not made,
+  int max_pending_when_weak = 10;  // unless fewer than min_tracked points are left
 };
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.
 struct KeyframeEvidence {
-  int fresh_inliers = 0;      // points tracked in the first frame after the last keyframe
+  int fresh_inliers = 0;      // points tracked in the first frame with this reference keyframe
   int frames_since_last = 0;  // frames since the last keyframe was made
   int pending = 0;            // keyframes mapping has not worked on yet
-  double turn = 0.0;          // radians, rotation since the last keyframe
-  double shift_share = 0.0;   // translation since the last keyframe over the median depth of the tracked points
+  double turn = 0.0;          // radians, rotation from the reference keyframe
+  double shift_share = 0.0;   // translation from the reference keyframe over the median depth of the tracked points
 };
 
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options);

@@ -70,18 +70,7 @@ double spread(const std::vector<TrackedFeature>& features, const Rig& rig) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) / std::hypot(rig.width, rig.height);
 }
 
-Failure reason_to_doubt(const TrackedFrame& tracked, const Query& query) {
-  const LocaliseOptions& options = query.options;
-  if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
-  if (spread(tracked.features, query.rig) < options.min_spread) return Failure::clustered;
-  const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
-  const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
-  const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, query.map) &&
-                          rotation_sigma <= options.max_rotation_sigma;
-  return determined ? Failure::none : Failure::uncertain;
-}
-
-Localisation localise_at(const PlaceCandidate& place, const Query& query) {
+Localisation try_place(const PlaceCandidate& place, const Query& query) {
   const LocaliseOptions& options = query.options;
   const std::vector<PointMatch> matches =
       match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, options.matching);
@@ -95,7 +84,7 @@ Localisation localise_at(const PlaceCandidate& place, const Query& query) {
   }
   const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
   if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
-  const Failure doubt = reason_to_doubt(*tracked, query);
+  const Failure doubt = reason_to_doubt(*tracked, query.rig, query.map, options);
   if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
   return {tracked, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
 }
@@ -148,15 +137,32 @@ std::string_view to_string(LocalisationFailure failure) {
   return "";
 }
 
+LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                    const LocaliseOptions& options) {
+  if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
+  if (spread(tracked.features, rig) < options.min_spread) return Failure::clustered;
+  const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
+  const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
+  const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, map) &&
+                          rotation_sigma <= options.max_rotation_sigma;
+  return determined ? Failure::none : Failure::uncertain;
+}
+
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
                       const LocaliseOptions& options) {
   if (frame.features->size() < options.min_features) return failed(Failure::too_few_features, 0, 0);
   const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
-  const std::vector<PlaceCandidate> places = find_places(index, map, words, options.places);
-  const Query query{frame, rig, map, index.vocabulary(), words, options};
+  return localise_at(frame, words, rig, map, index.vocabulary(), find_places(index, map, words, options.places),
+                     options);
+}
+
+Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
+                         const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
+                         const LocaliseOptions& options) {
+  const Query query{frame, rig, map, vocabulary, words, options};
   Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
   for (const PlaceCandidate& place : places) {
-    best = better_of(best, localise_at(place, query), query);
+    best = better_of(best, try_place(place, query), query);
     if (best.failure == Failure::ambiguous) break;
   }
   best.places = static_cast<int>(places.size());

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace byre {
@@ -56,5 +57,14 @@ struct Localisation {
 // many points agree, spread over the image, and determine the pose, and no other place does as well.
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
                       const LocaliseOptions& options);
+
+// The same at places that were found already, for a frame whose words are known.
+Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
+                         const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
+                         const LocaliseOptions& options);
+
+// Why a pose, however it was found, is not to be relied on; none when it is.
+LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                    const LocaliseOptions& options);
 
 }  // namespace byre

@@ -105,7 +105,7 @@ void settle_points(Map& map, const KnownPoseOptions& options) {
   MapWindow settled = window;
   add_pose_errors(settled, options.pose_sigma);
   adjust_points(settled, options.mapping);
-  remove_weak_points(settled);  // with the oldest keyframe first: only those of one view without a depth
+  remove_weak_points(settled, settled.keyframes.front().id);  // the oldest: only those of one view without a depth
   refresh_points(settled);
   apply(difference(window, settled), map);
 }

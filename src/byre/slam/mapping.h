@@ -17,6 +17,7 @@ struct MappingOptions {
   double redundant_share = 0.9;             // of a keyframe's points seen by at least three others: it is redundant
   int first_bundle_iterations = 5;          // before outliers are taken out
   int second_bundle_iterations = 8;         // after
+  int bundle_threads = 1;                   // one keeps the result reproducible
 };
 
 // One mapping job: new points between the new keyframes and their neighbours, points seen twice fused, local bundle

@@ -94,8 +94,10 @@ Matrix6 anchor_covariance(const MapWindow& window) {
   return *middle;
 }
 
-void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options) {
+void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop) {
   BundleOptions bundle_options;
+  bundle_options.threads = options.bundle_threads;
+  bundle_options.should_stop = should_stop;
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
     bundle_options.covariance_of_pose = last_round && window.keyframes.front().movable ? 0 : -1;
@@ -122,13 +124,14 @@ BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature
   return observation;
 }
 
-void adjust_bundle(MapWindow& window, const MappingOptions& options) {
-  if (std::ranges::any_of(window.keyframes, &WindowKeyframe::movable)) adjust_in_two_rounds(window, options);
+void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop) {
+  const bool any_movable = std::ranges::any_of(window.keyframes, &WindowKeyframe::movable);
+  if (any_movable) adjust_in_two_rounds(window, options, should_stop);
 }
 
 void adjust_points(MapWindow& window, const MappingOptions& options) {
   assert(std::ranges::none_of(window.keyframes, &WindowKeyframe::movable));
-  adjust_in_two_rounds(window, options);
+  adjust_in_two_rounds(window, options, {});
 }
 
 }  // namespace byre

@@ -118,6 +118,10 @@ void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& opti
     if (i == keyframe || static_cast<int>(neighbours.size()) >= options.fusion_neighbours) continue;
     neighbours.push_back(i);
   }
+  fuse_between(window, keyframe, neighbours, options);
+}
+
+void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options) {
   for (const Meeting& meeting : look_for(window, points_seen_by(window, neighbours), keyframe, options)) {
     settle(window, meeting);
   }

@@ -3,6 +3,7 @@
 #include "byre/slam/mapping.h"
 #include "byre/slam/measurement.h"
 
+#include <functional>
 #include <vector>
 
 // The steps of extend_map, each on a window. Keyframes and points are named by their index in the window.
@@ -27,9 +28,12 @@ void triangulate_new_points(MapWindow& window, int keyframe, const MappingOption
 // Points of the neighbours looked for in the keyframe and its points in the neighbours: found at a free feature they
 // are observed once more, found at another point the one with fewer observations gives way.
 void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options);
+// The same with these neighbours.
+void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options);
 
 // Local bundle adjustment in two rounds, with observations that disagree removed after each.
-void adjust_bundle(MapWindow& window, const MappingOptions& options);
+// should_stop, unless empty, ends it early with what was reached.
+void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop = {});
 
 // The same for the points alone. Precondition: no keyframe is movable.
 void adjust_points(MapWindow& window, const MappingOptions& options);
@@ -37,8 +41,8 @@ void adjust_points(MapWindow& window, const MappingOptions& options);
 // Position covariance, descriptor, viewing direction and distances of the window's points, from their observations.
 void refresh_points(MapWindow& window);
 
-// Points that later keyframes should have confirmed and did not.
-void remove_weak_points(MapWindow& window);
+// Points that keyframes made since should have confirmed and did not; newest: the keyframe by which age is told.
+void remove_weak_points(MapWindow& window, KeyframeId newest);
 
 // Keyframes that add nothing: nearly all of their points are seen by three others at least.
 void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options);

@@ -116,14 +116,13 @@ void refresh_points(MapWindow& window) {
   }
 }
 
-void remove_weak_points(MapWindow& window) {
+void remove_weak_points(MapWindow& window, KeyframeId newest) {
   constexpr std::uint32_t kKeyframesToConfirm = 3;
-  const std::uint32_t newest = window.keyframes.front().id.number;
   for (int i = 0; i < static_cast<int>(window.points.size()); ++i) {
     const WindowPoint& point = window.points[static_cast<std::size_t>(i)];
     const bool offline = point.id && point.id->origin == Origin::offline;
     if (point.removed || offline) continue;
-    const bool had_its_chance = newest >= point.point.reference.keyframe.number + kKeyframesToConfirm;
+    const bool had_its_chance = newest.number >= point.point.reference.keyframe.number + kKeyframesToConfirm;
     const bool alone = !point.id && times_seen(point) < 2;  // one made here, and refuted at once
     const bool unconfirmed = had_its_chance && times_seen(point) < 2;
     if (alone || unconfirmed || is_undetermined(window, point)) remove_point(window, i);

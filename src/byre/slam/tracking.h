@@ -21,10 +21,10 @@ struct TrackedFrame {
   // what the reference keyframe's own pose does.
   Matrix6 covariance = Matrix6::Zero();
   Matrix6 match_covariance = Matrix6::Zero();  // of that, what the matches leave open: relative to the map around it
-  KeyframeId reference;                  // the keyframe that shares most points
-  std::vector<TrackedFeature> features;  // inliers only, ascending
-  int expected = 0;                      // map points in the frustum
-  int matches = 0;                       // of those, matched before outliers were taken out
+  KeyframeId reference;                        // the keyframe that shares most points
+  std::vector<TrackedFeature> features;        // inliers only, ascending
+  int expected = 0;                            // map points in the frustum
+  int matches = 0;                             // of those, matched before outliers were taken out
 };
 
 struct TrackOptions {

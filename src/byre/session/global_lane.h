@@ -1,0 +1,39 @@
+#pragma once
+
+#include "byre/session/executor.h"
+#include "byre/slam/global_mapping.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// Corrections of the whole map, one at a time, beside tracking and local mapping. A finished correction waits until
+// local mapping has nothing in flight, for what that works on would be out of date.
+class GlobalLane {
+ public:
+  GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options)
+      : executor_(std::move(executor)), options_(options) {}
+
+  bool idle() const { return !snapshot_; }
+  bool is_waiting() const { return correction_.has_value(); }  // with a finished correction
+
+  // Bends the map to close these loops. Precondition: idle().
+  void close_loops(const Map& map, const std::vector<LoopEdge>& loops);
+
+  void collect();               // once per frame
+  void finish();                // waits for the job in flight
+  MapDelta apply(Map& online);  // precondition: is_waiting(); gives what was applied
+
+ private:
+  // Constant after construction.
+  std::unique_ptr<Executor> executor_;
+  GlobalMappingOptions options_;
+
+  // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
+  std::shared_ptr<const MapWindow> snapshot_;
+  std::optional<MapDelta> correction_;
+};
+
+}  // namespace byre

@@ -1,0 +1,188 @@
+// Sessions that recognise places: loops, being lost and found, and maps that level off.
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/map/map_file.h"
+#include "byre/session/session.h"
+#include "byre/simulation/simulated_mission.h"
+#include "byre/slam/online_copy.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr int kLap = 60;  // frames
+
+SimulatedMission laps(double count, std::uint64_t noise_seed = 1) {
+  SimulationOptions options;
+  options.noise_seed = noise_seed;
+  const int frames = static_cast<int>(kLap * count);
+  return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, count), options);
+}
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary trained = [] {
+    const SimulatedMission mission = laps(1.0);
+    std::vector<std::vector<Descriptor>> images;
+    for (std::size_t i = 0; i < mission.frames.size(); i += 3) {
+      images.push_back(mission.frames[i].features->descriptors());
+    }
+    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
+  }();
+  return trained;
+}
+
+Session recognising_session(const Rig& rig) {
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary()};
+}
+
+// Metres from where the frame truly was, the first frame being the world.
+double error_of(const SimulatedMission& mission, std::size_t frame, const Pose& world_from_body) {
+  const Pose truth = inverse(mission.truth[0].world_from_body) * mission.truth[frame].world_from_body;
+  return (world_from_body.translation - truth.translation).norm();
+}
+
+int parts_of(const Session& session) {
+  return quality_of(session.map().online()).parts;
+}
+
+struct MissionResult {
+  int loops = 0;
+  int corrections = 0;
+  double last_error = 0.0;  // metres, mean over the last ten frames as they were published
+};
+
+MissionResult run(Session& session, const SimulatedMission& mission) {
+  MissionResult result;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    const FrameReport report = session.process(mission.frames[i]);
+    EXPECT_TRUE(report.world_from_body) << "frame " << i;
+    if (!report.world_from_body) continue;
+    result.loops += report.loop_found;
+    result.corrections += report.map_corrected;
+    if (i + 10 >= mission.frames.size()) result.last_error += 0.1 * error_of(mission, i, *report.world_from_body);
+  }
+  session.finish();
+  return result;
+}
+
+TEST(SessionThatRecognisesPlaces, ClosesTheLoopWhenItComesBack) {
+  const SimulatedMission mission = laps(1.3);
+  Session without(mission.rig, {}, make_inline_executor());
+  const MissionResult open = run(without, mission);
+  Session session = recognising_session(mission.rig);
+  const MissionResult closed = run(session, mission);
+  EXPECT_EQ(closed.loops, 1);
+  EXPECT_LT(closed.last_error, 0.6 * open.last_error);
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+  EXPECT_EQ(parts_of(session), 1);
+}
+
+TEST(SessionThatRecognisesPlaces, FindsNoLoopWhereThereIsNone) {
+  const SimulatedMission mission = laps(0.8);
+  Session session = recognising_session(mission.rig);
+  for (const Frame& frame : mission.frames) EXPECT_FALSE(session.process(frame).loop_found);
+}
+
+TEST(SessionThatRecognisesPlaces, HasAMapThatLevelsOffWhenItCirclesTheSamePath) {
+  const SimulatedMission mission = laps(20.0);
+  Session session = recognising_session(mission.rig);
+  std::vector<int> keyframes, points;  // after each lap
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    ASSERT_TRUE(session.process(mission.frames[i]).world_from_body);
+    if ((i + 1) % kLap != 0) continue;
+    keyframes.push_back(session.map().online().keyframe_count());
+    points.push_back(session.map().online().point_count());
+  }
+  EXPECT_LE(keyframes[19], 1.3 * keyframes[2]);
+  EXPECT_LE(points[19], 1.3 * points[2]);
+}
+
+TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
+  const SimulatedMission mission = laps(1.0);
+  Session session = recognising_session(mission.rig);
+  for (std::size_t i = 0; i < 40; ++i) ASSERT_TRUE(session.process(mission.frames[i]).world_from_body);
+  Frame blind = mission.frames[40];
+  blind.features = std::make_shared<Features>();
+  EXPECT_EQ(session.process(blind).state, State::lost);
+
+  Frame somewhere = mission.frames[10];  // where it was before, not where it was lost
+  somewhere.time = mission.frames[41].time;
+  const FrameReport found = session.process(somewhere);
+  EXPECT_EQ(found.state, State::tracking);
+  EXPECT_TRUE(found.relocalised);
+  ASSERT_TRUE(found.world_from_body);
+  EXPECT_LT(error_of(mission, 10, *found.world_from_body), 0.05);
+}
+
+TEST(SessionThatRecognisesPlaces, GoesOnWithAMapMadeBefore) {
+  const SimulatedMission first = laps(0.5), second = laps(1.0, 2);
+  Session earlier = recognising_session(first.rig);
+  for (const Frame& frame : first.frames) earlier.process(frame);
+  earlier.finish();
+  const int keyframes_before = earlier.map().online().keyframe_count();
+
+  SessionOptions options;
+  options.recording = 1;
+  Session later(second.rig, options, Lanes(make_inline_executor(), make_inline_executor()), vocabulary());
+  later.continue_map(online_copy(offline_copy(earlier.map().online())));
+  for (std::size_t i = 10; i < second.frames.size(); ++i) {
+    const FrameReport report = later.process(second.frames[i]);
+    ASSERT_TRUE(report.world_from_body) << "frame " << i;
+    EXPECT_LT(error_of(second, i, *report.world_from_body), 0.1);
+  }
+  later.finish();
+  const Map& map = later.map().online();
+  EXPECT_THAT(find_faults(map), testing::IsEmpty());
+  EXPECT_GT(map.keyframe_count(), keyframes_before);
+  EXPECT_EQ(map.find_keyframe(map.keyframe_ids().front())->recording, 0);
+  EXPECT_EQ(map.find_keyframe(map.keyframe_ids().back())->recording, 1);
+  EXPECT_EQ(parts_of(later), 1);
+}
+
+TEST(SessionThatRecognisesPlaces, GivesTheSameMapEachTime) {
+  const SimulatedMission mission = laps(1.3);
+  const auto bytes = [&] {
+    Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), vocabulary());
+    for (const Frame& frame : mission.frames) session.process(frame);
+    session.finish();
+    session.finish_map({}, {});
+    StoredMap stored;
+    stored.map = offline_copy(session.map().online());
+    return write_map(stored);
+  };
+  EXPECT_EQ(bytes(), bytes());
+}
+
+TEST(SessionThatRecognisesPlaces, CarriesKeyframesAlongThatCameWhileTheMapWasCorrected) {
+  const SimulatedMission mission = laps(1.6);
+  SessionOptions options;
+  options.max_drift_to_fuse = 0.0;  // a correction of the whole map, however small the drift
+  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(15)), vocabulary());
+  const MissionResult closed = run(session, mission);
+  EXPECT_GE(closed.corrections, 1);
+  EXPECT_LT(closed.last_error, 0.05);  // in the noise, as it would not be with a keyframe left behind
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+}
+
+TEST(SessionThatRecognisesPlaces, FinishesItsMap) {
+  const SimulatedMission mission = laps(1.2);
+  Session session = recognising_session(mission.rig);
+  for (const Frame& frame : mission.frames) session.process(frame);
+  session.finish();
+  std::vector<std::string> steps;
+  FinishHooks hooks;
+  hooks.before_step = [&steps](const char* step) { steps.emplace_back(step); };
+  const FinishReport report = session.finish_map({}, hooks);
+  EXPECT_EQ(steps.size(), 3u);
+  EXPECT_GE(report.points_removed, 0);
+  EXPECT_EQ(report.after.parts, 1);
+  EXPECT_LE(report.after.reprojection_p95, 1.1 * report.before.reprojection_p95);
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+  EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
+}
+
+}  // namespace
+}  // namespace byre

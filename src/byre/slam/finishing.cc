@@ -1,0 +1,155 @@
+#include "byre/slam/finishing.h"
+
+#include "byre/slam/mapping_steps.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace byre {
+namespace {
+
+bool stopped(const FinishHooks& hooks) {
+  return hooks.should_stop && hooks.should_stop();
+}
+
+void announce(const FinishHooks& hooks, const char* step) {
+  if (hooks.before_step) hooks.before_step(step);
+}
+
+const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
+  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+}
+
+// The keyframes around one that found an old place say whether they find it too.
+std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis,
+                                                      const FinishOptions& options) {
+  for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, options.confirming_keyframes)) {
+    const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
+    const LoopHypothesis checked =
+        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map, options.loops);
+    hypothesis.confirmations = checked.confirmations;  // the drift stays the keyframe's own
+    hypothesis.misses = checked.misses;
+  }
+  if (!is_confirmed(hypothesis, options.loops)) return std::nullopt;
+  return hypothesis;
+}
+
+void correct(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options, const FinishHooks& hooks) {
+  const MapWindow whole = whole_map(online);
+  apply_correction(adjust_map(whole, edges, options.global, hooks.should_stop), whole, online);
+}
+
+void thin_out(Map& online, const FinishOptions& options) {
+  const MapWindow whole = whole_map(online);
+  if (whole.keyframes.empty()) return;
+  MapWindow thinned = whole;
+  const KeyframeId newest = thinned.keyframes.back().id;
+  remove_weak_points(thinned, newest);
+  remove_redundant_keyframes(thinned, options.global.mapping);
+  remove_weak_points(thinned, newest);
+  apply(difference(whole, thinned), online);
+}
+
+double residual_of(const Map& map, const LoopEdge& edge) {
+  const Keyframe* const keyframe = map.find_keyframe(edge.keyframe);
+  const Keyframe* const place = map.find_keyframe(edge.place);
+  if (keyframe == nullptr || place == nullptr) return 0.0;
+  const Pose now = keyframe->camera_from_world * inverse(place->camera_from_world);
+  return (now * inverse(edge.keyframe_from_place)).translation.norm();
+}
+
+int count_parts(const Map& map) {
+  constexpr int kAll = 1 << 20;
+  std::set<KeyframeId> seen;
+  int parts = 0;
+  for (const KeyframeId start : map.keyframe_ids()) {
+    if (!seen.insert(start).second) continue;
+    ++parts;
+    std::vector<KeyframeId> reached = {start};
+    while (!reached.empty()) {
+      const KeyframeId id = reached.back();
+      reached.pop_back();
+      for (const Covisible& next : map.covisible_keyframes(id, kAll)) {
+        if (seen.insert(next.keyframe).second) reached.push_back(next.keyframe);
+      }
+    }
+  }
+  return parts;
+}
+
+// Pixels, of every observation.
+std::vector<double> reprojection_errors(const Map& map) {
+  std::vector<double> errors;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    for (const Sighting& sighting : keyframe.sightings) {
+      const MapPoint* const point = sighting.point ? map.find_point(*sighting.point) : nullptr;
+      if (point == nullptr) continue;
+      const Eigen::Vector3d point_in_camera = keyframe.camera_from_world * point->position_in_world;
+      if (point_in_camera.z() <= 0.0) continue;
+      const Eigen::Vector2d predicted = rig_of(map, keyframe).project(point_in_camera).head<2>();
+      errors.push_back((predicted - sighting.pixel.cast<double>()).norm());
+    }
+  }
+  return errors;
+}
+
+}  // namespace
+
+MapQuality quality_of(const Map& map) {
+  MapQuality quality{map.keyframe_count(), map.point_count(), 0, 0.0, 0.0, count_parts(map)};
+  std::vector<double> errors = reprojection_errors(map);
+  quality.observations = static_cast<int>(errors.size());
+  if (errors.empty()) return quality;
+  const auto at = [&errors](double share) {
+    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
+    std::nth_element(errors.begin(), place, errors.end());
+    return *place;
+  };
+  quality.reprojection_median = at(0.5);
+  quality.reprojection_p95 = at(0.95);
+  return quality;
+}
+
+std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
+                                         const FinishHooks& hooks) {
+  std::vector<LoopHypothesis> loops;
+  std::set<KeyframeId> settled;
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  for (auto id = ids.rbegin(); id != ids.rend() && !stopped(hooks); ++id) {
+    if (settled.contains(*id)) continue;
+    const auto found = find_loop(map, places, *id, options.loops);
+    const auto confirmed = found ? confirmed_by_neighbours(map, *found, options) : std::nullopt;
+    if (!confirmed) continue;
+    loops.push_back(*confirmed);
+    for (const Covisible& neighbour : map.covisible_keyframes(*id, options.confirming_keyframes)) {
+      settled.insert(neighbour.keyframe);
+    }
+  }
+  return loops;
+}
+
+FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks) {
+  FinishReport report;
+  report.before = quality_of(online);
+  announce(hooks, "looking for loops");
+  std::vector<LoopEdge> edges;
+  for (const LoopHypothesis& loop : search_loops(online, places, options, hooks)) {
+    report.loop_drifts.push_back(apparent_drift(loop, online));
+    edges.push_back(*edge_of(loop, online));
+  }
+  report.loops = static_cast<int>(edges.size());
+  announce(hooks, "adjusting the whole map");
+  if (!stopped(hooks)) correct(online, edges, options, hooks);
+  announce(hooks, "removing what adds nothing");
+  if (!stopped(hooks)) thin_out(online, options);
+  for (const LoopEdge& edge : edges) report.loop_residuals.push_back(residual_of(online, edge));
+  report.after = quality_of(online);
+  report.keyframes_removed = report.before.keyframes - report.after.keyframes;
+  report.points_removed = report.before.points - report.after.points;
+  return report;
+}
+
+}  // namespace byre

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "byre/slam/global_mapping.h"
+#include "byre/slam/loop_closing.h"
+
+#include <functional>
+#include <vector>
+
+namespace byre {
+
+struct FinishOptions {
+  LoopOptions loops;
+  GlobalMappingOptions global;
+  int confirming_keyframes = 6;  // nearest to one that found an old place, of which enough must find it too
+};
+
+// How sound a map is by what can be known without any truth.
+struct MapQuality {
+  int keyframes = 0;
+  int points = 0;
+  int observations = 0;
+  double reprojection_median = 0.0;  // pixels
+  double reprojection_p95 = 0.0;     // pixels
+  int parts = 0;                     // groups of keyframes that no shared point connects
+};
+
+struct FinishReport {
+  int loops = 0;                       // places found again that the map did not know of
+  std::vector<double> loop_drifts;     // pixels by which their two sides had drifted apart, see apparent_drift
+  std::vector<double> loop_residuals;  // metres by which they still disagree with what was seen
+  int keyframes_removed = 0;           // found redundant
+  int points_removed = 0;              // found weak
+  MapQuality before;
+  MapQuality after;
+};
+
+struct FinishHooks {
+  std::function<bool()> should_stop;                  // asked now and then; what was reached by then is kept
+  std::function<void(const char* step)> before_step;  // "looking for loops", ...
+};
+
+MapQuality quality_of(const Map& map);
+
+// Places that keyframes came back to without the map knowing it, each confirmed by the keyframes around. From the
+// newest keyframe backwards; those around one that has found a loop are not asked again.
+std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
+                                         const FinishHooks& hooks);
+
+// What a mapping run ends with: a last search for loops among all keyframes, correction and bundle adjustment of the
+// whole map, removal of weak points and redundant keyframes.
+FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks);
+
+}  // namespace byre

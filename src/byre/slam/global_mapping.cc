@@ -1,0 +1,165 @@
+#include "byre/slam/global_mapping.h"
+
+#include "byre/optimise/pose_graph.h"
+#include "byre/slam/mapping_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+namespace byre {
+namespace {
+
+using IndexOfKeyframe = std::map<KeyframeId, int>;
+
+IndexOfKeyframe index_keyframes(const MapWindow& window) {
+  IndexOfKeyframe index;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) index[window.keyframes[i].id] = static_cast<int>(i);
+  return index;
+}
+
+Pose& pose_of(MapWindow& window, int keyframe) {
+  return window.keyframes[static_cast<std::size_t>(keyframe)].keyframe.camera_from_world;
+}
+const Pose& pose_of(const MapWindow& window, int keyframe) {
+  return window.keyframes[static_cast<std::size_t>(keyframe)].keyframe.camera_from_world;
+}
+
+// Points shared with each other keyframe, by its index.
+std::map<int, int> count_shared_points(const MapWindow& window, int keyframe) {
+  std::map<int, int> shared;
+  for (const int point : window.keyframes[static_cast<std::size_t>(keyframe)].point_of_feature) {
+    if (point < 0) continue;
+    for (const WindowObservation& seen : window.points[static_cast<std::size_t>(point)].observations) {
+      if (seen.keyframe != keyframe) ++shared[seen.keyframe];
+    }
+  }
+  return shared;
+}
+
+// The keyframes that share most points with this one, most first.
+std::vector<std::pair<int, int>> nearest_keyframes(const MapWindow& window, int keyframe, int min_shared, int count) {
+  std::vector<std::pair<int, int>> ranked;  // shared points, index
+  for (const auto& [other, shared] : count_shared_points(window, keyframe)) {
+    if (shared >= min_shared) ranked.emplace_back(shared, other);
+  }
+  std::ranges::sort(ranked, [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;
+  });
+  if (static_cast<int>(ranked.size()) > count) ranked.resize(static_cast<std::size_t>(count));
+  return ranked;
+}
+
+// How well two covisible keyframes know where they lie to each other: the better the more points they share. Only the
+// proportions matter.
+Matrix6 covisible_information(int shared_points) {
+  constexpr double kPositionSigma = 0.003;  // metres, for a hundred points
+  constexpr double kRotationSigma = 0.001;  // radians
+  Vector6 weights;
+  weights << Eigen::Vector3d::Constant(1.0 / (kPositionSigma * kPositionSigma)),
+      Eigen::Vector3d::Constant(1.0 / (kRotationSigma * kRotationSigma));
+  return Matrix6((weights * (shared_points / 100.0)).asDiagonal());
+}
+
+// Of a loop: what its matches leave open, and as much again as neighbours leave open, for points may err together.
+Matrix6 loop_information(const LoopEdge& loop) {
+  return (loop.covariance + covisible_information(100).inverse()).inverse();
+}
+
+PoseGraphEdge edge_between(const MapWindow& window, int first, int second, const Matrix6& information) {
+  return {.first = first,
+          .second = second,
+          .second_from_first = pose_of(window, second) * inverse(pose_of(window, first)),
+          .information = information};
+}
+
+PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<LoopEdge>& loops,
+                          const GlobalMappingOptions& options) {
+  PoseGraph graph;
+  std::set<std::pair<int, int>> joined;
+  const auto join = [&](int first, int second, int shared) {
+    if (!joined.insert(std::minmax(first, second)).second) return;
+    graph.edges.push_back(edge_between(window, first, second, covisible_information(shared)));
+  };
+  for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
+    const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
+    graph.nodes.push_back({.camera_from_world = keyframe.keyframe.camera_from_world, .fixed = !keyframe.movable});
+    for (const auto& [shared, other] :
+         nearest_keyframes(window, i, options.min_shared_points, options.max_neighbours)) {
+      join(other, i, shared);
+    }
+    const auto parent = keyframe.keyframe.parent ? index_of.find(*keyframe.keyframe.parent) : index_of.end();
+    if (parent != index_of.end()) join(parent->second, i, options.min_shared_points);
+  }
+  for (const LoopEdge& loop : loops) {
+    const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
+    if (place == index_of.end() || keyframe == index_of.end()) continue;
+    graph.edges.push_back({.first = place->second,
+                           .second = keyframe->second,
+                           .second_from_first = loop.keyframe_from_place,
+                           .information = loop_information(loop)});
+  }
+  return graph;
+}
+
+// Moves the keyframes, and each point with the keyframe that defines it.
+void take_over(MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<Pose>& camera_from_world) {
+  for (WindowPoint& point : window.points) {
+    const auto reference = index_of.find(point.point.reference.keyframe);
+    if (point.removed || reference == index_of.end()) continue;
+    const Pose& before = pose_of(window, reference->second);
+    const Pose& after = camera_from_world[static_cast<std::size_t>(reference->second)];
+    point.point.position_in_world = inverse(after) * (before * point.point.position_in_world);
+  }
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) pose_of(window, static_cast<int>(i)) = camera_from_world[i];
+}
+
+// A keyframe and those nearest to it.
+std::vector<int> surroundings_of(const MapWindow& window, int keyframe, int count) {
+  std::vector<int> surroundings = {keyframe};
+  for (const auto& [shared, other] : nearest_keyframes(window, keyframe, 1, count - 1)) surroundings.push_back(other);
+  return surroundings;
+}
+
+void fuse_around(MapWindow& window, int keyframe, int place, const GlobalMappingOptions& options) {
+  const std::vector<int> newer = surroundings_of(window, keyframe, options.fusion_neighbours);
+  std::vector<int> older = surroundings_of(window, place, options.fusion_neighbours);
+  std::erase_if(older, [&](int index) { return std::ranges::find(newer, index) != newer.end(); });
+  for (const int index : newer) fuse_between(window, index, older, options.mapping);
+}
+
+void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options) {
+  const IndexOfKeyframe index_of = index_keyframes(window);
+  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops, options), {});
+  if (bent.usable) take_over(window, index_of, bent.camera_from_world);
+  for (const LoopEdge& loop : loops) {
+    const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
+    if (place == index_of.end() || keyframe == index_of.end()) continue;
+    fuse_around(window, keyframe->second, place->second, options);
+  }
+}
+
+}  // namespace
+
+MapWindow whole_map(const Map& map) {
+  MapWindow window = window_of(map, map.keyframe_ids());
+  for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = keyframe.keyframe.parent.has_value();
+  return window;
+}
+
+MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                    const std::function<bool()>& should_stop) {
+  MapWindow adjusted = whole;
+  if (!loops.empty()) close_loops(adjusted, loops, options);
+  MappingOptions mapping = options.mapping;
+  mapping.first_bundle_iterations = options.first_bundle_iterations;
+  mapping.second_bundle_iterations = options.second_bundle_iterations;
+  mapping.bundle_threads = options.threads;
+  adjust_bundle(adjusted, mapping, should_stop);
+  refresh_points(adjusted);
+  return difference(whole, adjusted);
+}
+
+}  // namespace byre

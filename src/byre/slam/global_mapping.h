@@ -1,0 +1,35 @@
+#pragma once
+
+#include "byre/slam/delta.h"
+#include "byre/slam/loop_closing.h"
+#include "byre/slam/mapping.h"
+
+#include <functional>
+#include <vector>
+
+namespace byre {
+
+struct GlobalMappingOptions {
+  MappingOptions mapping;
+  int min_shared_points = 50;        // of two keyframes, to be joined in the pose graph
+  int max_neighbours = 10;           // of a keyframe in the pose graph
+  int fusion_neighbours = 10;        // keyframes on each side of a loop whose points are fused
+  int first_bundle_iterations = 8;   // before outliers are taken out
+  int second_bundle_iterations = 6;  // after
+  int threads = 1;                   // one keeps the result reproducible
+};
+
+// A copy of a whole map, all of it movable but the keyframes that hold the world in place.
+MapWindow whole_map(const Map& map);
+
+// Bends the map so that loops close: a pose graph over covisibility and loops moves the keyframes, and their points
+// along; points on both sides of a loop are fused; bundle adjustment of everything settles the rest. Without loops the
+// last alone. should_stop, unless empty, is asked now and then: what was reached by then is the result.
+MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                    const std::function<bool()>& should_stop = {});
+
+// Applies what was found for a map as it was (before) to the map as it is now. Keyframes and points that came in the
+// meantime go along with those they hang from; what moved in the meantime keeps its motion.
+void apply_correction(const MapDelta& correction, const MapWindow& before, Map& online);
+
+}  // namespace byre

@@ -1,0 +1,165 @@
+#include "byre/slam/loop_closing.h"
+
+#include "byre/slam/keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+// The newest keyframe, those that share points with it, and those that share points with the nearest of these.
+std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
+  constexpr int kAll = 1 << 20;
+  constexpr int kNearest = 15;
+  std::set<KeyframeId> surroundings = {id};
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kAll)) surroundings.insert(neighbour.keyframe);
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kNearest)) {
+    for (const Covisible& next : map.covisible_keyframes(neighbour.keyframe, kAll)) surroundings.insert(next.keyframe);
+  }
+  return surroundings;
+}
+
+// How alike two views of one place are hereabouts.
+float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, const BagOfWords& bag) {
+  constexpr int kNeighbours = 5;
+  float best = 0.0f;
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kNeighbours)) {
+    const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
+    best = std::max(best, similarity(bag, index.vocabulary().bag_of(keyframe.words)));
+  }
+  return best;
+}
+
+void disturb(std::vector<PlaceCandidate>& places, const PlaceNoise& noise, KeyframeId id) {
+  if (noise.seed == 0) return;
+  std::mt19937_64 random(noise.seed ^ (std::uint64_t{id.number} << 32));
+  const auto draw = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+  for (std::size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[draw(i)]);
+  constexpr std::size_t kResolution = 1000;
+  std::erase_if(places, [&](const PlaceCandidate&) {
+    return static_cast<double>(draw(kResolution)) < noise.dropped_share * static_cast<double>(kResolution);
+  });
+}
+
+std::vector<PlaceCandidate> find_old_places(const Map& map, const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                            const LoopOptions& options) {
+  const std::vector<Word>& words = map.find_keyframe(id)->words;
+  const std::set<KeyframeId> surroundings = surroundings_of(map, id);
+  const auto is_near = [&](KeyframeId other) {
+    return other.number + options.min_gap > id.number || surroundings.contains(other);
+  };
+  std::vector<PlaceCandidate> places = find_places(index, view, words, options.places, is_near);
+  if (places.empty()) return places;
+  disturb(places, options.noise, id);
+  const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
+  std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < options.min_score_share * usual; });
+  return places;
+}
+
+// Metres that the camera travelled from one keyframe to another.
+double path_between(const Map& map, KeyframeId from, KeyframeId to) {
+  double length = 0.0;
+  std::optional<Eigen::Vector3d> last;
+  for (std::uint32_t number = from.number; number <= to.number; ++number) {
+    const Keyframe* const keyframe = map.find_keyframe({map.origin(), number});
+    if (keyframe == nullptr) continue;
+    const Eigen::Vector3d camera_in_world = inverse(keyframe->camera_from_world).translation;
+    if (last) length += (camera_in_world - *last).norm();
+    last = camera_in_world;
+  }
+  return length;
+}
+
+// What the drift moves the camera by: metres and radians.
+struct CameraShift {
+  double distance = 0.0;
+  double turn = 0.0;
+};
+
+CameraShift camera_shift(const Pose& camera_from_world, const Pose& old_from_new) {
+  const Pose world_from_camera = inverse(camera_from_world);
+  return {((old_from_new * world_from_camera).translation - world_from_camera.translation).norm(),
+          rotation_log(old_from_new.rotation).norm()};
+}
+
+bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOptions& options) {
+  const CameraShift shift =
+      camera_shift(map.find_keyframe(hypothesis.keyframe)->camera_from_world, hypothesis.old_from_new);
+  const double path = path_between(map, hypothesis.place, hypothesis.keyframe);
+  return shift.turn <= options.max_drift_turn && shift.distance <= options.max_drift + options.max_drift_share * path;
+}
+
+}  // namespace
+
+std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                        const LoopOptions& options) {
+  const Keyframe* const keyframe = map.find_keyframe(newest);
+  if (keyframe == nullptr || keyframe->words.empty()) return std::nullopt;
+  const MapView view(nullptr, map);
+  const std::vector<PlaceCandidate> places = find_old_places(map, view, index, newest, options);
+  if (places.empty()) return std::nullopt;
+  const Localisation found = localise_at(keyframe->frame, keyframe->words, view.rig_of(*keyframe, newest), view,
+                                         index.vocabulary(), places, options.localise);
+  if (!found.tracked) return std::nullopt;
+
+  LoopHypothesis hypothesis;
+  hypothesis.keyframe = newest;
+  hypothesis.place = found.tracked->reference;
+  hypothesis.old_from_new = inverse(found.tracked->camera_from_world) * keyframe->camera_from_world;
+  hypothesis.covariance = found.tracked->match_covariance;
+  hypothesis.median_depth = median_depth(*found.tracked, view);
+  if (!is_plausible(hypothesis, map, options)) return std::nullopt;
+  return hypothesis;
+}
+
+LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
+                          const Rig& rig, const Map& map, const LoopOptions& options) {
+  LoopHypothesis checked = hypothesis;
+  const MapView view(nullptr, map);
+  const Pose predicted_camera_from_old = camera_from_world * inverse(hypothesis.old_from_new);
+  const auto tracked =
+      track(frame, predicted_camera_from_old, rig, view,
+            local_points(view, hypothesis.place, options.localise.local_keyframes), options.localise.track);
+  if (!tracked || reason_to_doubt(*tracked, rig, view, options.localise) != LocalisationFailure::none) {
+    ++checked.misses;
+    return checked;
+  }
+  const Pose motion = tracked->camera_from_world * inverse(predicted_camera_from_old);
+  const double depth = median_depth(*tracked, view);
+  const bool agrees = motion.translation.norm() <= options.max_disagreement * depth &&
+                      rotation_log(motion.rotation).norm() <= options.max_disagreement;
+  if (!agrees) {
+    ++checked.misses;
+    return checked;
+  }
+  ++checked.confirmations;
+  checked.place = tracked->reference;
+  checked.old_from_new = inverse(tracked->camera_from_world) * camera_from_world;
+  checked.covariance = tracked->match_covariance;
+  checked.median_depth = depth;
+  return checked;
+}
+
+std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map) {
+  const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
+  const Keyframe* const place = map.find_keyframe(hypothesis.place);
+  if (keyframe == nullptr || place == nullptr) return std::nullopt;
+  const Pose camera_from_old = keyframe->camera_from_world * inverse(hypothesis.old_from_new);
+  return LoopEdge{hypothesis.keyframe, hypothesis.place, camera_from_old * inverse(place->camera_from_world),
+                  hypothesis.covariance};
+}
+
+double apparent_drift(const LoopHypothesis& hypothesis, const Map& map) {
+  const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
+  if (keyframe == nullptr) return 0.0;
+  const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe->rig)];
+  const CameraShift shift = camera_shift(keyframe->camera_from_world, hypothesis.old_from_new);
+  return rig.focal * (shift.turn + shift.distance / std::max(1e-3, hypothesis.median_depth));
+}
+
+}  // namespace byre

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "byre/map/map.h"
+#include "byre/place/place_index.h"
+#include "byre/slam/localisation.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace byre {
+
+// A keyframe of the newer part of a map and one of the older part that see the same place, and how they lie to each
+// other.
+struct LoopEdge {
+  KeyframeId keyframe;
+  KeyframeId place;
+  Pose keyframe_from_place;              // of their cameras
+  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * keyframe_from_place
+};
+
+// To see what place recognition may get wrong before the map does: candidates in random order, some of them missing.
+struct PlaceNoise {
+  double dropped_share = 0.0;  // of the candidates
+  std::uint64_t seed = 0;      // 0: no noise at all
+};
+
+struct LoopOptions {
+  PlaceQueryOptions places{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
+  LocaliseOptions localise;       // as strict as finding a frame from nothing
+  std::uint32_t min_gap = 20;     // keyframes between a place and the newest: nearer ones are reached by tracking
+  float min_score_share = 0.5f;   // of the similarity of a covisible neighbour: less alike is not the same place
+  double max_drift_share = 0.03;  // of the path since the place was seen, by which the map may have drifted,
+  double max_drift = 0.3;         // and metres on top
+  double max_drift_turn = 0.2;    // radians
+  PlaceNoise noise;
+  int min_confirmations = 3;       // frames, not only keyframes, that must find the place where the first one did
+  int min_frames_between = 10;     // loops: until mapping knows of the one before, the next frames would find it again
+  int max_misses = 3;              // frames that did not, before the place is given up
+  double max_disagreement = 0.01;  // of the median depth, between what two frames say of the drift
+};
+
+// A place that the newest keyframe seems to have come back to, without the map knowing it.
+struct LoopHypothesis {
+  KeyframeId keyframe;
+  KeyframeId place;
+  // Where things lie in the older part of the map, given where they lie in the newer one: the drift in between.
+  Pose old_from_new;
+  Matrix6 covariance =
+      Matrix6::Zero();        // of the keyframe's camera in the older part, as TrackedFrame::match_covariance
+  double median_depth = 0.0;  // metres, of the points that say so
+  int confirmations = 0;
+  int misses = 0;
+};
+
+// Looks among the keyframes that share no points with the newest one's surroundings for one that shows the same, finds
+// the newest keyframe's pose there, and believes it only when the drift this means is no more than the path allows: a
+// fence repeats itself within metres, but a map does not drift by them within a few.
+std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                        const LoopOptions& options);
+
+// Looks for a later frame, tracked in the newer part of the map, in the older one. The hypothesis with one confirmation
+// or miss more, and with the drift as this frame saw it.
+LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
+                          const Rig& rig, const Map& map, const LoopOptions& options);
+
+inline bool is_confirmed(const LoopHypothesis& hypothesis, const LoopOptions& options) {
+  return hypothesis.confirmations >= options.min_confirmations;
+}
+inline bool is_refuted(const LoopHypothesis& hypothesis, const LoopOptions& options) {
+  return hypothesis.misses >= options.max_misses;
+}
+
+// The loop as an edge between two keyframes; empty when one of them has gone.
+std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map);
+
+// By how much the drift moves what the keyframe sees, pixels: less than a point is searched by needs fusion only.
+double apparent_drift(const LoopHypothesis& hypothesis, const Map& map);
+
+}  // namespace byre
