@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Shows byre at work: maps a stereo recording and, where the recording holds ground truth, says how exact the result is.
+# Shows byre at work: maps a stereo recording, keeps the map, tells what it holds, finds frames in it and, where the
+# recording holds ground truth, says how exact the result is.
 # Usage: demo.sh [RECORDING]
 # RECORDING is a folder in EuRoC or KITTI format; without one a small recording of a made-up room is rendered first.
 # Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
@@ -30,8 +31,15 @@ if [[ -z $recording ]]; then
 fi
 
 echo "Mapping $recording"
-"$byre" map "$recording" --trajectory "$results/trajectory.txt" \
+"$byre" map "$recording" -o "$results/map.byre" --trajectory "$results/trajectory.txt" \
   --causal-trajectory "$results/causal_trajectory.txt" --stats "$results/stats.json"
+
+echo "Looking into the map"
+"$byre" inspect "$results/map.byre" --points "$results/points.ply" | tee "$results/map.txt"
+
+echo "Finding every twentieth frame in it, without tracking"
+"$byre" localise "$results/map.byre" "$recording" --stride 20 --trajectory "$results/found.txt" |
+  tee "$results/localisation.txt"
 
 # EuRoC keeps the ground truth inside a recording, KITTI beside its sequences.
 has_truth=false
@@ -45,6 +53,10 @@ if $has_truth; then
 fi
 
 echo
+echo "Map:                                $results/map.byre"
+echo "What it holds:                      $results/map.txt"
+echo "Its points, for any PLY viewer:     $results/points.ply"
+echo "Frames found in it:                 $results/found.txt, $results/localisation.txt"
 echo "Trajectory, after all corrections:  $results/trajectory.txt"
 echo "Trajectory, as known at the time:   $results/causal_trajectory.txt"
 echo "Statistics of the run:              $results/stats.json"

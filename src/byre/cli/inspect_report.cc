@@ -79,10 +79,10 @@ std::string describe_box(const std::optional<BoundingBox>& box, const char* unit
                    box->max.y(), box->min.z(), box->max.z());
 }
 
-std::string describe(const SourceRecording& recording) {
-  return recording.name + formatted(", %.1f s, last frame at %.3f s",
+std::string describe(const SourceRecording& recording, int keyframes) {
+  return recording.name + formatted(", %.1f s, last frame at %.3f s, %d keyframes",
                                     to_seconds(recording.last_time - recording.first_time),
-                                    to_seconds(recording.last_time));
+                                    to_seconds(recording.last_time), keyframes);
 }
 
 template <typename Size>
@@ -106,10 +106,12 @@ std::string describe_file(const InspectedFile& file, int keyframes) {
   return text;
 }
 
-std::string origin_text(const StoredMap& stored) {
+std::string origin_text(const StoredMap& stored, const MapCounts& counts) {
   std::string text = row("poses", std::string(describe(stored.pose_source)));
   text += row("scale", std::string(name_of(stored.scale)));
-  for (const SourceRecording& recording : stored.recordings) text += row("recording", describe(recording));
+  for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
+    text += row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
+  }
   for (const auto& [key, note] : stored.notes) text += row(key, note);
   return text;
 }
@@ -148,8 +150,9 @@ Json to_json(const std::optional<BoundingBox>& box) {
   return {{"min", {box->min.x(), box->min.y(), box->min.z()}}, {"max", {box->max.x(), box->max.y(), box->max.z()}}};
 }
 
-Json to_json(const SourceRecording& recording) {
+Json to_json(const SourceRecording& recording, int keyframes) {
   return {{"name", recording.name},
+          {"keyframes", keyframes},
           {"first_time_ns", recording.first_time.count()},
           {"last_time_ns", recording.last_time.count()},
           {"stereo", recording.calibration.right.has_value()}};
@@ -162,9 +165,11 @@ Json sizes_json(const std::vector<Size>& sizes) {
   return json;
 }
 
-Json recordings_json(const std::vector<SourceRecording>& recordings) {
+Json recordings_json(const std::vector<SourceRecording>& recordings, const MapCounts& counts) {
   Json json = Json::array();
-  for (const SourceRecording& recording : recordings) json.push_back(to_json(recording));
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    json.push_back(to_json(recordings[i], counts.keyframes_of_recordings[i]));
+  }
   return json;
 }
 
@@ -183,7 +188,7 @@ Json errors_json(const ReprojectionErrors& errors) {
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file) {
   const MapCounts& counts = inspection.counts;
   const char* const unit = unit_of(stored);
-  std::string text = row("map", file.name) + origin_text(stored);
+  std::string text = row("map", file.name) + origin_text(stored, counts);
   text += row("keyframes",
               formatted("%d, with %d features, %d with a patch", counts.keyframes, counts.features, counts.patches));
   text += row("points", formatted("%d, with %d observations", counts.points, counts.observations));
@@ -204,7 +209,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"file", file_json(file)},
       {"scale", name_of(stored.scale)},
       {"pose_source", name_of(stored.pose_source)},
-      {"recordings", recordings_json(stored.recordings)},
+      {"recordings", recordings_json(stored.recordings, inspection.counts)},
       {"notes", stored.notes},
       {"vocabulary_checksum", formatted("%016llx", static_cast<unsigned long long>(stored.vocabulary_checksum))},
       {"counts", to_json(inspection.counts)},

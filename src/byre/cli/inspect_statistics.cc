@@ -1,5 +1,6 @@
 #include "byre/cli/inspect_statistics.h"
 
+#include "byre/cli/stored_map.h"
 #include "byre/evaluation/trajectory_error.h"
 
 #include <algorithm>
@@ -137,6 +138,7 @@ std::vector<PartSize> memory_of(const Map& map, const MapCounts& counts) {
 MapInspection inspect(const StoredMap& stored) {
   MapInspection inspection;
   inspection.counts = count(stored.map);
+  inspection.counts.keyframes_of_recordings = keyframes_of_recordings(stored.map, stored.recordings.size());
   inspection.observations_per_point = observations_per_point(stored.map);
   inspection.errors = reprojection_errors(stored.map);
   inspection.points_in_world = bounding_box(stored.map);

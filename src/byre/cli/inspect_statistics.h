@@ -11,6 +11,7 @@ namespace byre::cli {
 struct MapCounts {
   int keyframes = 0;
   int keyframes_with_words = 0;
+  std::vector<int> keyframes_of_recordings;
   int points = 0;
   int features = 0;
   int observations = 0;

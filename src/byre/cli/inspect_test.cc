@@ -94,7 +94,7 @@ TEST(InspectReport, IsReadable) {
   const InspectedFile file{"barn.byre", 12345678, {{"header", 432}, {"points", 2000000}}};
   const std::string text = to_text(stored, inspection, file);
   EXPECT_THAT(text, StartsWith("map            barn.byre\n"));
-  EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s\n"));
+  EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes\n"));
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
   EXPECT_THAT(text, HasSubstr("keyframes      5, with 36 features, 20 with a patch\n"));
   EXPECT_THAT(text, HasSubstr("words          of 2 keyframes, by the vocabulary 0123456789abcdef\n"));
@@ -125,6 +125,8 @@ TEST(InspectReport, IsJsonWithStableKeys) {
   EXPECT_EQ(json["file"]["section_bytes"]["header"], 432);
   EXPECT_EQ(json["counts"]["points"], 16);
   EXPECT_EQ(json["notes"]["site"], "barn 3");
+  EXPECT_EQ(json["recordings"][0]["keyframes"], 4);
+  EXPECT_EQ(json["recordings"][1]["keyframes"], 1);
   EXPECT_EQ(json["recordings"][0]["last_time_ns"], 200000000000);
   EXPECT_EQ(json["pose_source"], "given");
   EXPECT_EQ(json["observations_per_point"]["p50"], 2.0);

@@ -1,6 +1,8 @@
 #include "byre/cli/interrupt.h"
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -38,7 +40,24 @@ TEST_F(Interrupt, EndsTheProgramTheSecondTime) {
         std::raise(SIGINT);
         std::raise(SIGINT);
       },
-      testing::KilledBySignal(SIGINT), "");
+      testing::ExitedWithCode(130), "");
+}
+
+TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
+  const std::filesystem::path output = std::filesystem::path(testing::TempDir()) / "byre_interrupted.byre";
+  const std::filesystem::path unfinished = output.string() + ".unfinished";
+  std::ofstream(output) << "whole";
+  std::ofstream(unfinished) << "ha";
+  EXPECT_EXIT(
+      {
+        const InterruptCatcher catcher({output});
+        std::raise(SIGINT);
+        std::raise(SIGINT);
+      },
+      testing::ExitedWithCode(130), "");
+  EXPECT_TRUE(std::filesystem::exists(output));
+  EXPECT_FALSE(std::filesystem::exists(unfinished));
+  std::filesystem::remove(output);
 }
 
 TEST_F(Interrupt, StaysIgnoredWhereItWas) {

@@ -1,4 +1,7 @@
+#include "byre/cli/autosave.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/finish_hooks.h"
+#include "byre/cli/formatted.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_options.h"
 #include "byre/cli/map_report.h"
@@ -12,11 +15,13 @@
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
 #include "byre/map/map_file.h"
+#include "byre/slam/online_copy.h"
 
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 namespace byre::cli {
 namespace {
@@ -30,21 +35,47 @@ std::unique_ptr<Recording> open_stereo_recording(const MapOptions& options) {
                    "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
 }
 
-std::string_view state_after(const MappedFrame& frame) {
-  return frame.report ? to_string(frame.report->state) : "unreadable frame";
+std::string state_after(const MappedFrame& frame) {
+  if (!frame.report) return "unreadable frame";
+  return std::string(to_string(frame.report->state)) +
+         formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
 }
 
-MapRun run_with_progress(Recording& recording, const MapRunOptions& run_options, const InterruptCatcher& interrupt,
-                         ProgressStyle style) {
-  Progress progress(std::cerr, style, recording.size());
+// What is kept with a map, and where; all but the map itself.
+struct MapRecord {
+  StoredMap about;
+  std::optional<Vocabulary> vocabulary;  // empty when no map is kept
+  std::string site;
+  fs::path path;
+};
+
+void save(Map offline, const MapRecord& record) {
+  StoredMap stored = record.about;
+  stored.map = std::move(offline);
+  save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
+}
+
+MapRun run_with_progress(Recording& recording, const MapRunOptions& run_options, const MapOptions& options,
+                         const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
+  Progress progress(std::cerr, progress_style(options.quiet), recording.size());
+  Autosave autosave(options.autosave_s.value_or(0.0),
+                    [&record](const Map& online) { save(offline_copy(online), record); });
   const Stopwatch watch;
+  const FinishHooks finishing = finish_hooks(interrupt, options.quiet);
   MapRunHooks hooks;
-  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.should_stop = finishing.should_stop;
   hooks.after_frame = [&progress, &watch](int done, const MappedFrame& frame) {
     progress.update(done, watch.seconds(), state_after(frame));
   };
-  MapRun run = run_map(recording, run_options, hooks);
+  if (options.autosave_s) hooks.offer_map = [&autosave](const Map& online) { autosave.offer(online); };
+  hooks.before_finishing_step = [&progress, &finishing](const char* step) {
+    progress.close();
+    if (finishing.before_step) finishing.before_step(step);
+  };
+  MapRun run = run_map(recording, run_options, hooks, std::move(before));
   progress.close();
+  autosave.finish();
+  run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
   return run;
 }
 
@@ -74,34 +105,66 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files) {
   return names;
 }
 
+// The map that is gone on with, out of which its record takes all but the map.
+std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
+  if (!options.extended) return std::nullopt;
+  record.about = load_for_mapping(*options.extended, *record.vocabulary);
+  record.about.pose_source = PoseSource::slam;
+  Map online = online_copy(record.about.map);
+  record.about.map = Map(Origin::offline);
+  return online;
+}
+
+MapRecord record_of(const MapOptions& options) {
+  MapRecord record;
+  // Found to be missing now, not after an hour of mapping.
+  if (options.map || !options.no_loops) record.vocabulary = open_vocabulary(options.vocabulary);
+  record.site = options.site;
+  if (options.map) record.path = *options.map;
+  return record;
+}
+
+MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, const Recording& recording) {
+  MapProtocol protocol{
+      options.recording.string(), guess_format(options.recording), options.range, recording.size(), {}, "", {}};
+  protocol.options.pace = options.pace;
+  protocol.options.extract.refinement = options.refinement;
+  protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
+  if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
+  if (options.extended) protocol.extended = options.extended->string();
+  for (const SourceRecording& source : record.about.recordings) protocol.recordings.push_back(source.name);
+  return protocol;
+}
+
+void require_poses(const MapRun& run, const MapOptions& options) {
+  if (!run.causal.empty()) return;
+  if (options.extended) {
+    throw std::runtime_error("no frame was found in " + options.extended->string() +
+                             ": the recording may be of another place, or too different in light or viewpoint");
+  }
+  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
+}
+
 ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
-  std::optional<Vocabulary> vocabulary;  // found to be missing now, not after an hour of mapping
-  if (options.map) vocabulary = open_vocabulary(options.vocabulary);
+  MapRecord record = record_of(options);
   const std::unique_ptr<Recording> recording = open_stereo_recording(options);
-  MapProtocol protocol{
-      options.recording.string(), guess_format(options.recording), options.range, recording->size(), {}};
-  protocol.options.pace = options.pace;
-  protocol.options.extract.refinement = options.refinement;
+  std::optional<Map> extended = take_extended(options, record);
+  record.about.recordings.push_back(describe_source(options.recording, *recording));
+  const MapProtocol protocol = protocol_of(options, record, *recording);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
-  const MapRun run = run_with_progress(*recording, protocol.options, interrupt, progress_style(options.quiet));
+  const InterruptCatcher interrupt(options.outputs());
+  const MapRun run = run_with_progress(*recording, protocol.options, options, record, std::move(extended), interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   const ResourceUse resources = resources_used_so_far();
-  write_results(options, run, protocol, resources);
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep
-  if (options.map) {
-    StoredMap stored;
-    stored.map = run.map;
-    stored.recordings = {describe_source(options.recording, *recording)};
-    save_for_use(std::move(stored), *vocabulary, options.site, *options.map);
-  }
+  if (options.map) save(run.map, record);
+  write_results(options, run, protocol, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;
-  if (run.causal.empty())
-    throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
+  require_poses(run, options);
   return ExitCode::done;
 }
 

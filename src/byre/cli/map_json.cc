@@ -1,5 +1,6 @@
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
+#include "byre/cli/stored_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,8 @@ Json options_json(const MapRunOptions& options) {
           {"min_initial_points", options.session.min_initial_points},
           {"local_keyframes", options.session.local_keyframes},
           {"movable_keyframes", options.session.mapping.window.movable},
-          {"anchor_keyframes", options.session.mapping.window.anchors}};
+          {"anchor_keyframes", options.session.mapping.window.anchors},
+          {"loops", options.vocabulary.has_value()}};
 }
 
 Json protocol_json(const MapProtocol& protocol) {
@@ -53,7 +55,11 @@ Json protocol_json(const MapProtocol& protocol) {
                  {"stride_frames", range.stride}}},
                {"frames_in_range", protocol.frames_in_range},
                {"pace", name_of(protocol.options.pace)}};
-  if (protocol.options.pace == Pace::paced) json["mapping_latency_frames"] = kPacedLatency;
+  if (protocol.options.pace == Pace::paced) {
+    json["mapping_latency_frames"] = kPacedLatency;
+    json["correction_latency_frames"] = kPacedCorrectionLatency;
+  }
+  if (!protocol.extended.empty()) json["extended"] = protocol.extended;
   json["options"] = options_json(protocol.options);
   json["body_covariance"] = kCovariance;
   return json;
@@ -71,7 +77,21 @@ Json counts_json(const MapRun& run) {
           {"points", run.map.point_count()},
           {"lost_episodes", counts.lost_episodes},
           {"frames_lost", counts.lost},
-          {"resets", counts.resets}};
+          {"resets", counts.resets},
+          {"relocalisations", counts.relocalisations},
+          {"loops_on_the_way", counts.loops},
+          {"corrections_on_the_way", counts.corrections}};
+}
+
+// Keyframes of each recording, and how long the new one took to be found in the map; null without an extended map.
+Json extension_json(const MapRun& run, const MapProtocol& protocol) {
+  if (protocol.extended.empty()) return nullptr;
+  const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
+  Json recordings = Json::array();
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    recordings.push_back({{"name", protocol.recordings[i]}, {"keyframes", keyframes[i]}});
+  }
+  return {{"frames_until_found", or_null(count_frames(run.frames).frames_to_first)}, {"recordings", recordings}};
 }
 
 Json to_json(const TimeSummary& times) {
@@ -110,6 +130,8 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
   Json json = {{"protocol", protocol_json(protocol)},
                {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
                {"counts", counts_json(run)},
+               {"extension", extension_json(run, protocol)},
+               {"finishing", run.finishing ? to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},
                {"mapping_jobs", jobs_json(run.job_seconds)}};
@@ -159,6 +181,12 @@ Json frame_json(const MappedFrame& frame) {
   }
   const FrameReport& report = *frame.report;
   json["state"] = to_string(report.state);
+  json["map_keyframes"] = frame.keyframes;
+  json["map_points"] = frame.points;
+  json["memory_mb"] = std::round(10.0 * frame.memory_mb) / 10.0;
+  json["relocalised"] = report.relocalised;
+  json["loop_found"] = report.loop_found;
+  json["map_corrected"] = report.map_corrected;
   json["has_right_image"] = frame.has_right;
   json["keyframe"] = report.keyframe_added;
   json["features"] = report.features;

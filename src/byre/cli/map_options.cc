@@ -17,12 +17,16 @@ constexpr const char* kFooter = R"(Examples:
   byre map MH_01_easy -o barn.byre
   byre map MH_01_easy -o barn.byre --trajectory out.txt --site "Barn 2"
   byre map kitti/sequences/00 --trajectory out.txt --causal-trajectory causal.txt --stats stats.json
+  byre map MH_02_easy --extend barn.byre -o barn2.byre
+  byre map MH_01_easy -o barn.byre --pace live --autosave 60
   byre map MH_01_easy --trajectory out.txt --start 10 --end 25.5 --stride 2
   byre map MH_01_easy --trajectory out.txt --pace live --quiet
 
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
-KITTI's the left camera. Ctrl-C stops after the current frame and still writes all files, then the exit code is 130.)";
+KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
+points and redundant keyframes are removed. Ctrl-C stops after the current frame, leaves this out and still writes all
+files, then the exit code is 130; "byre refine" makes up for it. A second Ctrl-C ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
   command
@@ -51,6 +55,34 @@ void declare_map_content(CLI::App& command, MapOptions& options) {
       ->type_name("FILE");
 }
 
+void declare_building(CLI::App& command, MapOptions& options) {
+  command
+      .add_option("--extend", options.extended,
+                  "Go on with this map: the recording is found in it, and both are adjusted together")
+      ->type_name("MAP");
+  command
+      .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 1e6).description(""));
+  command.add_flag("--no-loops", options.no_loops,
+                   "Recognise no places and leave out what comes after the last frame; for comparison");
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+}
+
+void require_consistent_extension(const MapOptions& options) {
+  if (!options.extended) return;
+  if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: name a file for it (-o barn2.byre)");
+  if (is_same_file(*options.extended, *options.map)) {
+    throw CLI::ValidationError("--extend",
+                               "leaves its map as it is: name another file for the new one (-o barn2.byre)");
+  }
+  if (options.no_loops)
+    throw CLI::ValidationError("--extend", "has to recognise places, so it goes not with --no-loops");
+}
+
 void require_consistent(const MapOptions& options) {
   require_sense(options.range);
   if (!options.map && !options.trajectory) {
@@ -63,6 +95,13 @@ void require_consistent(const MapOptions& options) {
   if (options.given_poses && (options.trajectory || options.causal_trajectory || options.stats)) {
     throw CLI::ValidationError("--poses", "estimates no trajectory, so none can be written, nor its statistics");
   }
+  if (options.given_poses && (options.extended || options.autosave_s || options.no_loops)) {
+    throw CLI::ValidationError("--poses", "goes with none of --extend, --autosave and --no-loops");
+  }
+  if (options.autosave_s && !options.map) {
+    throw CLI::ValidationError("--autosave", "saves the map: name a file for it (-o barn.byre)");
+  }
+  require_consistent_extension(options);
   std::set<fs::path> files;
   for (const fs::path& file : options.outputs()) {
     if (!files.insert(fs::absolute(file).lexically_normal()).second) {
@@ -85,6 +124,7 @@ std::vector<fs::path> MapOptions::outputs() const {
 void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_files(command, options);
   declare_map_content(command, options);
+  declare_building(command, options);
   declare_frame_range(command, options.range);
   const std::map<std::string, Pace> paces = {
       {"inline", Pace::same_thread}, {"paced", Pace::paced}, {"live", Pace::live}};

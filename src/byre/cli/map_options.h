@@ -20,10 +20,13 @@ struct MapOptions {
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> given_poses;  // a trajectory of the recording; else it is estimated
   std::optional<std::filesystem::path> vocabulary;   // else the one that comes with byre
+  std::optional<std::filesystem::path> extended;     // a map to go on with
+  std::optional<double> autosave_s;
   std::string site;
   FrameRange range;
   Pace pace = Pace::paced;
   Refinement refinement = Refinement::all;
+  bool no_loops = false;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

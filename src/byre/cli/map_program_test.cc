@@ -8,15 +8,11 @@
 #include "byre/place/vocabulary.h"
 
 #include <chrono>
-#include <csignal>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-#include <spawn.h>
 
 namespace byre::cli {
 namespace {
@@ -40,41 +36,6 @@ class MapProgram : public ProgramTest {
     return run("map " + quoted(RenderedFixture::shared().folder()) + " " + arguments);
   }
 
-  // Starts the program with SIGINT as it is in a terminal.
-  pid_t start(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), BYRE_PROGRAM);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    const std::pair<int, fs::path> streams[] = {{1, folder_ / "stdout.txt"}, {2, folder_ / "stderr.txt"}};
-    for (const auto& [stream, path] : streams) {
-      posix_spawn_file_actions_addopen(&files, stream, path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    }
-    sigset_t interrupt;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setsigdefault(&attributes, &interrupt);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    pid_t process = -1;
-    EXPECT_EQ(posix_spawn(&process, BYRE_PROGRAM, &files, &attributes, pointers.data(), environ), 0);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    return process;
-  }
-
-  // Gives up after half a minute.
-  bool appears(const std::string& text, const std::string& file) const {
-    for (int i = 0; i < 3000; ++i) {
-      if (read(file).find(text) != std::string::npos) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
-  }
-
   auto files_left() const { return std::distance(fs::directory_iterator(folder_), {}); }
 };
 
@@ -95,6 +56,9 @@ TEST_F(MapProgram, WritesWhatItWasAskedFor) {
   EXPECT_THAT(outcome.output, HasSubstr("poses        24 of 24 frames (100.0 %)\n"));
   EXPECT_THAT(outcome.output, HasSubstr("written      final.txt, causal.txt, stats.json\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("24 of 24 frames, "));
+  EXPECT_THAT(outcome.errors, HasSubstr("finishing: looking for loops\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("faults       none\n"));
+  EXPECT_EQ(json::parse(read("stats.json")).at("finishing").at("cut_short"), false);
   EXPECT_EQ(files_left(), 5) << "three results and the two streams";
 }
 
@@ -133,6 +97,15 @@ TEST_F(MapProgram, SaysNothingOnTheWayWhenQuiet) {
   EXPECT_THAT(outcome.output, StartsWith("recording    "));
 }
 
+TEST_F(MapProgram, LeavesPlacesAndFinishingOutWhenTold) {
+  const Outcome outcome = map("-o room.byre --stats stats.json --no-loops");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, Not(HasSubstr("finishing")));
+  EXPECT_THAT(outcome.output, HasSubstr("finishing    left out"));
+  EXPECT_TRUE(json::parse(read("stats.json")).at("finishing").is_null());
+  EXPECT_NE(load_map(folder_ / "room.byre").vocabulary_checksum, 0u) << "others may recognise places in it";
+}
+
 TEST_F(MapProgram, MapsThePartAskedFor) {
   EXPECT_EQ(map("--trajectory frames.txt --frames 4:12 --stride 2 --pace inline").exit_code, 0);
   const Trajectory frames = read_trajectory(folder_ / "frames.txt");
@@ -152,7 +125,9 @@ TEST_F(MapProgram, RefusesWrongUsage) {
         "--trajectory", "--trajectory out.txt --frames 5", "--trajectory out.txt --frames 9:3",
         "--trajectory out.txt --start 2 --end 2", "--trajectory out.txt --start -1", "--trajectory out.txt --stride 0",
         "--trajectory out.txt --pace fast", "--trajectory out.txt --stats ./out.txt",
-        "--trajectory out.txt another_recording"}) {
+        "--trajectory out.txt another_recording", "--trajectory out.txt --autosave 10", "-o map.byre --autosave soon",
+        "--trajectory out.txt --extend old.byre", "-o map.byre --extend ./map.byre",
+        "-o map.byre --extend old.byre --no-loops", "-o map.byre --extend old.byre --poses truth.txt"}) {
     const Outcome outcome = map(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.errors, StartsWith("byre: error: ")) << arguments;
@@ -196,24 +171,6 @@ TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {
   EXPECT_THAT(outcome.errors, HasSubstr("byre: error: no frame got a pose"));
   EXPECT_THAT(outcome.errors, HasSubstr("byre: warning: "));
   EXPECT_EQ(json::parse(read("stats.json")).at("counts").at("frames_without_right_image"), 1);
-}
-
-TEST_F(MapProgram, StopsAtCtrlCAndStillWritesEverything) {
-  const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live, its second frame is due in an hour
-  const pid_t process =
-      start({"map", slow.folder().string(), "--pace", "live", "--trajectory", (folder_ / "final.txt").string(),
-             "--causal-trajectory", (folder_ / "causal.txt").string(), "--stats", (folder_ / "stats.json").string()});
-  ASSERT_GT(process, 0);
-  EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
-  kill(process, SIGINT);
-  int status = 0;
-  ASSERT_EQ(waitpid(process, &status, 0), process);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(1));
-  EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
-  EXPECT_EQ(json::parse(read("stats.json")).at("stopped_early"), true);
-  EXPECT_THAT(read("stdout.txt"), HasSubstr("2 frames, stopped after 1\n"));
 }
 
 }  // namespace

@@ -2,16 +2,11 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/cli/map_statistics.h"
+#include "byre/cli/stored_map.h"
 #include "byre/evaluation/trajectory_error.h"
-
-#include <sys/resource.h>
 
 namespace byre::cli {
 namespace {
-
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
 
 std::string row(const char* name, const std::string& content) {
   return formatted("%-12s ", name) + content + "\n";
@@ -29,6 +24,39 @@ std::string describe_poses(const FrameCounts& counts) {
   if (counts.lost_episodes > 0) text += formatted(", lost %d times for %d frames", counts.lost_episodes, counts.lost);
   if (counts.resets > 0) text += formatted(", begun anew %d times", counts.resets);
   return text;
+}
+
+std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  return formatted(protocol.extended.empty() ? "%d keyframes, of %d made; %d points"
+                                             : "%d keyframes, of those before and %d made; %d points",
+                   run.map.keyframe_count(), counts.keyframes, run.map.point_count());
+}
+
+std::string describe_loops(const FrameCounts& counts) {
+  std::string text =
+      formatted("%d found on the way, %d corrections of the whole map", counts.loops, counts.corrections);
+  if (counts.relocalisations > 0) text += formatted("; found again %d times", counts.relocalisations);
+  return text;
+}
+
+// Empty for a map that goes on with no other.
+std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  if (protocol.extended.empty()) return "";
+  const std::string found = counts.frames_to_first ? formatted(", found in it after %d frames", *counts.frames_to_first)
+                                                   : std::string(", never found in it");
+  std::string text = row("extended", protocol.extended + found);
+  const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    text += row("of", protocol.recordings[i] + formatted(", %d keyframes", keyframes[i]));
+  }
+  return text;
+}
+
+std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
+  if (run.finishing) return to_text(*run.finishing);
+  if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
+  if (run.causal.empty()) return row("finishing", "left out, as there is no map");
+  return row("finishing", "left out; \"byre refine\" does it");
 }
 
 std::string describe(const TimeSummary& times) {
@@ -53,8 +81,16 @@ std::string describe_late(const MapRun& run) {
 }
 
 std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
-  const double rate = run.wall_seconds > 0.0 ? static_cast<double>(run.frames.size()) / run.wall_seconds : 0.0;
+  const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
+  const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
   return formatted("%.1f s, in %.1f s of wall time: %.1f frames/s", resources.cpu_seconds, run.wall_seconds, rate);
+}
+
+std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
+  std::string text = formatted("%.0f MB at most", resources.peak_memory_mb);
+  if (run.frames.empty()) return text;
+  return text + formatted("; %.0f MB after the first frame, %.0f MB after the last", run.frames.front().memory_mb,
+                          run.frames.back().memory_mb);
 }
 
 std::string listing(const std::vector<std::string>& files) {
@@ -65,28 +101,22 @@ std::string listing(const std::vector<std::string>& files) {
 
 }  // namespace
 
-ResourceUse resources_used_so_far() {
-  constexpr double kMegabytesPerKibibyte = 1024.0 / 1e6;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return {seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime),
-          kMegabytesPerKibibyte * static_cast<double>(usage.ru_maxrss)};
-}
-
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files) {
   const FrameCounts counts = count_frames(run.frames);
   std::string text = row("recording", describe_recording(run, protocol));
   text += row("pace", std::string(name_of(protocol.options.pace)));
   text += row("poses", describe_poses(counts));
-  text += row("map", formatted("%d keyframes, of %d made; %d points", run.map.keyframe_count(), counts.keyframes,
-                               run.map.point_count()));
+  text += row("map", describe_map(run, protocol, counts));
+  text += extension_rows(run, protocol, counts);
+  if (protocol.options.vocabulary) text += row("loops", describe_loops(counts));
+  text += finishing_rows(run, protocol);
   text += row("path", formatted("%.2f m", path_length(run.final)));
   text += row("frame time", describe_frame_time(run, protocol.options.pace));
   text += row("mapping", describe_mapping(run));
   if (protocol.options.pace == Pace::live) text += row("late", describe_late(run));
   text += row("CPU time", describe_processor(run, resources));
-  text += row("memory", formatted("%.0f MB at most", resources.peak_memory_mb));
+  text += row("memory", describe_memory(run, resources));
   if (!run.warnings.empty()) {
     text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
   }

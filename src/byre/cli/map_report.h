@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/cli/map_run.h"
+#include "byre/cli/resources.h"
 
 #include <string>
 #include <vector>
@@ -14,15 +15,9 @@ struct MapProtocol {
   FrameRange range;
   int frames_in_range = 0;
   MapRunOptions options;
+  std::string extended;                 // the map that was gone on with; empty for none
+  std::vector<std::string> recordings;  // of the whole map
 };
-
-// Of the whole program, from its start.
-struct ResourceUse {
-  double cpu_seconds = 0.0;  // user and system, of all threads
-  double peak_memory_mb = 0.0;
-};
-
-ResourceUse resources_used_so_far();
 
 // Everything known about the run: protocol, figures, and an array with an object for each frame, one a line.
 std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources);

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 MapProtocol protocol_of(Pace pace) {
-  MapProtocol protocol{"MH_01_easy", RecordingFormat::euroc, {.start_s = 1.5, .stride = 2}, 4, {}};
+  MapProtocol protocol{"MH_01_easy", RecordingFormat::euroc, {.start_s = 1.5, .stride = 2}, 4, {}, "", {"MH_01_easy"}};
   protocol.options.pace = pace;
   return protocol;
 }
@@ -36,7 +36,7 @@ MappedFrame tracked_frame(int number) {
   seconds.stereo = 0.002;
   seconds.map_submit = 0.001;
   seconds.total = 0.010 + 0.001 * number;
-  return {report.time, true, report, seconds};
+  return {report.time, true, report, seconds, 1 + number, 500 * number, 60.04 + number};
 }
 
 // Four frames, the second of which could not be read.
@@ -107,6 +107,19 @@ TEST(MapJson, TellsLateFramesWhenLive) {
   EXPECT_FALSE(stats_of(run).contains("late"));
 }
 
+TEST(MapJson, TellsOfFinishingAndOfWhatWasExtended) {
+  MapProtocol protocol = protocol_of(Pace::paced);
+  protocol.extended = "barn.byre";
+  MapRun run = small_run();
+  run.finishing.emplace().report.loops = 0;
+  const json stats = json::parse(to_json(run, protocol, {}));
+  EXPECT_EQ(stats.at("finishing").at("cut_short"), false);
+  EXPECT_EQ(stats.at("extension").at("frames_until_found"), 0);
+  EXPECT_EQ(stats.at("extension").at("recordings"), (json{{{"name", "MH_01_easy"}, {"keyframes", 1}}}));
+  EXPECT_TRUE(stats_of(small_run()).at("finishing").is_null());
+  EXPECT_TRUE(stats_of(small_run()).at("extension").is_null());
+}
+
 TEST(MapJson, HoldsEveryFrame) {
   const json frames = stats_of(small_run()).at("frames");
   ASSERT_EQ(frames.size(), 4u);
@@ -118,6 +131,9 @@ TEST(MapJson, HoldsEveryFrame) {
   EXPECT_EQ(frame.at("expected"), 400);
   EXPECT_EQ(frame.at("matches"), 300);
   EXPECT_EQ(frame.at("inliers"), 250);
+  EXPECT_EQ(frame.at("map_keyframes"), 3);
+  EXPECT_EQ(frame.at("map_points"), 1000);
+  EXPECT_EQ(frame.at("memory_mb"), 62.0);
   EXPECT_EQ(frame.at("position_m"), (json{2.25, 0.0, 0.0}));
   EXPECT_EQ(frame.at("quaternion_xyzw"), (json{0.0, 0.0, 0.0, 1.0}));
   ASSERT_EQ(frame.at("body_covariance").size(), 36u);
@@ -161,10 +177,34 @@ TEST(MapText, SumsTheRunUp) {
   EXPECT_THAT(text, HasSubstr("frame time   mean 11.7 ms, p99 13.0 ms\n"));
   EXPECT_THAT(text, HasSubstr("mapping      2 jobs, mean 20.5 ms, max 30.5 ms\n"));
   EXPECT_THAT(text, HasSubstr("CPU time     1.5 s, in 2.0 s of wall time: 2.0 frames/s\n"));
-  EXPECT_THAT(text, HasSubstr("memory       64 MB at most\n"));
+  EXPECT_THAT(text, HasSubstr("memory       64 MB at most; 60 MB after the first frame, 63 MB after the last\n"));
   EXPECT_THAT(text, HasSubstr("warnings     1; the first: 2.png: is not a whole image\n"));
   EXPECT_THAT(text, HasSubstr("written      out.txt, stats.json\n"));
+  EXPECT_THAT(text, HasSubstr("finishing    left out, as no places were recognised (--no-loops)\n"));
   EXPECT_THAT(text, Not(HasSubstr("late")));
+  EXPECT_THAT(text, Not(HasSubstr("extended")));
+}
+
+TEST(MapText, TellsWhatFinishingChanged) {
+  MapRun run = small_run();
+  run.finishing.emplace().report.points_removed = 12;
+  EXPECT_THAT(to_text(run, protocol_of(Pace::paced), {}, {}),
+              HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
+}
+
+TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
+  MapProtocol protocol = protocol_of(Pace::paced);
+  protocol.extended = "barn.byre";
+  protocol.recordings = {"MH_01_easy", "MH_02_easy"};
+  MapRun run = small_run();
+  Keyframe keyframe;
+  keyframe.recording = 1;
+  for (int i = 0; i < 2; ++i) run.map.add_keyframe(keyframe);
+  run.frames.front().report->world_from_body.reset();
+  const std::string text = to_text(run, protocol, {}, {});
+  EXPECT_THAT(text, HasSubstr("extended     barn.byre, found in it after 2 frames\n"));
+  EXPECT_THAT(text, HasSubstr("map          3 keyframes, of those before and 1 made; 1234 points\n"));
+  EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
 }
 
 TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {
@@ -174,12 +214,6 @@ TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {
   const std::string text = to_text(run, protocol_of(Pace::live), {}, {"out.txt"});
   EXPECT_THAT(text, HasSubstr("4 frames, stopped after 3\n"));
   EXPECT_THAT(text, HasSubstr("late         1 frames, by up to 40.5 ms\n"));
-}
-
-TEST(ResourcesUsedSoFar, AreThoseOfAProgramThatRuns) {
-  const ResourceUse resources = resources_used_so_far();
-  EXPECT_GT(resources.cpu_seconds, 0.0);
-  EXPECT_GT(resources.peak_memory_mb, 1.0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "byre/cli/decode_ahead.h"
 #include "byre/cli/live_clock.h"
 #include "byre/cli/logged_executor.h"
+#include "byre/cli/resources.h"
 #include "byre/cli/stopwatch.h"
 
 #include <memory>
@@ -11,35 +12,50 @@
 namespace byre::cli {
 namespace {
 
-std::unique_ptr<Executor> make_executor(Pace pace) {
+Lanes make_lanes(Pace pace, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:
-      return make_inline_executor();
+      return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
     case Pace::paced:
-      return make_paced_executor(kPacedLatency);
+      return {make_logged_executor(make_paced_executor(kPacedLatency), log),
+              make_paced_executor(kPacedCorrectionLatency)};
     case Pace::live:
-      return make_live_executor();
+      return {make_logged_executor(make_live_executor(), log), make_live_executor()};
   }
-  return nullptr;
+  return {nullptr, nullptr};
 }
 
 // Extracts, tracks and maps, and notes what each took.
 class FrameThread {
  public:
-  FrameThread(const Calibration& calibration, const MapRunOptions& options)
+  FrameThread(const Calibration& calibration, const MapRunOptions& options, std::optional<Map> before)
       : extractor_(calibration, options.extract),
-        session_(extractor_.rig(), options.session, make_logged_executor(make_executor(options.pace), log_)) {}
+        session_(extractor_.rig(), options.session, make_lanes(options.pace, log_), options.vocabulary) {
+    if (before) session_.continue_map(std::move(*before));
+  }
 
   MappedFrame process(const DecodedFrame& decoded) {
     MappedFrame frame;
     frame.time = decoded.time;
     if (decoded.images) frame = process(*decoded.images);
     frame.seconds.decode = decoded.seconds;
+    frame.keyframes = online().keyframe_count();
+    frame.points = online().point_count();
+    frame.memory_mb = resident_memory_mb();
     return frame;
   }
 
   void finish() { session_.finish(); }
+  Finishing finish_map(const FinishOptions& options, const FinishHooks& hooks) {
+    const Stopwatch watch;
+    Finishing finishing;
+    finishing.report = session_.finish_map(options, hooks);
+    finishing.cut_short = hooks.should_stop();
+    finishing.seconds = watch.seconds();
+    return finishing;
+  }
 
+  const Map& online() const { return session_.map().online(); }
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
 
@@ -51,7 +67,10 @@ class FrameThread {
     const FrameReport report = session_.process(extraction.frame);
     const double total = watch.seconds();
 
-    MappedFrame frame{images.time, images.right.has_value(), report, {}};
+    MappedFrame frame;
+    frame.time = images.time;
+    frame.has_right = images.right.has_value();
+    frame.report = report;
     frame.seconds.rectify = extraction.times.rectify;
     frame.seconds.extract = extraction.times.extract;
     frame.seconds.stereo = extraction.times.stereo;
@@ -67,13 +86,17 @@ class FrameThread {
   Session session_;
 };
 
+bool has_pose(const MappedFrame& frame) {
+  return frame.report && frame.report->world_from_body;
+}
+
 void take_over_result(const FrameThread& thread, MapRun& run) {
   run.final = thread.session().final_trajectory();
-  run.map = offline_copy(thread.session().map().online());
+  run.map = offline_copy(thread.online());
+  if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {
-    if (frame.report && frame.report->world_from_body)
-      run.causal.push_back({frame.time, *frame.report->world_from_body});
+    if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->world_from_body});
   }
 }
 
@@ -91,12 +114,14 @@ std::string_view name_of(Pace pace) {
   return "";
 }
 
-MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks) {
+MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
+               std::optional<Map> before) {
   const Stopwatch watch;
-  FrameThread thread(recording.calibration(), options);
+  FrameThread thread(recording.calibration(), options, std::move(before));
   DecodeAhead decoder(recording);
   LiveClock clock;
   MapRun run;
+  bool is_begun = false;
   while (std::optional<DecodedFrame> decoded = decoder.next()) {
     if (options.pace == Pace::live) {
       const double late = clock.wait_until_due(decoded->time, hooks.should_stop);
@@ -106,8 +131,13 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
     run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
     run.frames.push_back(thread.process(*decoded));
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
+    is_begun = is_begun || has_pose(run.frames.back());
+    if (is_begun && hooks.offer_map) hooks.offer_map(thread.online());
   }
   thread.finish();
+  if (options.vocabulary && is_begun && !hooks.should_stop()) {
+    run.finishing = thread.finish_map(options.finish, {hooks.should_stop, hooks.before_finishing_step});
+  }
   take_over_result(thread, run);
   run.wall_seconds = watch.seconds();
   return run;

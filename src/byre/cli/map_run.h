@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/finish_report.h"
 #include "byre/dataset/recording.h"
 #include "byre/features/extract.h"
 #include "byre/map/map_file.h"
@@ -16,18 +17,22 @@ namespace byre::cli {
 
 // Where mapping runs, and how fast frames are fed.
 //   same_thread  on the frame thread ("inline"), frames as fast as possible
-//   paced        on a worker, taken over kPacedLatency frames later, frames as fast as possible: repeatable
-//   live         on a worker, taken over when ready, frames at the recording's own time stamps; none is dropped
+//   paced        on workers, taken over kPacedLatency frames later, and corrections of the whole map
+//                kPacedCorrectionLatency frames later; frames as fast as possible: repeatable
+//   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
 std::string_view name_of(Pace pace);  // as on the command line
 
-inline constexpr int kPacedLatency = 4;  // frames
+inline constexpr int kPacedLatency = 4;             // frames
+inline constexpr int kPacedCorrectionLatency = 40;  // frames
 
 struct MapRunOptions {
   Pace pace = Pace::paced;
   ExtractOptions extract;
   SessionOptions session;
+  FinishOptions finish;
+  std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
 };
 
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
@@ -47,26 +52,34 @@ struct MappedFrame {
   bool has_right = false;
   std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
   StageSeconds seconds;
+  int keyframes = 0;       // of the map after it
+  int points = 0;          // of the map after it
+  double memory_mb = 0.0;  // resident, of the whole program
 };
 
 struct MapRun {
-  std::vector<MappedFrame> frames;    // one for each frame of the recording, fewer when the run was stopped
-  Trajectory causal;                  // poses as published when their frames came
-  Trajectory final;                   // as recomputed after the last frame
-  Map map{Origin::offline};           // as it is kept; of the keyframes made, others were found redundant
-  std::vector<double> job_seconds;    // wall time of each mapping job
-  std::vector<std::string> warnings;  // of the recording
-  std::vector<double> lateness;       // live: seconds by which frames were fed too late, of those that were
-  double wall_seconds = 0.0;          // of it all
+  std::vector<MappedFrame> frames;     // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                   // poses as published when their frames came
+  Trajectory final;                    // as recomputed after the last frame
+  Map map{Origin::offline};            // as it is kept; of the keyframes made, others were found redundant
+  std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
+  std::vector<double> job_seconds;     // wall time of each mapping job
+  std::vector<std::string> warnings;   // of the recording
+  std::vector<double> lateness;        // live: seconds by which frames were fed too late, of those that were
+  double wall_seconds = 0.0;           // of it all
 };
 
 struct MapRunHooks {
-  std::function<bool()> should_stop;                                    // asked before each frame
+  std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
+  std::function<void(const Map& online)> offer_map;  // unless empty, after each frame from the first with a pose on
+  std::function<void(const char* step)> before_finishing_step;
 };
 
-// Maps a stereo recording from its first to its last frame. Frames whose images cannot be read are left out.
-// Throws InputError when its calibration cannot be rectified.
-MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks);
+// Maps a stereo recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
+// are left out. Goes on with the map before, an online copy, if there is one: it needs the vocabulary's words, and
+// options a vocabulary. Throws InputError when the calibration cannot be rectified.
+MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
+               std::optional<Map> before = {});
 
 }  // namespace byre::cli

@@ -16,6 +16,7 @@ using testing::SizeIs;
 MapRun run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
   const auto recording = open_recording(rendered.folder(), {});
   MapRunOptions options;
+  options.vocabulary = Vocabulary::load(default_vocabulary_path());
   options.pace = pace;
   int frames_done = 0;
   MapRunHooks hooks;
@@ -48,6 +49,10 @@ TEST(RunMap, FollowsARecordingInEveryPace) {
     EXPECT_GT(mapped.map.keyframe_count(), 1);
     EXPECT_GT(mapped.map.point_count(), 100);
     EXPECT_FALSE(mapped.job_seconds.empty());
+    ASSERT_TRUE(mapped.finishing);
+    EXPECT_FALSE(mapped.finishing->cut_short);
+    EXPECT_THAT(mapped.finishing->faults, SizeIs(0));
+    EXPECT_EQ(mapped.finishing->report.after.keyframes, mapped.map.keyframe_count());
   }
 }
 
@@ -77,6 +82,35 @@ TEST(RunMap, StopsAfterTheFrameItIsAt) {
   EXPECT_THAT(mapped.frames, SizeIs(5));
   EXPECT_THAT(mapped.causal, SizeIs(5));
   EXPECT_THAT(mapped.final, SizeIs(5));
+  EXPECT_FALSE(mapped.finishing) << "a stopped run is to be saved soon";
+}
+
+TEST(RunMap, CutsFinishingShortWhenStopped) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
+  MapRunOptions options;
+  options.vocabulary = Vocabulary::load(default_vocabulary_path());
+  bool stopped = false;
+  MapRunHooks hooks;
+  hooks.should_stop = [&stopped] { return stopped; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.before_finishing_step = [&stopped](const char*) { stopped = true; };
+  const MapRun mapped = run_map(*recording, options, hooks);
+  ASSERT_TRUE(mapped.finishing);
+  EXPECT_TRUE(mapped.finishing->cut_short);
+  EXPECT_THAT(mapped.final, SizeIs(6));
+}
+
+TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
+  std::vector<int> keyframes;
+  MapRunHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.offer_map = [&keyframes](const Map& online) { keyframes.push_back(online.keyframe_count()); };
+  const MapRun mapped = run_map(*recording, {}, hooks);
+  EXPECT_THAT(keyframes, SizeIs(6));
+  EXPECT_THAT(keyframes, Each(Gt(0)));
+  EXPECT_FALSE(mapped.finishing) << "no places were recognised";
 }
 
 TEST(RunMap, GoesOnPastImagesThatAreTornOrAbsent) {

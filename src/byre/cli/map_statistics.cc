@@ -20,6 +20,12 @@ TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsO
   return summarise_times(std::move(seconds));
 }
 
+void count_events(const FrameReport& report, FrameCounts& counts) {
+  counts.relocalisations += report.relocalised ? 1 : 0;
+  counts.loops += report.loop_found ? 1 : 0;
+  counts.corrections += report.map_corrected ? 1 : 0;
+}
+
 }  // namespace
 
 TimeSummary summarise_times(std::vector<double> seconds) {
@@ -48,10 +54,12 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
   FrameCounts counts;
   State state = State::initialising;
   for (const MappedFrame& frame : frames) {
+    if (frame.report && frame.report->world_from_body && counts.with_pose == 0) counts.frames_to_first = counts.frames;
     ++counts.frames;
     counts.unreadable += frame.report ? 0 : 1;
     if (!frame.report) continue;
     counts.without_right_image += frame.has_right ? 0 : 1;
+    count_events(*frame.report, counts);
     const State before = std::exchange(state, frame.report->state);
     counts.with_pose += frame.report->world_from_body ? 1 : 0;
     counts.keyframes += frame.report->keyframe_added ? 1 : 0;

@@ -33,6 +33,10 @@ struct FrameCounts {
   int lost_episodes = 0;
   int lost = 0;    // frames in these episodes
   int resets = 0;  // how often a map was given up for a new one
+  int relocalisations = 0;
+  int loops = 0;                       // found on the way
+  int corrections = 0;                 // of the whole map, taken over on the way
+  std::optional<int> frames_to_first;  // processed before the first with a pose; empty when none had one
 
   double coverage() const { return frames > 0 ? static_cast<double>(with_pose) / frames : 0.0; }
 };

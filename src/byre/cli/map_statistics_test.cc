@@ -82,6 +82,20 @@ TEST(CountFrames, TakesAnUnreadableFrameForNeitherLostNorFound) {
   EXPECT_EQ(counts.lost_episodes, 1);
 }
 
+TEST(CountFrames, CountsWhatHappenedToTheMapOnTheWay) {
+  std::vector<MappedFrame> frames(4, frame_in(State::tracking));
+  frames[0] = frame_in(State::lost);
+  frames[1].report->relocalised = true;
+  frames[2].report->loop_found = true;
+  frames[3].report->map_corrected = true;
+  const FrameCounts counts = count_frames(frames);
+  EXPECT_EQ(counts.relocalisations, 1);
+  EXPECT_EQ(counts.loops, 1);
+  EXPECT_EQ(counts.corrections, 1);
+  EXPECT_EQ(counts.frames_to_first, 1);
+  EXPECT_EQ(count_frames({frame_in(State::lost)}).frames_to_first, std::nullopt);
+}
+
 TEST(CountFrames, CoversNothingWhenThereIsNothing) {
   EXPECT_EQ(count_frames({}).coverage(), 0.0);
 }

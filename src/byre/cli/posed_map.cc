@@ -43,7 +43,7 @@ ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range);
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
+  const InterruptCatcher interrupt(options.outputs());
   const PosedRun run = run_with_progress(*recording, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
 

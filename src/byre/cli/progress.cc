@@ -49,8 +49,10 @@ void Progress::update(int done, double elapsed_s, std::string_view state) {
   if (!is_due(done, elapsed_s)) return;
   const std::string text = describe(done, total_, unit_, elapsed_s, state);
   if (style_ == ProgressStyle::bar) {
+    constexpr const char* kCutAtEdge = "\x1b[?7l";
+    constexpr const char* kWrapAtEdge = "\x1b[?7h";
     constexpr const char* kClearToEnd = "\x1b[K";
-    stream_ << "\r[" << bar(done, total_) << "] " << text << kClearToEnd << std::flush;
+    stream_ << kCutAtEdge << "\r[" << bar(done, total_) << "] " << text << kClearToEnd << kWrapAtEdge << std::flush;
   } else {
     stream_ << text << std::endl;
   }

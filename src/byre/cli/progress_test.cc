@@ -37,8 +37,9 @@ TEST(Progress, RedrawsTheBarInOneLine) {
   EXPECT_EQ(std::ranges::count(text, '\r'), 51);
   EXPECT_THAT(text, HasSubstr("\r[............"));
   EXPECT_THAT(text, HasSubstr("\r[############............] 51 of 100 frames"));
-  EXPECT_THAT(text,
-              EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\n"));
+  EXPECT_THAT(
+      text,
+      EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\x1b[?7h\n"));
 }
 
 TEST(Progress, IsSilentWhenToldSo) {

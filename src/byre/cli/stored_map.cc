@@ -1,5 +1,6 @@
 #include "byre/cli/stored_map.h"
 
+#include "byre/input/input_error.h"
 #include "byre/place/map_words.h"
 
 namespace byre::cli {
@@ -13,6 +14,24 @@ Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
 SourceRecording describe_source(const fs::path& folder, const Recording& recording) {
   const fs::path whole = fs::weakly_canonical(folder);
   return {whole.filename().string(), recording.calibration(), recording.times().front(), recording.times().back()};
+}
+
+StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
+  StoredMap stored = load_map(path);
+  if (stored.scale != MapScale::metric) {
+    throw InputError(path.string(), "has no metric scale, so mapping cannot go on with it",
+                     "import the model with --scale, the length of its unit in metres");
+  }
+  if (stored.map.keyframe_count() == 0) throw InputError(path.string(), "holds no keyframes", "map a recording first");
+  add_words(stored, vocabulary);
+  return stored;
+}
+
+std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
+  std::vector<int> counts(recordings, 0);
+  for (const KeyframeId id : map.keyframe_ids())
+    ++counts.at(static_cast<std::size_t>(map.find_keyframe(id)->recording));
+  return counts;
 }
 
 void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site, const fs::path& path) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre::cli {
 
@@ -15,6 +16,13 @@ Vocabulary open_vocabulary(const std::optional<std::filesystem::path>& path);
 
 // What a map says of a recording it was made from: not where it lies, so that equal maps are equal.
 SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording);
+
+// A map that mapping may go on with: its keyframes have words of this vocabulary. Throws InputError when it cannot be
+// loaded, or has no metric scale, without which stereo and loops cannot be compared with it.
+StoredMap load_for_mapping(const std::filesystem::path& path, const Vocabulary& vocabulary);
+
+// How many keyframes are of each of so many recordings.
+std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);
 
 // Saves the map with what later missions need beside it: words of the vocabulary, the site's name unless it is empty,
 // and the version of byre.
