@@ -45,6 +45,7 @@ class FrameThread {
     return frame;
   }
 
+  void hurry() { session_.hurry(); }
   void finish() { session_.finish(); }
   Finishing finish_map(const FinishOptions& options, const FinishHooks& hooks) {
     const Stopwatch watch;
@@ -134,6 +135,7 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
     is_begun = is_begun || has_pose(run.frames.back());
     if (is_begun && hooks.offer_map) hooks.offer_map(thread.online());
   }
+  if (hooks.should_stop()) thread.hurry();
   thread.finish();
   if (options.vocabulary && is_begun && !hooks.should_stop()) {
     run.finishing = thread.finish_map(options.finish, {hooks.should_stop, hooks.before_finishing_step});

@@ -8,8 +8,9 @@ namespace byre {
 void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops) {
   assert(idle());
   snapshot_ = std::make_shared<const MapWindow>(whole_map(map));
-  executor_->submit(
-      [snapshot = snapshot_, loops, options = options_] { return adjust_map(*snapshot, loops, options); });
+  executor_->submit([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
+    return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
+  });
 }
 
 void GlobalLane::collect() {

@@ -3,6 +3,7 @@
 #include "byre/session/executor.h"
 #include "byre/slam/global_mapping.h"
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,9 +23,10 @@ class GlobalLane {
   // Bends the map to close these loops. Precondition: idle().
   void close_loops(const Map& map, const std::vector<LoopEdge>& loops);
 
-  void collect();               // once per frame
-  void finish();                // waits for the job in flight
-  MapDelta apply(Map& online);  // precondition: is_waiting(); gives what was applied
+  void collect();                        // once per frame
+  void finish();                         // waits for the job in flight
+  void hurry() { *is_hurried_ = true; }  // the job in flight, and those to come, end soon with what they have reached
+  MapDelta apply(Map& online);           // precondition: is_waiting(); gives what was applied
 
  private:
   // Constant after construction.
@@ -33,6 +35,7 @@ class GlobalLane {
 
   // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
   std::shared_ptr<const MapWindow> snapshot_;
+  std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
   std::optional<MapDelta> correction_;
 };
 

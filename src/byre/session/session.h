@@ -76,6 +76,9 @@ class Session {
 
   FrameReport process(const Frame& frame);
 
+  // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
+  void hurry() { global_.hurry(); }
+
   // Takes over what mapping still has to give. Call it once, after the last frame.
   void finish();
 

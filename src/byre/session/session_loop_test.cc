@@ -167,6 +167,19 @@ TEST(SessionThatRecognisesPlaces, CarriesKeyframesAlongThatCameWhileTheMapWasCor
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
+TEST(SessionThatRecognisesPlaces, EndsSoonWithASoundMapWhenHurried) {
+  const SimulatedMission mission = laps(1.2);
+  SessionOptions options;
+  options.max_drift_to_fuse = 0.0;
+  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(1000)), vocabulary());
+  for (const Frame& frame : mission.frames) session.process(frame);
+  session.hurry();
+  session.finish();
+  EXPECT_FALSE(session.loops().empty());
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+  EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
+}
+
 TEST(SessionThatRecognisesPlaces, FinishesItsMap) {
   const SimulatedMission mission = laps(1.2);
   Session session = recognising_session(mission.rig);
