@@ -34,12 +34,14 @@ void append_keyframe(MapWindow& window, const Map& map, KeyframeId id, bool mova
 
 // All points that the window's keyframes see so far.
 void append_points(MapWindow& window, const Map& map) {
-  std::set<PointId> ids;
+  std::vector<PointId> ids;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     for (const Sighting& sighting : keyframe.keyframe.sightings) {
-      if (sighting.point && map.find_point(*sighting.point) != nullptr) ids.insert(*sighting.point);
+      if (sighting.point && map.find_point(*sighting.point) != nullptr) ids.push_back(*sighting.point);
     }
   }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   window.points.reserve(ids.size());
   for (const PointId id : ids) window.points.push_back({id, *map.find_point(id), {}, 0, false});
 }
@@ -65,19 +67,31 @@ std::vector<KeyframeId> choose_anchors(const MapWindow& window, const Map& map, 
   return anchors;
 }
 
+// Where the map's keyframes are in the window, by number; -1 for those that are not in it.
+std::vector<int> index_by_number(const MapWindow& window, Origin origin) {
+  std::vector<int> index;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    const KeyframeId id = window.keyframes[i].id;
+    if (id.origin != origin) continue;
+    if (id.number >= index.size()) index.resize(id.number + std::size_t{1}, -1);
+    index[id.number] = static_cast<int>(i);
+  }
+  return index;
+}
+
 void link_observations(MapWindow& window, const Map& map) {
-  std::map<KeyframeId, int> index_of;
-  for (std::size_t i = 0; i < window.keyframes.size(); ++i) index_of[window.keyframes[i].id] = static_cast<int>(i);
+  const std::vector<int> index_of = index_by_number(window, map.origin());
   for (std::size_t p = 0; p < window.points.size(); ++p) {
     WindowPoint& point = window.points[p];
     for (const Observation& observation : map.observations(*point.id)) {
-      const auto found = index_of.find(observation.keyframe);
-      if (found == index_of.end()) {
+      const std::uint32_t number = observation.keyframe.number;
+      const int keyframe = number < index_of.size() ? index_of[number] : -1;
+      if (keyframe < 0) {
         ++point.observations_elsewhere;
         continue;
       }
-      point.observations.push_back({found->second, observation.feature});
-      window.keyframes[static_cast<std::size_t>(found->second)]
+      point.observations.push_back({keyframe, observation.feature});
+      window.keyframes[static_cast<std::size_t>(keyframe)]
           .point_of_feature[static_cast<std::size_t>(observation.feature)] = static_cast<int>(p);
     }
   }
