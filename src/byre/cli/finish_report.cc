@@ -9,10 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string row(const char* name, const std::string& content) {
-  return formatted("%-12s ", name) + content + "\n";
-}
-
 std::string listing(const char* format, const std::vector<double>& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ", ") + formatted(format, value);

@@ -14,4 +14,9 @@ std::string formatted(const char* format, Values... values) {
   return text.data();
 }
 
+// A line of a report: what it is about, then what there is to say of it.
+inline std::string row(const char* name, const std::string& content) {
+  return formatted("%-12s ", name) + content + "\n";
+}
+
 }  // namespace byre::cli

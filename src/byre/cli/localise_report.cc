@@ -95,10 +95,6 @@ ErrorSummary summarise_errors(const LocalisationErrors& errors) {
   return summary;
 }
 
-std::string row(const char* name, const std::string& content) {
-  return formatted("%-12s ", name) + content + "\n";
-}
-
 double percent(int part, std::size_t whole) {
   return whole == 0 ? 0.0 : 100.0 * part / static_cast<double>(whole);
 }

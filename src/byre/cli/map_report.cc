@@ -8,10 +8,6 @@
 namespace byre::cli {
 namespace {
 
-std::string row(const char* name, const std::string& content) {
-  return formatted("%-12s ", name) + content + "\n";
-}
-
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
   std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
   const auto frames = static_cast<int>(run.frames.size());

@@ -2,6 +2,7 @@
 
 #include "byre/optimise/bundle_cost.h"
 #include "byre/optimise/bundle_covariance.h"
+#include "byre/optimise/ceres_problem.h"
 #include "byre/optimise/rotation_manifold.h"
 
 #include <algorithm>
@@ -84,7 +85,7 @@ class StopWhenAsked final : public ceres::IterationCallback {
 class CeresBundle {
  public:
   CeresBundle(const BundleProblem& problem, const Roles& roles, double huber_width)
-      : roles_(roles), loss_(huber_width), ceres_(ceres_options()) {
+      : roles_(roles), loss_(huber_width), ceres_(borrowing_problem()) {
     for (const BundlePose& pose : problem.poses) poses_.push_back(pose.camera_from_world);
     for (const BundlePoint& point : problem.points) points_.push_back(point.position_in_world);
     for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -119,15 +120,6 @@ class CeresBundle {
   const Eigen::Vector3d& point_in_world(std::size_t point) const { return points_[point]; }
 
  private:
-  static ceres::Problem::Options ceres_options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
   double* rotation(std::size_t pose) { return poses_[pose].rotation.coeffs().data(); }
   double* translation(std::size_t pose) { return poses_[pose].translation.data(); }
   double* position(std::size_t point) { return points_[point].data(); }

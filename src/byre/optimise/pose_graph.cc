@@ -1,5 +1,7 @@
 #include "byre/optimise/pose_graph.h"
 
+#include "byre/optimise/ceres_problem.h"
+
 #include "byre/optimise/pose_graph_cost.h"
 #include "byre/optimise/rotation_manifold.h"
 
@@ -113,7 +115,7 @@ class CeresGraph {
 
   ceres::Solver::Summary solve(const PoseGraph& graph, const Roles& roles, RobustLoss robust_loss) {
     const auto loss = make_loss(robust_loss, options_.loss_width);
-    ceres::Problem problem(problem_options());
+    ceres::Problem problem(borrowing_problem());
     auto cost = costs_.begin();
     for (const int i : roles.edges) {
       const auto first = nodes_[graph.edges[i].first].addresses();
@@ -131,15 +133,6 @@ class CeresGraph {
   const NodeBlocks& node(std::size_t i) const { return nodes_[i]; }
 
  private:
-  static ceres::Problem::Options problem_options() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
   ceres::Solver::Options solver_options() const {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

@@ -1,5 +1,6 @@
 #include "byre/slam/finishing.h"
 
+#include "byre/evaluation/trajectory_error.h"
 #include "byre/slam/mapping_steps.h"
 
 #include <algorithm>
@@ -100,16 +101,10 @@ std::vector<double> reprojection_errors(const Map& map) {
 
 MapQuality quality_of(const Map& map) {
   MapQuality quality{map.keyframe_count(), map.point_count(), 0, 0.0, 0.0, count_parts(map)};
-  std::vector<double> errors = reprojection_errors(map);
-  quality.observations = static_cast<int>(errors.size());
-  if (errors.empty()) return quality;
-  const auto at = [&errors](double share) {
-    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
-    std::nth_element(errors.begin(), place, errors.end());
-    return *place;
-  };
-  quality.reprojection_median = at(0.5);
-  quality.reprojection_p95 = at(0.95);
+  const ErrorStatistics errors = summarise(reprojection_errors(map));
+  quality.observations = errors.count;
+  quality.reprojection_median = errors.median;
+  quality.reprojection_p95 = errors.p95;
   return quality;
 }
 
