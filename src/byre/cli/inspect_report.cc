@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string row(std::string_view name, const std::string& content) {
+std::string wide_row(std::string_view name, const std::string& content) {
   std::string padded(name);
   padded.resize(std::max<std::size_t>(padded.size() + 1, 15), ' ');
   return padded + content + "\n";
@@ -107,26 +107,26 @@ std::string describe_file(const InspectedFile& file, int keyframes) {
 }
 
 std::string origin_text(const StoredMap& stored, const MapCounts& counts) {
-  std::string text = row("poses", std::string(describe(stored.pose_source)));
-  text += row("scale", std::string(name_of(stored.scale)));
+  std::string text = wide_row("poses", std::string(describe(stored.pose_source)));
+  text += wide_row("scale", std::string(name_of(stored.scale)));
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
-    text += row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
+    text += wide_row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
   }
-  for (const auto& [key, note] : stored.notes) text += row(key, note);
+  for (const auto& [key, note] : stored.notes) text += wide_row(key, note);
   return text;
 }
 
 std::string error_text(const ReprojectionErrors& errors) {
-  std::string text = row("pixel error", describe(errors.pixel, " px"));
-  text += row("disparity", describe(errors.disparity, " px"));
-  if (errors.behind_camera > 0) text += row("behind camera", formatted("%d observations", errors.behind_camera));
+  std::string text = wide_row("pixel error", describe(errors.pixel, " px"));
+  text += wide_row("disparity", describe(errors.disparity, " px"));
+  if (errors.behind_camera > 0) text += wide_row("behind camera", formatted("%d observations", errors.behind_camera));
   return text;
 }
 
 std::string fault_text(const std::vector<std::string>& faults) {
-  if (faults.empty()) return row("faults", "none");
+  if (faults.empty()) return wide_row("faults", "none");
   std::string text;
-  for (const std::string& fault : faults) text += row("fault", fault);
+  for (const std::string& fault : faults) text += wide_row("fault", fault);
   return text;
 }
 
@@ -188,19 +188,19 @@ Json errors_json(const ReprojectionErrors& errors) {
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file) {
   const MapCounts& counts = inspection.counts;
   const char* const unit = unit_of(stored);
-  std::string text = row("map", file.name) + origin_text(stored, counts);
-  text += row("keyframes",
-              formatted("%d, with %d features, %d with a patch", counts.keyframes, counts.features, counts.patches));
-  text += row("points", formatted("%d, with %d observations", counts.points, counts.observations));
-  text += row("seen by", describe(inspection.observations_per_point, " keyframes"));
-  text += row("words", describe_words(stored, counts));
+  std::string text = wide_row("map", file.name) + origin_text(stored, counts);
+  text += wide_row("keyframes", formatted("%d, with %d features, %d with a patch", counts.keyframes, counts.features,
+                                          counts.patches));
+  text += wide_row("points", formatted("%d, with %d observations", counts.points, counts.observations));
+  text += wide_row("seen by", describe(inspection.observations_per_point, " keyframes"));
+  text += wide_row("words", describe_words(stored, counts));
   text += error_text(inspection.errors);
-  text += row("extent", describe_box(inspection.points_in_world, unit));
-  text += row("path", formatted("%.2f %s", inspection.path_length, unit));
-  text += row("file", describe_file(file, counts.keyframes));
-  text += row("", listing(file.sections));
-  text += row("memory", "about " + size_text(sum_of(inspection.memory)));
-  text += row("", listing(inspection.memory));
+  text += wide_row("extent", describe_box(inspection.points_in_world, unit));
+  text += wide_row("path", formatted("%.2f %s", inspection.path_length, unit));
+  text += wide_row("file", describe_file(file, counts.keyframes));
+  text += wide_row("", listing(file.sections));
+  text += wide_row("memory", "about " + size_text(sum_of(inspection.memory)));
+  text += wide_row("", listing(inspection.memory));
   return text + fault_text(inspection.faults);
 }
 

@@ -113,7 +113,9 @@ TEST(SessionThatRecognisesPlaces, HasAMapThatLevelsOffWhenItCirclesTheSamePath) 
   }
   EXPECT_LE(keyframes[19], 1.3 * keyframes[2]);
   EXPECT_LE(points[19], 1.3 * points[2]);
-  if (kMemoryIsOurs) EXPECT_LE(memory[19], 1.3 * memory[2]);
+  if (kMemoryIsOurs) {
+    EXPECT_LE(memory[19], 1.3 * memory[2]);
+  }
 }
 
 TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
