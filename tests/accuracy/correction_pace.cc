@@ -45,14 +45,14 @@ void run(const char* folder) {
       ++frames;
       slowest_ms = std::max(slowest_ms, elapsed_ms);
     }
-    if (report.map_corrected) {
+    if (report.has(SessionEvent::map_corrected)) {
       std::printf(
           "frame %d: %d keyframes corrected, %d frames meanwhile, slowest %.1f ms, the one that began it %.1f ms\n", i,
           session.map().online().keyframe_count(), frames, slowest_ms, copy_ms);
       std::fflush(stdout);
       frames = -1;
     }
-    if (report.loop_found) {
+    if (report.has(SessionEvent::loop_found)) {
       copy_ms = elapsed_ms;
       slowest_ms = 0.0;
       frames = 0;

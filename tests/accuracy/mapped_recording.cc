@@ -35,7 +35,7 @@ MappedRecording map_recording(const fs::path& folder, const FrameRange& range, s
     const std::optional<ImageFrame> images = recording->read(i);
     if (!images) continue;
     const FrameReport report = session.process(extractor.extract(*images).frame);
-    if (report.world_from_body) mapped.causal.push_back({report.time, *report.world_from_body});
+    if (report.map_from_body) mapped.causal.push_back({report.time, *report.map_from_body});
   }
   session.finish();
   mapped.final = session.final_trajectory();

@@ -162,8 +162,8 @@ Json milliseconds_json(const MappedFrame& frame) {
 }
 
 void add_pose(const FrameReport& report, Json& json) {
-  const Eigen::Vector3d& t = report.world_from_body->translation;
-  const Eigen::Quaterniond& q = report.world_from_body->rotation;
+  const Eigen::Vector3d& t = report.map_from_body->translation;
+  const Eigen::Quaterniond& q = report.map_from_body->rotation;
   json["position_m"] = {t.x(), t.y(), t.z()};
   json["quaternion_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
   Json covariance = Json::array();
@@ -184,16 +184,16 @@ Json frame_json(const MappedFrame& frame) {
   json["map_keyframes"] = frame.keyframes;
   json["map_points"] = frame.points;
   json["memory_mb"] = std::round(10.0 * frame.memory_mb) / 10.0;
-  json["relocalised"] = report.relocalised;
-  json["loop_found"] = report.loop_found;
-  json["map_corrected"] = report.map_corrected;
+  json["relocalised"] = report.has(SessionEvent::relocalised);
+  json["loop_found"] = report.has(SessionEvent::loop_found);
+  json["map_corrected"] = report.has(SessionEvent::map_corrected);
   json["has_right_image"] = frame.has_right;
   json["keyframe"] = report.keyframe_added;
   json["features"] = report.features;
   json["expected"] = report.expected_points;
   json["matches"] = report.matches;
   json["inliers"] = report.inliers;
-  if (report.world_from_body) add_pose(report, json);
+  if (report.map_from_body) add_pose(report, json);
   json["ms"] = milliseconds_json(frame);
   return json;
 }

@@ -22,7 +22,7 @@ MappedFrame tracked_frame(int number) {
   FrameReport report;
   report.time = milliseconds(50 * number);
   report.state = State::tracking;
-  report.world_from_body = Pose{Eigen::Quaterniond::Identity(), {number + 0.25, 0.0, 0.0}};
+  report.map_from_body = Pose{Eigen::Quaterniond::Identity(), {number + 0.25, 0.0, 0.0}};
   report.covariance(0, 5) = 0.5;
   report.covariance(5, 0) = 0.25;
   report.features = 900;
@@ -47,7 +47,7 @@ MapRun small_run() {
   run.frames[1].has_right = false;
   for (const int i : {0, 2, 3})
     run.final.push_back({run.frames[static_cast<std::size_t>(i)].time,
-                         *run.frames[static_cast<std::size_t>(i)].report->world_from_body});
+                         *run.frames[static_cast<std::size_t>(i)].report->map_from_body});
   run.causal = run.final;
   run.map.add_keyframe({});
   for (int i = 0; i < 1234; ++i) run.map.add_point({});
@@ -200,7 +200,7 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
   Keyframe keyframe;
   keyframe.recording = 1;
   for (int i = 0; i < 2; ++i) run.map.add_keyframe(keyframe);
-  run.frames.front().report->world_from_body.reset();
+  run.frames.front().report->map_from_body.reset();
   const std::string text = to_text(run, protocol, {}, {});
   EXPECT_THAT(text, HasSubstr("extended     barn.byre, found in it after 2 frames\n"));
   EXPECT_THAT(text, HasSubstr("map          3 keyframes, of those before and 1 made; 1234 points\n"));

@@ -30,7 +30,8 @@ class FrameThread {
  public:
   FrameThread(const Calibration& calibration, const MapRunOptions& options, std::optional<Map> before)
       : extractor_(calibration, options.extract),
-        session_(extractor_.rig(), options.session, make_lanes(options.pace, log_), options.vocabulary) {
+        session_(extractor_.rig(), options.session, make_lanes(options.pace, log_), options.vocabulary,
+                 options.offline) {
     if (before) session_.continue_map(std::move(*before));
   }
 
@@ -88,7 +89,7 @@ class FrameThread {
 };
 
 bool has_pose(const MappedFrame& frame) {
-  return frame.report && frame.report->world_from_body;
+  return frame.report && frame.report->map_from_body;
 }
 
 void take_over_result(const FrameThread& thread, MapRun& run) {
@@ -97,7 +98,7 @@ void take_over_result(const FrameThread& thread, MapRun& run) {
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {
-    if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->world_from_body});
+    if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
   }
 }
 
@@ -137,7 +138,7 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
   }
   if (hooks.should_stop()) thread.hurry();
   thread.finish();
-  if (options.vocabulary && is_begun && !hooks.should_stop()) {
+  if (options.vocabulary && !options.offline && is_begun && !hooks.should_stop()) {
     run.finishing = thread.finish_map(options.finish, {hooks.should_stop, hooks.before_finishing_step});
   }
   take_over_result(thread, run);

@@ -33,6 +33,7 @@ struct MapRunOptions {
   SessionOptions session;
   FinishOptions finish;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
+  std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
 
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.

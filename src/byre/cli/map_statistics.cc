@@ -21,9 +21,9 @@ TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsO
 }
 
 void count_events(const FrameReport& report, FrameCounts& counts) {
-  counts.relocalisations += report.relocalised ? 1 : 0;
-  counts.loops += report.loop_found ? 1 : 0;
-  counts.corrections += report.map_corrected ? 1 : 0;
+  counts.relocalisations += report.has(SessionEvent::relocalised) ? 1 : 0;
+  counts.loops += report.has(SessionEvent::loop_found) ? 1 : 0;
+  counts.corrections += report.has(SessionEvent::map_corrected) ? 1 : 0;
 }
 
 }  // namespace
@@ -54,14 +54,14 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
   FrameCounts counts;
   State state = State::initialising;
   for (const MappedFrame& frame : frames) {
-    if (frame.report && frame.report->world_from_body && counts.with_pose == 0) counts.frames_to_first = counts.frames;
+    if (frame.report && frame.report->map_from_body && counts.with_pose == 0) counts.frames_to_first = counts.frames;
     ++counts.frames;
     counts.unreadable += frame.report ? 0 : 1;
     if (!frame.report) continue;
     counts.without_right_image += frame.has_right ? 0 : 1;
     count_events(*frame.report, counts);
     const State before = std::exchange(state, frame.report->state);
-    counts.with_pose += frame.report->world_from_body ? 1 : 0;
+    counts.with_pose += frame.report->map_from_body ? 1 : 0;
     counts.keyframes += frame.report->keyframe_added ? 1 : 0;
     counts.lost += state == State::lost ? 1 : 0;
     counts.lost_episodes += state == State::lost && before != State::lost ? 1 : 0;

@@ -10,7 +10,7 @@ MappedFrame frame_in(State state) {
   frame.has_right = true;
   frame.report.emplace();
   frame.report->state = state;
-  if (state == State::tracking) frame.report->world_from_body = Pose{};
+  if (state == State::tracking) frame.report->map_from_body = Pose{};
   return frame;
 }
 
@@ -85,9 +85,9 @@ TEST(CountFrames, TakesAnUnreadableFrameForNeitherLostNorFound) {
 TEST(CountFrames, CountsWhatHappenedToTheMapOnTheWay) {
   std::vector<MappedFrame> frames(4, frame_in(State::tracking));
   frames[0] = frame_in(State::lost);
-  frames[1].report->relocalised = true;
-  frames[2].report->loop_found = true;
-  frames[3].report->map_corrected = true;
+  frames[1].report->events.push_back(SessionEvent::relocalised);
+  frames[2].report->events.push_back(SessionEvent::loop_found);
+  frames[3].report->events.push_back(SessionEvent::map_corrected);
   const FrameCounts counts = count_frames(frames);
   EXPECT_EQ(counts.relocalisations, 1);
   EXPECT_EQ(counts.loops, 1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/features/image_condition.h"
 #include "byre/geometry/rig.h"
 #include "byre/geometry/trajectory.h"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -86,6 +88,7 @@ class Features {
 struct Frame {
   Timestamp time{};
   std::shared_ptr<const Features> features;
+  std::optional<ImageCondition> condition = {};  // of the left image; empty for simulated frames
 };
 
 template <typename Visitor>

@@ -40,10 +40,10 @@ std::vector<Judged> judge(const SimulatedMission& mission) {
   std::vector<Judged> judged;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const FrameReport report = session.process(mission.frames[i]);
-    if (i == 0 || !report.world_from_body) continue;
+    if (i == 0 || !report.map_from_body) continue;
     const Pose true_world_from_body = inverse(mission.truth[0].world_from_body) * mission.truth[i].world_from_body;
-    judged.push_back({to_seconds(report.time), log_pose(inverse(*report.world_from_body) * true_world_from_body),
-                      report.covariance});
+    judged.push_back(
+        {to_seconds(report.time), log_pose(inverse(*report.map_from_body) * true_world_from_body), report.covariance});
   }
   return judged;
 }

@@ -18,9 +18,11 @@ class Stopwatch {
 
 }  // namespace
 
-Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary)
+Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary,
+                 std::shared_ptr<const OfflineMap> offline)
     : rig_(rig),
       options_(options),
+      offline_(std::move(offline)),
       executor_(std::move(lanes.local)),
       global_(std::move(lanes.global), options.global) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
@@ -68,9 +70,9 @@ FrameReport Session::process(const Frame& frame) {
   }
   FrameReport report = report_of(frame, tracked);
   report.keyframe_added = keyframe_added;
-  report.relocalised = was_lost && tracked;
-  report.loop_found = loop_found;
-  report.map_corrected = map_corrected;
+  if (map_corrected) report.events.push_back(SessionEvent::map_corrected);
+  if (was_lost && tracked) report.events.push_back(SessionEvent::relocalised);
+  if (loop_found) report.events.push_back(SessionEvent::loop_found);
   report.map_seconds = seconds_before + mapping_after.seconds();
   report.track_seconds = tracking_seconds;
   if (finished) report.job_seconds = finished->seconds;
@@ -231,7 +233,7 @@ FrameReport Session::report_of(const Frame& frame, const std::optional<TrackedFr
   report.state = state_;
   report.features = frame.features->size();
   if (state_ == State::tracking) {
-    report.world_from_body = inverse(rig_.body_from_camera * last_camera_from_world());
+    report.map_from_body = inverse(rig_.body_from_camera * last_camera_from_world());
   }
   if (!tracked) return report;
   report.expected_points = tracked->expected;

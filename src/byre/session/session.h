@@ -4,14 +4,18 @@
 #include "byre/map/map_view.h"
 #include "byre/session/executor.h"
 #include "byre/session/global_lane.h"
+#include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
+#include "byre/slam/health.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/loop_closing.h"
 #include "byre/slam/mapping.h"
+#include "byre/slam/offline_map.h"
 #include "byre/slam/state.h"
 #include "byre/slam/tracking.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -30,6 +34,7 @@ struct SessionOptions {
   LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
   LoopOptions loops;
   GlobalMappingOptions global;
+  bool map_online = true;          // false: track on the offline map alone
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
 };
 
@@ -48,19 +53,25 @@ struct Lanes {
 struct FrameReport {
   Timestamp time{};
   State state = State::initialising;
-  std::optional<Pose> world_from_body;   // empty while there is none
-  Matrix6 covariance = Matrix6::Zero();  // of delta in world_from_body * exp_pose(delta), relative to the map's origin
+  // In the frame of the offline map, or in that of the session's own map where there is no offline one. Corrected
+  // whenever more is known, so it may jump. Empty while it is not known.
+  std::optional<Pose> map_from_body;
+  Matrix6 covariance = Matrix6::Zero();  // of delta in map_from_body * exp_pose(delta), relative to the map's origin
+  // Smooth: moves with what was seen from one frame to the next, and never jumps; its frame is the body's at the start.
+  std::optional<Pose> odometry_from_body;
+  Matrix6 odometry_covariance = Matrix6::Zero();  // of delta in odometry_from_body * exp_pose(delta)
+  Health health;
   int features = 0;
   int expected_points = 0;  // map points in the frustum
   int matches = 0;
   int inliers = 0;
   bool keyframe_added = false;
-  bool relocalised = false;           // found again after being lost
-  bool loop_found = false;            // the map met itself: its ends are fused, or a correction was begun
-  bool map_corrected = false;         // a correction of the whole map was taken over
+  std::vector<SessionEvent> events;   // what happened in this frame, in order
   double track_seconds = 0.0;         // wall time on the calling thread
   double map_seconds = 0.0;           // of it for mapping: windows, deltas, new points, inline jobs
   std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
+
+  bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }
 };
 
 // The one stateful object: give it frames in order of time. Call every method from one thread; only the executor has
@@ -68,7 +79,9 @@ struct FrameReport {
 class Session {
  public:
   // With a vocabulary the session recognises places: it closes loops, and finds itself again when lost.
-  Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {});
+  // With an offline map it is a mission on that: it finds itself in it, and its poses are in the map's frame.
+  Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {},
+          std::shared_ptr<const OfflineMap> offline = nullptr);
 
   // Goes on with a map made before, of another recording: the session is lost until it finds itself in it, and what it
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
@@ -85,7 +98,7 @@ class Session {
   // The last search for loops and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
 
-  MapView map() const { return {nullptr, online_}; }
+  MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
 
   // Places found again so far, each with what was seen of it then.
   const std::vector<LoopEdge>& loops() const { return loops_; }
@@ -122,6 +135,7 @@ class Session {
   // Constant after construction.
   Rig rig_;
   SessionOptions options_;
+  std::shared_ptr<const OfflineMap> offline_;
 
   // Owned by the calling thread.
   std::unique_ptr<Executor> executor_;

@@ -59,11 +59,11 @@ MissionResult run(Session& session, const SimulatedMission& mission) {
   MissionResult result;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const FrameReport report = session.process(mission.frames[i]);
-    EXPECT_TRUE(report.world_from_body) << "frame " << i;
-    if (!report.world_from_body) continue;
-    result.loops += report.loop_found;
-    result.corrections += report.map_corrected;
-    if (i + 10 >= mission.frames.size()) result.last_error += 0.1 * error_of(mission, i, *report.world_from_body);
+    EXPECT_TRUE(report.map_from_body) << "frame " << i;
+    if (!report.map_from_body) continue;
+    result.loops += report.has(SessionEvent::loop_found);
+    result.corrections += report.has(SessionEvent::map_corrected);
+    if (i + 10 >= mission.frames.size()) result.last_error += 0.1 * error_of(mission, i, *report.map_from_body);
   }
   session.finish();
   return result;
@@ -84,7 +84,7 @@ TEST(SessionThatRecognisesPlaces, ClosesTheLoopWhenItComesBack) {
 TEST(SessionThatRecognisesPlaces, FindsNoLoopWhereThereIsNone) {
   const SimulatedMission mission = laps(0.8);
   Session session = recognising_session(mission.rig);
-  for (const Frame& frame : mission.frames) EXPECT_FALSE(session.process(frame).loop_found);
+  for (const Frame& frame : mission.frames) EXPECT_FALSE(session.process(frame).has(SessionEvent::loop_found));
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -105,7 +105,7 @@ TEST(SessionThatRecognisesPlaces, HasAMapThatLevelsOffWhenItCirclesTheSamePath) 
   std::vector<int> keyframes, points;  // after each lap
   std::vector<double> memory;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
-    ASSERT_TRUE(session.process(mission.frames[i]).world_from_body);
+    ASSERT_TRUE(session.process(mission.frames[i]).map_from_body);
     if ((i + 1) % kLap != 0) continue;
     keyframes.push_back(session.map().online().keyframe_count());
     points.push_back(session.map().online().point_count());
@@ -121,7 +121,7 @@ TEST(SessionThatRecognisesPlaces, HasAMapThatLevelsOffWhenItCirclesTheSamePath) 
 TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
   const SimulatedMission mission = laps(1.0);
   Session session = recognising_session(mission.rig);
-  for (std::size_t i = 0; i < 40; ++i) ASSERT_TRUE(session.process(mission.frames[i]).world_from_body);
+  for (std::size_t i = 0; i < 40; ++i) ASSERT_TRUE(session.process(mission.frames[i]).map_from_body);
   Frame blind = mission.frames[40];
   blind.features = std::make_shared<Features>();
   EXPECT_EQ(session.process(blind).state, State::lost);
@@ -130,9 +130,9 @@ TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
   somewhere.time = mission.frames[41].time;
   const FrameReport found = session.process(somewhere);
   EXPECT_EQ(found.state, State::tracking);
-  EXPECT_TRUE(found.relocalised);
-  ASSERT_TRUE(found.world_from_body);
-  EXPECT_LT(error_of(mission, 10, *found.world_from_body), 0.05);
+  EXPECT_TRUE(found.has(SessionEvent::relocalised));
+  ASSERT_TRUE(found.map_from_body);
+  EXPECT_LT(error_of(mission, 10, *found.map_from_body), 0.05);
 }
 
 TEST(SessionThatRecognisesPlaces, GoesOnWithAMapMadeBefore) {
@@ -148,8 +148,8 @@ TEST(SessionThatRecognisesPlaces, GoesOnWithAMapMadeBefore) {
   later.continue_map(online_copy(offline_copy(earlier.map().online())));
   for (std::size_t i = 10; i < second.frames.size(); ++i) {
     const FrameReport report = later.process(second.frames[i]);
-    ASSERT_TRUE(report.world_from_body) << "frame " << i;
-    EXPECT_LT(error_of(second, i, *report.world_from_body), 0.1);
+    ASSERT_TRUE(report.map_from_body) << "frame " << i;
+    EXPECT_LT(error_of(second, i, *report.map_from_body), 0.1);
   }
   later.finish();
   const Map& map = later.map().online();

@@ -33,7 +33,7 @@ struct Outcome {
 Trajectory causal_trajectory(const std::vector<FrameReport>& reports) {
   Trajectory trajectory;
   for (const FrameReport& report : reports) {
-    if (report.world_from_body) trajectory.push_back({report.time, *report.world_from_body});
+    if (report.map_from_body) trajectory.push_back({report.time, *report.map_from_body});
   }
   return trajectory;
 }
@@ -236,7 +236,7 @@ TEST_F(SessionWithScriptedMapping, TracksOnWhenMappingRemovesTheKeyframeItTracks
   for (std::size_t place = 10; place <= 16; ++place) {
     const FrameReport report = process(place);
     ASSERT_EQ(report.state, State::tracking);
-    EXPECT_THAT(report.world_from_body.value(), PoseNear(true_world_from_body(place), 0.05, kDegree));
+    EXPECT_THAT(report.map_from_body.value(), PoseNear(true_world_from_body(place), 0.05, kDegree));
   }
   EXPECT_THAT(map().keyframe_ids(), SizeIs(2));
 }
@@ -268,7 +268,7 @@ TEST_F(SessionWithScriptedMapping, MovesAlongWithTheMap) {
   };
   const FrameReport report = process(11);
   ASSERT_EQ(report.state, State::tracking);
-  EXPECT_THAT(report.world_from_body.value(), PoseNear(new_world_from_world * true_world_from_body(11), 0.05, kDegree));
+  EXPECT_THAT(report.map_from_body.value(), PoseNear(new_world_from_world * true_world_from_body(11), 0.05, kDegree));
   EXPECT_THAT(session_.final_trajectory()[5].world_from_body,
               PoseNear(new_world_from_world * true_world_from_body(5), 0.05, kDegree));
 }
@@ -289,7 +289,7 @@ TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndFindsItselfAgain) {
   for (std::size_t i = 15; i < 20; ++i) {
     const FrameReport report = blind(i);
     EXPECT_EQ(report.state, State::lost);
-    EXPECT_EQ(report.world_from_body, std::nullopt);
+    EXPECT_EQ(report.map_from_body, std::nullopt);
   }
   for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(process(i), State::tracking);
   EXPECT_THAT(session_.final_trajectory(), SizeIs(35));
@@ -310,7 +310,7 @@ TEST_F(SessionOfACircle, NeverInitialisesWithoutDisparities) {
   for (const Frame& frame : mono_mission.frames) {
     const FrameReport report = session_.process(frame);
     EXPECT_EQ(report.state, State::initialising);
-    EXPECT_EQ(report.world_from_body, std::nullopt);
+    EXPECT_EQ(report.map_from_body, std::nullopt);
   }
   EXPECT_THAT(session_.final_trajectory(), IsEmpty());
 }
@@ -323,7 +323,7 @@ TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
   for (std::size_t i = 10; i < 40; ++i) {
     const FrameReport report = session_.process(elsewhere.frames[i]);
     EXPECT_EQ(report.state, State::lost);
-    EXPECT_EQ(report.world_from_body, std::nullopt);
+    EXPECT_EQ(report.map_from_body, std::nullopt);
   }
   EXPECT_THAT(session_.final_trajectory(), SizeIs(10));
 }

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace byre {
+
+// What may happen in a frame and is worth telling somebody.
+enum class SessionEvent : std::uint8_t {
+  initialised,          // a first map was made of what is seen
+  localised,            // found in the offline map for the first time, and confirmed
+  pose_lost,            // tracking failed, see Health::doubt for why
+  relocalised,          // found again, and confirmed
+  blinded,              // the image shows too little: dark, blurred, covered or blank
+  left_mapped_area,     // no offline point in view any more, as the map's extent led to expect
+  entered_mapped_area,  // offline points hold the pose again
+  navigation_error,     // not known where the robot is for StateOptions::navigation_error_after; told once each time
+  restarted,            // a new piece of online map was begun, for the way back was not found
+  online_corrected,     // the online map was moved so that it agrees with the offline one
+  loop_found,           // the online map met itself: its ends are fused, or a correction was begun
+  map_corrected         // a correction of the whole online map was taken over
+};
+
+std::string_view to_string(SessionEvent event);
+
+}  // namespace byre

@@ -1,0 +1,37 @@
+#include "byre/slam/offline_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+
+OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary)
+    : map_(std::move(map)), places_(index_of(map_, vocabulary)) {
+  for (const KeyframeId id : map_.keyframe_ids()) {
+    const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
+    views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});
+  }
+}
+
+std::vector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
+                                                   int max_count) const {
+  constexpr double kMaxAngle = 1.0;  // radians: beyond it hardly a point is in both views
+  const Pose world_from_camera = inverse(camera_from_world);
+  const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();
+  std::vector<std::pair<double, KeyframeId>> near;
+  for (const View& view : views_) {
+    const double distance = (view.camera_in_world - world_from_camera.translation).norm();
+    const double angle = std::acos(std::clamp(view.viewing_direction.dot(direction), -1.0, 1.0));
+    if (distance <= max_distance && angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
+  }
+  std::ranges::sort(near);
+  std::vector<KeyframeId> nearest;
+  for (const auto& [distance, id] : near) {
+    if (static_cast<int>(nearest.size()) >= max_count) break;
+    nearest.push_back(id);
+  }
+  return nearest;
+}
+
+}  // namespace byre
