@@ -2,6 +2,7 @@
 
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
+#include "byre/features/image_condition.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
@@ -165,6 +166,8 @@ Extraction Extractor::extract(const ImageFrame& images) {
   }
   Extraction extraction;
   extraction.frame.time = images.time;
+  extraction.frame.condition =
+      measure_condition(left.data, left.cols, left.rows, static_cast<std::ptrdiff_t>(left.step));
   extraction.frame.features =
       std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
                                        std::move(described.descriptors), std::move(described.patches));

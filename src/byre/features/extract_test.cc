@@ -74,6 +74,17 @@ TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
   for (int i = 0; i < features.size(); ++i) EXPECT_NE(features.find_patch(i), nullptr);
 }
 
+TEST(Extractor, TellsTheConditionOfTheLeftImage) {
+  ImageFrame images = wall().seen_by(ideal_pair());
+  Extractor extractor(ideal_pair(), {});
+  const std::optional<ImageCondition> seen = extractor.extract(images).frame.condition;
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(fault_of(*seen, {}), ImageFault::none);
+  EXPECT_EQ(seen->sharpness, measure_condition(images.left).sharpness) << "rectified already";
+  std::ranges::fill(images.left.pixels, std::uint8_t{0});
+  EXPECT_EQ(fault_of(*extractor.extract(images).frame.condition, {}), ImageFault::dark);
+}
+
 TEST(Extractor, FillsTheQuotaWhereTheImageAllows) {
   for (const int wanted : {1, 100, 300}) {
     Extractor extractor(ideal_pair(), {wanted});

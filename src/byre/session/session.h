@@ -4,6 +4,9 @@
 #include "byre/map/map_view.h"
 #include "byre/session/executor.h"
 #include "byre/session/global_lane.h"
+#include "byre/session/mission.h"
+#include "byre/session/odometry.h"
+#include "byre/session/place_search.h"
 #include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/health.h"
@@ -34,11 +37,16 @@ struct SessionOptions {
   LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
   LoopOptions loops;
   GlobalMappingOptions global;
+  MissionOptions mission;
+  HealthOptions health;
+  ImageConditionOptions image;
+  StateOptions state;
   bool map_online = true;          // false: track on the offline map alone
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
 };
 
-// Where mapping runs: the neighbourhood of new keyframes, and corrections of the whole map.
+// Where mapping runs: the neighbourhood of new keyframes, and corrections of the whole map; in a mission on an offline
+// map the second looks for places in that instead.
 struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
   Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
@@ -98,7 +106,7 @@ class Session {
   // The last search for loops and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
 
-  MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
+  MapView map() const { return {mission_ ? &mission_->offline().map() : nullptr, online_}; }
 
   // Places found again so far, each with what was seen of it then.
   const std::vector<LoopEdge>& loops() const { return loops_; }
@@ -112,41 +120,104 @@ class Session {
     Timestamp time{};
     KeyframeId keyframe;
     Pose camera_from_keyframe;
+    std::size_t segment = 0;
   };
 
-  bool initialise(const Frame& frame);
+  // A piece of online map that tracking has made without a gap.
+  struct Segment {
+    std::uint32_t first_keyframe = 0;
+    bool is_registered = false;  // its frame is that of the reports: the offline map's, where there is one
+  };
+
+  // A correction of the online map that waits for mapping to have nothing in flight.
+  struct WaitingCorrection {
+    std::uint32_t first_keyframe = 0;
+    Pose offline_from_online;
+    CorrectionShape shape = CorrectionShape::spread;
+  };
+
+  // What a frame came to.
+  struct Located {
+    std::optional<HybridTrack> track;
+    bool without_prediction = false;  // found from nothing
+    bool is_new_segment = false;      // a first keyframe was made of it
+  };
+
+  void take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report);
   void take_over(const FinishedJob& job);
   bool take_over_correction();
+  bool correct_online();
+  void consider_place(const FoundPlace& found);
   void forget_places(const MapDelta& delta);
   void start_job();
   void index_place(KeyframeId id);
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void settle_loop(const LoopHypothesis& loop);
-  std::optional<TrackedFrame> relocalise(const Frame& frame) const;
-  std::optional<TrackedFrame> find_pose(const Frame& frame) const;
-  Pose predict(Timestamp time) const;
+
+  Located locate(const Frame& frame);
+  std::optional<HybridTrack> find_pose(const Frame& frame);
+  std::optional<HybridTrack> track_from(const Frame& frame, const Pose& predicted, const std::vector<PointId>& online);
+  std::optional<HybridTrack> relocalise(const Frame& frame);
+  std::optional<HybridTrack> relocalise_offline(const Frame& frame);
+  std::optional<HybridTrack> relocalise_online(const Frame& frame);
+  bool may_begin_segment(const Frame& frame) const;
+  bool begin_segment(const Frame& frame);
+
+  void remember(const Frame& frame, const HybridTrack& track, bool without_prediction, FrameReport& report);
+  void remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report);
+  void begin_confirmation(const Frame& frame, const TrackedFrame& tracked);
+  bool is_still_confirming(const HybridTrack& track);
+  void lose_pose(const Frame& frame, FrameReport& report);
+  bool may_map(const Frame& frame, const HybridTrack& track) const;
+  void search_beside(const Frame& frame);
+  void add_keyframe(const Frame& frame, const HybridTrack& track);
+  KeyframeEvidence keyframe_evidence(const HybridTrack& track) const;
+  void conclude(const Frame& frame, const Located& located, FrameReport& report);
+  Health health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const;
+  void tell_navigation_error(double seconds_without_pose, FrameReport& report);
+
+  ImageFault image_fault(const Frame& frame) const;  // none where its condition is not known
+  bool is_registered() const { return !segments_.empty() && segments_[segment_].is_registered; }
+  bool is_pose_confirmed() const { return confirmations_left_ == 0; }
+  std::uint32_t next_keyframe_number() const { return last_keyframe_ ? last_keyframe_->number + 1 : 0; }
+  std::size_t segment_of(KeyframeId online) const;
+  void enter_registered_segment();
+  Pose camera_from_world(KeyframeId id) const;
   Pose last_camera_from_world() const;
-  KeyframeEvidence keyframe_evidence(const TrackedFrame& tracked) const;
-  void add_keyframe(const Frame& frame, const TrackedFrame& tracked);
+  Pose body_pose(const Pose& camera_from_world) const { return inverse(rig_.body_from_camera * camera_from_world); }
+  Pose predict(Timestamp time) const;
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_world) const;
-  void remember(const Frame& frame, const TrackedFrame& tracked, bool was_lost);
-  FrameReport report_of(const Frame& frame, const std::optional<TrackedFrame>& tracked) const;
 
   // Constant after construction.
   Rig rig_;
   SessionOptions options_;
-  std::shared_ptr<const OfflineMap> offline_;
 
   // Owned by the calling thread.
   std::unique_ptr<Executor> executor_;
   GlobalLane global_;
+  std::optional<Mission> mission_;     // on an offline map
+  std::optional<PlaceSearch> search_;  // in that map
+  std::optional<WaitingCorrection> waiting_correction_;
   Map online_{Origin::online};
   std::optional<PlaceIndex> places_;    // of the online keyframes
   std::optional<LoopHypothesis> loop_;  // not confirmed yet
   int frames_since_loop_ = 0;           // frames since one was confirmed
   std::vector<LoopEdge> loops_;         // confirmed
   State state_ = State::initialising;
+  std::vector<Segment> segments_;
+  std::size_t segment_ = 0;                  // the present one
+  bool has_pose_ = false;                    // the last frame had one
+  int confirmations_left_ = 0;               // frames until a pose found from nothing is believed
+  std::size_t confirmed_end_ = 0;            // of anchored_, those before are of believed poses
+  bool on_offline_basis_ = false;            // the last pose was that of offline points, the online map lying elsewhere
+  std::optional<Timestamp> last_confirmed_;  // time of the last believed pose in the reports' frame
+  std::optional<Timestamp> first_frame_;
+  bool navigation_error_told_ = false;
+  Odometry odometry_;
+  Pose last_body_;  // of the last frame with a pose, as it was then
   std::optional<KeyframeId> last_keyframe_;
+  std::uint32_t last_held_keyframe_ = 0;  // number of the newest online keyframe when offline points last held the pose
+  std::optional<KeyframeId> online_reference_;  // whose points are looked for
   int frames_since_keyframe_ = 0;
   int last_inliers_ = 0;                 // in the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe

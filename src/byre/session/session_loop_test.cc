@@ -124,7 +124,7 @@ TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
   for (std::size_t i = 0; i < 40; ++i) ASSERT_TRUE(session.process(mission.frames[i]).map_from_body);
   Frame blind = mission.frames[40];
   blind.features = std::make_shared<Features>();
-  EXPECT_EQ(session.process(blind).state, State::lost);
+  EXPECT_EQ(session.process(blind).state, State::relocalising);
 
   Frame somewhere = mission.frames[10];  // where it was before, not where it was lost
   somewhere.time = mission.frames[41].time;

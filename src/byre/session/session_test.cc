@@ -288,7 +288,7 @@ TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndFindsItselfAgain) {
   for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(process(i), State::tracking);
   for (std::size_t i = 15; i < 20; ++i) {
     const FrameReport report = blind(i);
-    EXPECT_EQ(report.state, State::lost);
+    EXPECT_EQ(report.state, State::relocalising);
     EXPECT_EQ(report.map_from_body, std::nullopt);
   }
   for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(process(i), State::tracking);
@@ -298,7 +298,7 @@ TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndFindsItselfAgain) {
 
 TEST_F(SessionOfACircle, InitialisesWithTheFirstStereoFrame) {
   EXPECT_EQ(blind(0).state, State::initialising);
-  EXPECT_EQ(blind(1).world_from_body, std::nullopt);
+  EXPECT_EQ(blind(1).map_from_body, std::nullopt);
   EXPECT_EQ(process(2), State::tracking);
   EXPECT_EQ(process(3), State::tracking);
 }
@@ -322,7 +322,7 @@ TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
   for (std::size_t i = 0; i < 10; ++i) ASSERT_EQ(process(i), State::tracking);
   for (std::size_t i = 10; i < 40; ++i) {
     const FrameReport report = session_.process(elsewhere.frames[i]);
-    EXPECT_EQ(report.state, State::lost);
+    EXPECT_EQ(report.state, State::relocalising);
     EXPECT_EQ(report.map_from_body, std::nullopt);
   }
   EXPECT_THAT(session_.final_trajectory(), SizeIs(10));

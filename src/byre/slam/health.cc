@@ -1,6 +1,39 @@
 #include "byre/slam/health.h"
 
 namespace byre {
+namespace {
+
+// Why the pose is of no use; none when it is.
+Doubt reason_against(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (!evidence.pose_found) return evidence.image_fault == ImageFault::none ? Doubt::no_pose : Doubt::blinded;
+  if (!evidence.registered) return Doubt::not_registered;
+  if (!evidence.confirmed) return Doubt::unconfirmed;
+  const double drift = options.drift_share * health.distance_since_offline;
+  const double uncertainty = options.sigmas * health.position_sigma;
+  if (uncertainty + drift > options.trusted_error) {
+    return drift > uncertainty ? Doubt::off_the_map : Doubt::uncertain;
+  }
+  return Doubt::none;
+}
+
+bool misses_offline_points(const Health& health, const HealthOptions& options) {
+  return health.offline_expected >= options.expected_offline_points &&
+         health.offline_inliers < options.min_offline_points &&
+         health.distance_since_offline > options.max_changed_path;
+}
+
+// What asks for care; none when nothing does.
+Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (health.agreement && health.agreement->translation > options.max_disagreement) return Doubt::maps_disagree;
+  if (health.offline_inliers + health.online_inliers < options.min_points) {
+    return evidence.image_fault == ImageFault::none ? Doubt::few_points : Doubt::blinded;
+  }
+  if (health.spread < options.min_spread) return Doubt::clustered;
+  if (health.rotation_sigma > options.max_rotation_sigma) return Doubt::uncertain;
+  return misses_offline_points(health, options) ? Doubt::few_offline_points : Doubt::none;
+}
+
+}  // namespace
 
 std::string_view to_string(Verdict verdict) {
   switch (verdict) {
@@ -40,6 +73,16 @@ std::string_view to_string(Doubt doubt) {
       return "offline and online points disagree";
   }
   return "";
+}
+
+Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {
+  Health health = measured;
+  health.doubt = reason_against(measured, evidence, options);
+  health.verdict = Verdict::untrusted;
+  if (health.doubt != Doubt::none) return health;
+  health.doubt = reason_for_care(measured, evidence, options);
+  health.verdict = health.doubt == Doubt::none ? Verdict::trusted : Verdict::degraded;
+  return health;
 }
 
 }  // namespace byre

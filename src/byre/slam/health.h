@@ -58,4 +58,29 @@ struct Health {
   std::optional<ImageCondition> image;  // empty for simulated frames
 };
 
+struct HealthOptions {
+  double trusted_error = 0.2;        // metres: what a trusted pose promises
+  double sigmas = 3.0;               // of the pose's uncertainty that must fit into that,
+  double drift_share = 0.005;        // with this share of the path since offline points last held the pose
+  double max_rotation_sigma = 0.02;  // radians
+  int min_points = 40;               // inliers of both kinds
+  double min_spread = 0.04;          // of the image's diagonal
+  double max_disagreement = 0.05;    // metres between the poses from offline and from online points
+  int min_offline_points = 15;       // inliers, where
+  int expected_offline_points = 80;  // so many should be in view,
+  double max_changed_path = 5.0;     // unless for less than these metres
+};
+
+// What is known of a frame beside its measures.
+struct HealthEvidence {
+  bool pose_found = false;
+  bool registered = true;  // the pose is in the offline map's frame
+  bool confirmed = true;   // over several frames, since it was found
+  ImageFault image_fault = ImageFault::none;
+};
+
+// The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose
+// is degraded while few, clustered or contradicting points hold it.
+Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options);
+
 }  // namespace byre

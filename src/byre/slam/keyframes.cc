@@ -27,6 +27,7 @@ Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world,
 }  // namespace
 
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options) {
+  if (evidence.offline_inliers >= options.enough_offline) return false;
   const int inliers = static_cast<int>(tracked.features.size());
   const bool weak = inliers < options.min_tracked;
   if (evidence.pending >= (weak ? options.max_pending_when_weak : options.max_pending)) return false;

@@ -16,6 +16,7 @@ struct KeyframeOptions {
   int min_frames = 2;              // between keyframes, unless tracking is about to fail
   int max_pending = 3;             // keyframes that wait for mapping; more are not made,
   int max_pending_when_weak = 10;  // unless fewer than min_tracked points are left
+  int enough_offline = 100;        // offline points tracked: the place is known, and needs no keyframe
 };
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.
@@ -24,6 +25,7 @@ struct KeyframeEvidence {
   int frames_since_last = 0;  // frames since the last keyframe was made
   int pending = 0;            // keyframes mapping has not worked on yet
   double turn = 0.0;          // radians, rotation from the reference keyframe
+  int offline_inliers = 0;    // of the points tracked, those of an offline map
   double shift_share = 0.0;   // translation from the reference keyframe over the median depth of the tracked points
 };
 
@@ -31,7 +33,7 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
 
 double median_depth(const TrackedFrame& tracked, const MapView& map);  // metres, zero when nothing is tracked
 
-// The keyframe a tracked frame becomes: its inliers are its sightings, its reference is its parent.
+// The keyframe a tracked frame becomes: its inliers are its sightings, and the keyframe it was tracked from its parent.
 Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig);
 
 // Adds a point for every feature of the keyframe that has a trustworthy disparity and sees no point yet, so that the

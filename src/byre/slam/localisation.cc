@@ -55,21 +55,6 @@ std::optional<TrackedFrame> refine(const Query& query, const Pose& camera_from_w
   return second && second->features.size() > first->features.size() ? second : first;
 }
 
-// Standard deviation of the pixels along the direction in which they spread least, as a share of the image's diagonal.
-double spread(const std::vector<TrackedFeature>& features, const Rig& rig) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const TrackedFeature& feature : features) mean += feature.pixel.cast<double>();
-  mean /= static_cast<double>(features.size());
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  for (const TrackedFeature& feature : features) {
-    const Eigen::Vector2d offset = feature.pixel.cast<double>() - mean;
-    covariance += offset * offset.transpose();
-  }
-  covariance /= static_cast<double>(features.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) / std::hypot(rig.width, rig.height);
-}
-
 Localisation try_place(const PlaceCandidate& place, const Query& query) {
   const LocaliseOptions& options = query.options;
   const std::vector<PointMatch> matches =
@@ -137,10 +122,25 @@ std::string_view to_string(LocalisationFailure failure) {
   return "";
 }
 
+double spread_of(const std::vector<TrackedFeature>& features, const Rig& rig) {
+  if (features.empty()) return 0.0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const TrackedFeature& feature : features) mean += feature.pixel.cast<double>();
+  mean /= static_cast<double>(features.size());
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const TrackedFeature& feature : features) {
+    const Eigen::Vector2d offset = feature.pixel.cast<double>() - mean;
+    covariance += offset * offset.transpose();
+  }
+  covariance /= static_cast<double>(features.size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) / std::hypot(rig.width, rig.height);
+}
+
 LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
                                     const LocaliseOptions& options) {
   if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
-  if (spread(tracked.features, rig) < options.min_spread) return Failure::clustered;
+  if (spread_of(tracked.features, rig) < options.min_spread) return Failure::clustered;
   const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
   const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
   const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, map) &&

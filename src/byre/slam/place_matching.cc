@@ -67,6 +67,11 @@ bool is_distinct(const Nearest& nearest, const PlaceMatchOptions& options) {
          static_cast<float>(nearest.distance) < options.max_ratio * static_cast<float>(nearest.second_distance);
 }
 
+// Not one of an offline map that the view leaves out.
+bool shows_known_point(const MapView& map, const Sighting& sighting) {
+  return sighting.point && map.find_point(*sighting.point) != nullptr;
+}
+
 // One match at most for each feature and each point: the most similar.
 std::vector<PointMatch> most_similar(std::vector<PointMatch> matches) {
   const auto by_similarity = [](const PointMatch& a, const PointMatch& b) {
@@ -97,7 +102,7 @@ std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& 
     const Features& features = *keyframe->frame.features;
     const NodeFeatures of_keyframe =
         features_by_node(keyframe->words, vocabulary, options.levels_up,
-                         [&](std::size_t i) { return keyframe->sightings[i].point.has_value(); });
+                         [&](std::size_t i) { return shows_known_point(map, keyframe->sightings[i]); });
     visit_shared_nodes(of_keyframe, of_frame, [&](NodeRange of_points, NodeRange candidates) {
       for (const NodeFeature& seen : of_points) {
         const Nearest nearest = nearest_of(features.descriptor(seen.feature), frame.features, candidates);

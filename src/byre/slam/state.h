@@ -5,17 +5,54 @@
 
 namespace byre {
 
-// initialising -> tracking <-> lost. Lost frames have no pose.
-enum class State : std::uint8_t { initialising, tracking, lost };
+// initialising -> tracking <-> relocalising -> lost. From relocalising and lost a confirmed pose leads back to
+// tracking.
+//   initialising  no pose yet: no first map, or not found in the offline one
+//   tracking      a pose that is believed
+//   relocalising  the pose was lost, or one was found that is not confirmed yet
+//   lost          relocalising has failed for StateOptions::lost_after; it goes on
+enum class State : std::uint8_t { initialising, tracking, relocalising, lost };
 
 std::string_view to_string(State state);
 
 // What one frame told us.
 struct Evidence {
-  bool has_map = false;  // a first map exists
   bool pose_found = false;
+  bool pose_confirmed = true;         // by enough frames, where it was found without a prediction
+  double seconds_without_pose = 0.0;  // since the last confirmed one
 };
 
-State next_state(State state, const Evidence& evidence);
+struct StateOptions {
+  double lost_after = 10.0;  // seconds without a confirmed pose: then the robot is told of a navigation error
+};
+
+State next_state(State state, const Evidence& evidence, const StateOptions& options);
+
+// Relocalising or lost: there was a pose once, and now there is none to rely on.
+inline bool has_lost_its_way(State state) {
+  return state == State::relocalising || state == State::lost;
+}
+
+// What became of the offline points.
+//   held         enough of them hold the pose
+//   off_the_map  from the predicted pose hardly any should be in view: the robot has left the mapped area
+//   blinded      they should be in view, but the image shows too little of anything
+//   changed      they should be in view, and the image is good: things have moved, or look different
+enum class OfflineView : std::uint8_t { held, off_the_map, blinded, changed };
+
+struct OfflineEvidence {
+  int expected = 0;  // offline points in the frustum of the pose, predicted where there is no other
+  int inliers = 0;   // of those
+  bool image_is_faulty = false;
+  int features = 0;  // in the image
+};
+
+struct OfflineViewOptions {
+  int min_inliers = 20;   // that hold a pose
+  int min_expected = 40;  // fewer in the frustum: off the map
+  int min_features = 50;  // fewer in the image: blinded
+};
+
+OfflineView view_of_offline(const OfflineEvidence& evidence, const OfflineViewOptions& options);
 
 }  // namespace byre

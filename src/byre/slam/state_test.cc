@@ -21,29 +21,60 @@ struct Transition {
 class NextState : public ::testing::TestWithParam<Transition> {};
 
 TEST_P(NextState, FollowsTheTable) {
-  EXPECT_EQ(next_state(GetParam().before, GetParam().evidence), GetParam().after);
+  EXPECT_EQ(next_state(GetParam().before, GetParam().evidence, {.lost_after = 10.0}), GetParam().after);
 }
 
-constexpr Evidence kNoMap{.has_map = false, .pose_found = false};
-constexpr Evidence kMapOnly{.has_map = true, .pose_found = false};
-constexpr Evidence kPose{.has_map = true, .pose_found = true};
+constexpr Evidence kNothing{.pose_found = false, .pose_confirmed = true, .seconds_without_pose = 1.0};
+constexpr Evidence kNothingForLong{.pose_found = false, .pose_confirmed = true, .seconds_without_pose = 10.0};
+constexpr Evidence kPose{.pose_found = true, .pose_confirmed = true, .seconds_without_pose = 0.0};
+constexpr Evidence kDoubtfulPose{.pose_found = true, .pose_confirmed = false, .seconds_without_pose = 1.0};
+constexpr Evidence kDoubtfulForLong{.pose_found = true, .pose_confirmed = false, .seconds_without_pose = 10.0};
 
 INSTANTIATE_TEST_SUITE_P(Table, NextState,
-                         ::testing::Values(Transition{State::initialising, kNoMap, State::initialising},
-                                           Transition{State::initialising, kMapOnly, State::initialising},
+                         ::testing::Values(Transition{State::initialising, kNothing, State::initialising},
+                                           Transition{State::initialising, kNothingForLong, State::initialising},
+                                           Transition{State::initialising, kDoubtfulPose, State::relocalising},
                                            Transition{State::initialising, kPose, State::tracking},
                                            Transition{State::tracking, kPose, State::tracking},
-                                           Transition{State::tracking, kMapOnly, State::lost},
-                                           Transition{State::tracking, kNoMap, State::initialising},
-                                           Transition{State::lost, kPose, State::tracking},
-                                           Transition{State::lost, kMapOnly, State::lost},
-                                           Transition{State::lost, kNoMap, State::initialising}));
+                                           Transition{State::tracking, kNothing, State::relocalising},
+                                           Transition{State::tracking, kNothingForLong, State::lost},
+                                           Transition{State::relocalising, kNothing, State::relocalising},
+                                           Transition{State::relocalising, kDoubtfulPose, State::relocalising},
+                                           Transition{State::relocalising, kNothingForLong, State::lost},
+                                           Transition{State::relocalising, kDoubtfulForLong, State::lost},
+                                           Transition{State::relocalising, kPose, State::tracking},
+                                           Transition{State::lost, kNothing, State::lost},
+                                           Transition{State::lost, kDoubtfulPose, State::lost},
+                                           Transition{State::lost, kPose, State::tracking}));
 
 TEST(ToString, TellsStatesApart) {
   EXPECT_EQ(to_string(State::initialising), "initialising");
   EXPECT_EQ(to_string(State::tracking), "tracking");
+  EXPECT_EQ(to_string(State::relocalising), "relocalising");
   EXPECT_EQ(to_string(State::lost), "lost");
 }
+
+struct Sight {
+  OfflineEvidence evidence;
+  OfflineView view;
+};
+
+class ViewOfOffline : public ::testing::TestWithParam<Sight> {};
+
+TEST_P(ViewOfOffline, FollowsTheTable) {
+  const OfflineViewOptions options{.min_inliers = 20, .min_expected = 40, .min_features = 50};
+  EXPECT_EQ(view_of_offline(GetParam().evidence, options), GetParam().view);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, ViewOfOffline,
+    ::testing::Values(
+        Sight{{.expected = 300, .inliers = 20, .image_is_faulty = false, .features = 900}, OfflineView::held},
+        Sight{{.expected = 300, .inliers = 20, .image_is_faulty = true, .features = 60}, OfflineView::held},
+        Sight{{.expected = 300, .inliers = 19, .image_is_faulty = false, .features = 900}, OfflineView::changed},
+        Sight{{.expected = 39, .inliers = 5, .image_is_faulty = false, .features = 900}, OfflineView::off_the_map},
+        Sight{{.expected = 300, .inliers = 5, .image_is_faulty = true, .features = 900}, OfflineView::blinded},
+        Sight{{.expected = 0, .inliers = 0, .image_is_faulty = false, .features = 49}, OfflineView::blinded}));
 
 }  // namespace
 }  // namespace byre

@@ -2,96 +2,24 @@
 
 #include "byre/features/match.h"
 #include "byre/geometry/absolute_pose.h"
-#include "byre/slam/guided_matching.h"
-#include "byre/slam/measurement.h"
+#include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 namespace byre {
 namespace {
 
-PoseObservation pose_observation(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
-  PoseObservation observation;
-  observation.point_in_world = point.position_in_world;
-  observation.point_covariance = point.covariance;
-  observation.measured << pixel.pixel.cast<double>(), keypoint.disparity;
-  observation.pixel_sigma = pixel.sigma;
-  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
-  return observation;
-}
-
-bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
-  return refined.inlier_count >= options.min_inliers &&
-         refined.inlier_count >= options.min_inlier_share * static_cast<double>(matches);
-}
-
-// A first pose from the corners as they were detected, matched within a radius of where the prediction expects them.
-std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
-                               const TrackOptions& options) {
-  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
-  std::vector<PoseObservation> observations;
-  observations.reserve(matches.size());
-  for (const GuidedMatch& match : matches) {
-    const Keypoint& keypoint = frame.features->keypoint(match.feature);
-    observations.push_back(pose_observation(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
-  }
-  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options.refinement);
-  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
-  return refined->camera_from_world;
-}
-
-// The pixel of the point in the frame, by its reference patch where that keyframe still exists.
-PixelMeasurement measure(const MapView& map, const MapPoint& point, const CameraView& frame, int feature) {
-  const Keyframe* const keyframe = map.find_keyframe(point.reference.keyframe);
-  if (keyframe == nullptr) return corner_measurement(frame.features.keypoint(feature));
-  const CameraView view{*keyframe->frame.features, map.rig_of(*keyframe, point.reference.keyframe),
-                        keyframe->camera_from_world};
-  const Sighting& sighting = keyframe->sightings[static_cast<std::size_t>(point.reference.feature)];
-  return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
-}
-
-KeyframeId most_shared(const MapView& map, const std::vector<TrackedFeature>& features) {
-  std::map<KeyframeId, int> votes;
-  for (const TrackedFeature& feature : features) {
-    map.visit_observations(feature.point, [&](const Observation& observation) { ++votes[observation.keyframe]; });
-  }
-  const auto best =
-      std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return best == votes.end() ? KeyframeId{} : best->first;
-}
-
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
                                               const MapView& map, const std::vector<GuidedMatch>& matches,
                                               const TrackOptions& options) {
-  const CameraView view{*frame.features, rig, camera_from_world};
-  std::vector<PoseObservation> observations;
-  std::vector<TrackedFeature> features;
-  observations.reserve(matches.size());
-  features.reserve(matches.size());
-  for (const GuidedMatch& match : matches) {
-    const MapPoint& point = *map.find_point(match.point);
-    const PixelMeasurement pixel = measure(map, point, view, match.feature);
-    observations.push_back(pose_observation(point, frame.features->keypoint(match.feature), pixel));
-    features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
-  }
-  const auto refined = refine_pose(camera_from_world, rig, observations, options.refinement);
+  const MeasuredPoints measured = measure_matches(frame, camera_from_world, rig, map, matches);
+  const auto refined = refine_pose(camera_from_world, rig, measured.observations, options.refinement);
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
-
-  TrackedFrame tracked;
-  tracked.camera_from_world = refined->camera_from_world;
-  tracked.covariance = refined->covariance;
-  tracked.match_covariance = refined->covariance;
+  std::vector<TrackedFeature> inliers = inliers_of(*refined, measured);
+  const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
+  TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
   tracked.matches = static_cast<int>(matches.size());
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    if (refined->inliers[i]) tracked.features.push_back(features[i]);
-  }
-  tracked.reference = most_shared(map, tracked.features);
-  if (const Keyframe* const reference = map.find_keyframe(tracked.reference)) {
-    tracked.covariance +=
-        move_covariance(reference->covariance, tracked.camera_from_world * inverse(reference->camera_from_world));
-  }
   return tracked;
 }
 

@@ -3,6 +3,7 @@
 #include "byre/map/map_view.h"
 #include "byre/optimise/pose_refinement.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,12 +28,19 @@ struct TrackedFrame {
   int matches = 0;                             // of those, matched before outliers were taken out
 };
 
+// In which order points of an offline map and of an online one are used.
+//   first     a pose from offline points, where there are enough, guides the search for online ones
+//   together  both are looked for around the prediction
+enum class OfflinePolicy : std::uint8_t { first, together };
+
 struct TrackOptions {
   float search_radius = 12.0f;  // pixels at octave 0, about the predicted pixel
   float wide_radius = 40.0f;    // pixels, when the first search finds too little
   float narrow_radius = 4.0f;   // pixels, once a first pose is known
   int min_inliers = 25;
   double min_inlier_share = 0.5;  // of the matches; fewer mean that the prediction led astray
+  OfflinePolicy offline_policy = OfflinePolicy::first;
+  double offline_weight = 2.0;  // of an offline point's measurement, against 1 of an online one's
   PoseRefinementOptions refinement;
 };
 

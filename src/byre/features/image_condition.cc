@@ -1,0 +1,129 @@
+#include "byre/features/image_condition.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace byre {
+namespace {
+
+constexpr int kRowStep = 8;
+constexpr int kMargin = 16;  // pixels: how far the other pixel of a pair lies at most, to each side and below
+
+// Pairs of pixels, near and far, along one direction of the image.
+struct Direction {
+  int right = 0;  // of one step
+  int down = 0;
+  int near = 0;  // steps
+  int far = 0;
+
+  std::ptrdiff_t offset(int steps, std::ptrdiff_t stride) const { return steps * (down * stride + right); }
+};
+
+// 2 and 16 pixels apart, or nearly: the diagonals' steps are longer.
+constexpr std::array<Direction, 4> kDirections = {{{1, 0, 2, 16}, {0, 1, 2, 16}, {1, 1, 1, 11}, {-1, 1, 1, 11}}};
+
+// A structure function (Kolmogorov 1941): the mean squared difference at two distances.
+struct Differences {
+  double near = 0.0;  // squared grey values
+  double far = 0.0;
+};
+
+int sum_of_squared_differences(const std::uint8_t* a, const std::uint8_t* b, int count) {
+  int sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const int difference = int{a[i]} - int{b[i]};
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+// Precondition: there are pixels to compare.
+std::array<Differences, kDirections.size()> differences_of(const std::uint8_t* pixels, int width, int height,
+                                                           std::ptrdiff_t stride) {
+  std::array<Differences, kDirections.size()> differences;
+  const int columns = width - 2 * kMargin;
+  double pairs = 0.0;
+  for (int y = 0; y + kMargin < height; y += kRowStep) {
+    const std::uint8_t* const row = pixels + y * stride + kMargin;
+    for (std::size_t i = 0; i < kDirections.size(); ++i) {
+      const Direction& direction = kDirections[i];
+      differences[i].near += sum_of_squared_differences(row, row + direction.offset(direction.near, stride), columns);
+      differences[i].far += sum_of_squared_differences(row, row + direction.offset(direction.far, stride), columns);
+    }
+    pairs += columns;
+  }
+  for (Differences& difference : differences) difference = {difference.near / pairs, difference.far / pairs};
+  return differences;
+}
+
+struct Light {
+  float brightness = 0.0f;
+  float clipped = 0.0f;
+};
+
+Light light_of(const std::uint8_t* pixels, int width, int height, std::ptrdiff_t stride) {
+  constexpr std::uint8_t kBlack = 2, kWhite = 253;
+  double sum = 0.0, clipped = 0.0, count = 0.0;
+  for (int y = 0; y < height; y += kRowStep) {
+    const std::uint8_t* const row = pixels + y * stride;
+    int row_sum = 0, row_clipped = 0;
+    for (int x = 0; x < width; ++x) {
+      row_sum += row[x];
+      row_clipped += row[x] <= kBlack || row[x] >= kWhite ? 1 : 0;
+    }
+    sum += row_sum;
+    clipped += row_clipped;
+    count += width;
+  }
+  if (count == 0.0) return {};
+  return {static_cast<float>(sum / count), static_cast<float>(clipped / count)};
+}
+
+}  // namespace
+
+ImageCondition measure_condition(const std::uint8_t* pixels, int width, int height, std::ptrdiff_t stride) {
+  const Light light = light_of(pixels, width, height, stride);
+  if (width <= 2 * kMargin || height <= kMargin) return {light.brightness, 0.0f, light.clipped, 0.0f};
+  const auto differences = differences_of(pixels, width, height, stride);
+  double contrast = 0.0;  // squared grey values
+  double sharpness = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kDirections.size(); ++i) {
+    const auto& [near, far] = differences[i];
+    contrast += std::max(0.0, far - near) / (2.0 * kDirections.size());
+    const double steps = static_cast<double>(kDirections[i].far) / kDirections[i].near;
+    sharpness = std::min(sharpness, far > 0.0 ? steps * near / far : 0.0);
+  }
+  return {light.brightness, static_cast<float>(std::sqrt(contrast)), light.clipped, static_cast<float>(sharpness)};
+}
+
+ImageCondition measure_condition(const Image& image) {
+  return measure_condition(image.pixels.data(), image.width, image.height, image.width);
+}
+
+std::string_view to_string(ImageFault fault) {
+  switch (fault) {
+    case ImageFault::none:
+      return "none";
+    case ImageFault::dark:
+      return "dark";
+    case ImageFault::overexposed:
+      return "overexposed";
+    case ImageFault::flat:
+      return "flat";
+    case ImageFault::blurred:
+      return "blurred";
+  }
+  return "";
+}
+
+ImageFault fault_of(const ImageCondition& condition, const ImageConditionOptions& options) {
+  if (condition.brightness < options.min_brightness) return ImageFault::dark;
+  if (condition.brightness > options.max_brightness) return ImageFault::overexposed;
+  if (condition.contrast < options.min_contrast) return ImageFault::flat;
+  if (condition.sharpness < options.min_sharpness) return ImageFault::blurred;
+  return ImageFault::none;
+}
+
+}  // namespace byre

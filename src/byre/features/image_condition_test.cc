@@ -1,0 +1,147 @@
+#include "byre/features/image_condition.h"
+
+#include "byre/features/test_images.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr int kWidth = 376;
+constexpr int kHeight = 240;
+
+// With detail of all sizes that images of buildings have.
+cv::Mat wall(double contrast = 0.8) {
+  return render(kWidth, kHeight, [fine = Texture(61, contrast)](double x, double y) { return fine(0.4 * x, 0.4 * y); });
+}
+
+ImageCondition condition_of(const cv::Mat& image) {
+  return measure_condition(to_image(image));
+}
+
+ImageFault fault_in(const cv::Mat& image) {
+  return fault_of(condition_of(image), {});
+}
+
+// By a straight motion of so many pixels.
+cv::Mat motion_blurred(const cv::Mat& image, double pixels, double angle) {
+  cv::Mat1f path(31, 31, 0.0f);
+  for (double along = -pixels / 2.0; along <= pixels / 2.0; along += 0.05) {
+    path(15 + static_cast<int>(std::lround(along * std::sin(angle))),
+         15 + static_cast<int>(std::lround(along * std::cos(angle)))) += 1.0f;
+  }
+  cv::Mat blurred;
+  cv::filter2D(image, blurred, CV_8U, path / cv::sum(path)[0]);
+  return blurred;
+}
+
+TEST(ImageCondition, FindsNoFaultInATexturedImage) {
+  EXPECT_EQ(fault_in(wall()), ImageFault::none);
+}
+
+TEST(ImageCondition, FindsNoFaultInADimNoisyImage) {
+  std::mt19937 random(1);
+  cv::Mat dim = wall() / 6.0;
+  add_noise(dim, 2.0, random);
+  EXPECT_EQ(fault_in(dim), ImageFault::none);
+}
+
+TEST(ImageCondition, FindsNoFaultInASlightlyBlurredImage) {
+  for (const double angle : {0.0, 0.8, 1.6}) EXPECT_EQ(fault_in(motion_blurred(wall(), 5.0, angle)), ImageFault::none);
+}
+
+TEST(ImageCondition, CallsAnImageWithoutLightDark) {
+  std::mt19937 random(2);
+  cv::Mat black(kHeight, kWidth, CV_8U, cv::Scalar(2));
+  EXPECT_EQ(fault_in(black), ImageFault::dark);
+  add_noise(black, 2.0, random);
+  EXPECT_EQ(fault_in(black), ImageFault::dark);
+}
+
+TEST(ImageCondition, CallsAWhiteImageOverexposed) {
+  EXPECT_EQ(fault_in(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(255))), ImageFault::overexposed);
+}
+
+TEST(ImageCondition, CallsAShadedSurfaceWithoutTextureFlat) {
+  std::mt19937 random(3);
+  cv::Mat surface = render(kWidth, kHeight, [](double x, double y) { return 90.0 + 0.15 * x - 0.1 * y; });
+  EXPECT_EQ(fault_in(surface), ImageFault::flat);
+  add_noise(surface, 3.0, random);
+  EXPECT_EQ(fault_in(surface), ImageFault::flat);
+}
+
+TEST(ImageCondition, CallsAnImageBlurredByMotionBlurredWhateverTheDirection) {
+  for (double angle = 0.0; angle < 3.1; angle += 0.4) {
+    EXPECT_EQ(fault_in(motion_blurred(wall(), 20.0, angle)), ImageFault::blurred) << angle;
+  }
+}
+
+TEST(ImageCondition, SharpnessFallsWithBlurAndNotWithLight) {
+  const float sharp = condition_of(wall()).sharpness;
+  EXPECT_NEAR(condition_of(wall(0.2)).sharpness, sharp, 0.05 * sharp);
+  EXPECT_NEAR(condition_of(wall() * 0.5).sharpness, sharp, 0.05 * sharp);
+  float before = sharp;
+  for (const double pixels : {4.0, 8.0, 16.0, 30.0}) {
+    const float blurred = condition_of(motion_blurred(wall(), pixels, 0.5)).sharpness;
+    EXPECT_LT(blurred, before);
+    before = blurred;
+  }
+}
+
+TEST(ImageCondition, SharpEdgesHaveSharpnessOne) {
+  const cv::Mat board = render(kWidth, kHeight, [](double x, double y) {
+    return (static_cast<int>(x + y) / 60 + static_cast<int>(x - y + 600.0) / 60) % 2 == 0 ? 40.0 : 200.0;
+  });
+  EXPECT_NEAR(condition_of(board).sharpness, 1.0, 0.15);
+}
+
+TEST(ImageCondition, ContrastGrowsWithLightAndNotWithNoise) {
+  std::mt19937 random(4);
+  const float clean = condition_of(wall(0.5)).contrast;
+  EXPECT_NEAR(condition_of(wall(0.25)).contrast, 0.5 * clean, 0.05 * clean);
+  cv::Mat noisy = wall(0.5);
+  add_noise(noisy, 5.0, random);
+  EXPECT_NEAR(condition_of(noisy).contrast, clean, 0.05 * clean);
+}
+
+TEST(ImageCondition, TellsBrightnessAndTheShareOfClippedPixels) {
+  cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(100));
+  image.colRange(0, kWidth / 4) = 255;
+  image.colRange(kWidth / 4, kWidth / 2) = 0;
+  EXPECT_FLOAT_EQ(condition_of(image).clipped, 0.5f);
+  EXPECT_FLOAT_EQ(condition_of(image).brightness, (255.0f + 0.0f + 200.0f) / 4.0f);
+}
+
+TEST(ImageCondition, ReadsRowsThatLieApart) {
+  const cv::Mat whole = wall();
+  const cv::Mat part = whole(cv::Rect(40, 24, 200, 100));
+  const ImageCondition apart =
+      measure_condition(part.data, part.cols, part.rows, static_cast<std::ptrdiff_t>(part.step));
+  const ImageCondition copied = condition_of(part);
+  EXPECT_EQ(apart.sharpness, copied.sharpness);
+  EXPECT_EQ(apart.contrast, copied.contrast);
+  EXPECT_EQ(apart.brightness, copied.brightness);
+}
+
+TEST(ImageCondition, KnowsOnlyTheLightOfATinyImage) {
+  const ImageCondition tiny = condition_of(wall()(cv::Rect(0, 0, 32, 16)));
+  EXPECT_GT(tiny.brightness, 50.0f);
+  EXPECT_EQ(tiny.sharpness, 0.0f);
+  EXPECT_EQ(measure_condition(Image{}).brightness, 0.0f);
+}
+
+TEST(ImageCondition, NamesTheFirstFault) {
+  ImageCondition condition{100.0f, 0.0f, 0.0f, 0.0f};
+  EXPECT_EQ(fault_of(condition, {}), ImageFault::flat);
+  condition.brightness = 0.0f;
+  EXPECT_EQ(fault_of(condition, {}), ImageFault::dark);
+  condition = {100.0f, 20.0f, 0.0f, 0.1f};
+  EXPECT_EQ(fault_of(condition, {}), ImageFault::blurred);
+  EXPECT_EQ(to_string(ImageFault::blurred), "blurred");
+  EXPECT_EQ(to_string(ImageFault::none), "none");
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,59 @@
+#include "byre/session/mission.h"
+
+#include <algorithm>
+
+namespace byre {
+
+DriftBound Mission::drift() const {
+  return {options_.min_drift + options_.drift_share * distance_since_offline_,
+          options_.min_turn + options_.turn_per_metre * distance_since_offline_};
+}
+
+const std::vector<PointId>& Mission::candidates(const Pose& predicted_camera_from_world) {
+  std::optional<KeyframeId> around = reference_;
+  if (!around) {
+    const auto near = offline_->keyframes_near(predicted_camera_from_world, options_.search_distance, 1);
+    if (!near.empty()) around = near.front();
+  }
+  if (around != candidates_around_) {
+    candidates_around_ = around;
+    const Map nothing_online(Origin::online);
+    const MapView view(&offline_->map(), nothing_online);
+    local_points_ = around ? local_points(view, *around, options_.local_keyframes) : std::vector<PointId>{};
+  }
+  candidates_.clear();
+  std::ranges::copy_if(local_points_, std::back_inserter(candidates_),
+                       [this](PointId id) { return !suspension_.is_suspended(id); });
+  return candidates_;
+}
+
+void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
+  const bool contradicted = track.maps_disagree && !track.offline_is_right;
+  view_ = view_of_offline(evidence, options_.view);
+  const bool held = view_ == OfflineView::held && !contradicted;
+  if (!track.maps_disagree || !track.offline_is_right) suspension_.note(track.offline_agreed, track.offline_moved);
+  reference_ = held ? track.offline_reference : std::nullopt;
+  if (held && !track.maps_disagree) {
+    note_found(time);
+  } else {
+    distance_since_offline_ += step;
+  }
+}
+
+void Mission::note_found(Timestamp time) {
+  distance_since_offline_ = 0.0;
+  last_offline_time_ = time;
+}
+
+std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
+                                      double median_depth, bool is_jump) {
+  const RegistrationOptions& options = options_.registration;
+  hypothesis_ = confirm(hypothesis_, offline_from_online, camera_in_online, median_depth, options);
+  const int needed = is_jump ? options.confirmations_of_jump : options.confirmations;
+  if (!hypothesis_ || hypothesis_->confirmations < needed) return std::nullopt;
+  const Pose confirmed = hypothesis_->offline_from_online;
+  hypothesis_.reset();
+  return confirmed;
+}
+
+}  // namespace byre

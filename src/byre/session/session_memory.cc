@@ -1,0 +1,220 @@
+// What a session remembers of a frame, and tells of it.
+
+#include "byre/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+// Where the robot would be had it stayed on the points that held the last pose.
+const Pose& on_same_basis(const HybridTrack& track, bool on_offline) {
+  const std::optional<Pose>& pose = on_offline ? track.from_offline : track.from_online;
+  return pose ? *pose : track.tracked.camera_from_world;
+}
+
+// Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
+constexpr double kNeglectedCorrelation = 1.1;
+
+// What the matches leave open, and the drift that stereo odometry may have gathered on its way.
+Matrix6 odometry_covariance(const Matrix6& match_covariance, double travelled) {
+  constexpr double kDriftShare = 0.005;
+  constexpr double kTurnPerMetre = 0.0005;  // radians
+  Matrix6 covariance = match_covariance;
+  covariance.topLeftCorner<3, 3>().diagonal().array() += std::pow(kDriftShare * travelled, 2);
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += std::pow(kTurnPerMetre * travelled, 2);
+  return covariance;
+}
+
+Agreement agreement_of(const Pose& from_offline, const Pose& from_online) {
+  const Pose motion = inverse(from_offline) * from_online;
+  return {motion.translation.norm(), rotation_log(motion.rotation).norm()};
+}
+
+}  // namespace
+
+ImageFault Session::image_fault(const Frame& frame) const {
+  return frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
+}
+
+void Session::remember(const Frame& frame, const HybridTrack& track, bool without_prediction, FrameReport& report) {
+  const Pose& camera = track.tracked.camera_from_world;
+  const bool changes_basis = track.offline_is_right != on_offline_basis_;
+  const Pose smooth = changes_basis ? on_same_basis(track, on_offline_basis_) : camera;
+  const bool is_first = anchored_.empty();
+  double step = 0.0;
+  if (is_first) {
+    odometry_.start(body_pose(camera));
+  } else if (without_prediction) {
+    odometry_.absorb(last_body_, body_pose(camera));
+  } else {
+    step = (last_body_.translation - body_pose(smooth).translation).norm();
+    odometry_.absorb(body_pose(smooth), body_pose(camera));
+    odometry_.travel(step);
+  }
+  velocity_ = without_prediction || is_first ? Vector6::Zero() : velocity_to(frame.time, smooth);
+  if (without_prediction) begin_confirmation(frame, track.tracked);
+  on_offline_basis_ = track.offline_is_right;
+  last_inliers_ = static_cast<int>(track.tracked.features.size());
+  const KeyframeId reference =
+      track.offline_is_right && track.offline_reference ? *track.offline_reference : track.tracked.reference;
+  if (reference_ != reference) fresh_inliers_ = last_inliers_;
+  reference_ = reference;
+  if (track.online_reference) online_reference_ = track.online_reference;
+  anchored_.push_back({frame.time, reference, camera * inverse(camera_from_world(reference)), segment_});
+  last_body_ = body_pose(camera);
+  has_pose_ = true;
+  if (mission_ && is_registered()) remember_mission(frame, track, step, report);
+  if (!is_pose_confirmed()) return;
+  confirmed_end_ = anchored_.size();
+  if (!is_registered()) return;
+  if (mission_ && !last_confirmed_) {
+    report.events.push_back(SessionEvent::localised);
+  } else if (has_lost_its_way(state_)) {
+    report.events.push_back(SessionEvent::relocalised);
+  }
+  last_confirmed_ = frame.time;
+}
+
+void Session::remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report) {
+  const OfflineView before = mission_->view();
+  mission_->note(
+      track, frame.time, step,
+      {track.offline_expected, track.offline_inliers, image_fault(frame) != ImageFault::none, frame.features->size()});
+  const OfflineView now = mission_->view();
+  const auto tell = [&](OfflineView view, SessionEvent event) {
+    if (now == view && before != view) report.events.push_back(event);
+  };
+  tell(OfflineView::off_the_map, SessionEvent::left_mapped_area);
+  tell(OfflineView::blinded, SessionEvent::blinded);
+  tell(OfflineView::held, SessionEvent::entered_mapped_area);
+  if (now == OfflineView::held && !track.maps_disagree && last_keyframe_) last_held_keyframe_ = last_keyframe_->number;
+  if (!track.offline_is_right || waiting_correction_ || !is_pose_confirmed()) return;
+  const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
+  const auto correction = mission_->consider(offline_from_online, inverse(*track.from_online).translation,
+                                             median_depth(track.tracked, map()), false);
+  if (correction) waiting_correction_ = {last_held_keyframe_, *correction, CorrectionShape::spread};
+}
+
+// A pose found from nothing is believed once the frames that follow have been tracked on it; the more of them, the less
+// the robot can have come there by itself.
+void Session::begin_confirmation(const Frame& frame, const TrackedFrame& tracked) {
+  if (!mission_) return;
+  const RegistrationOptions& options = options_.mission.registration;
+  confirmations_left_ = options.confirmations;
+  if (!last_confirmed_ || anchored_.empty()) return;
+  constexpr double kSlack = 0.5;  // metres
+  const double reach = kSlack + options.max_speed * to_seconds(frame.time - *last_confirmed_);
+  const double shift = (body_pose(tracked.camera_from_world).translation - last_body_.translation).norm();
+  if (shift > reach) confirmations_left_ = options.confirmations_of_jump;
+}
+
+bool Session::is_still_confirming(const HybridTrack& track) {
+  if (is_pose_confirmed()) return true;
+  if (reason_to_doubt(track.tracked, rig_, map(), options_.relocalise) != LocalisationFailure::none) return false;
+  --confirmations_left_;
+  return true;
+}
+
+void Session::lose_pose(const Frame& frame, FrameReport& report) {
+  if (has_pose_ && state_ == State::tracking) {
+    report.events.push_back(SessionEvent::pose_lost);
+    if (image_fault(frame) != ImageFault::none) report.events.push_back(SessionEvent::blinded);
+  }
+  has_pose_ = false;
+  confirmations_left_ = 0;
+  anchored_.resize(confirmed_end_);  // what was found and never confirmed
+  on_offline_basis_ = false;
+  if (!mission_) return;
+  mission_->forget_reference();
+  mission_->forget_hypothesis();
+}
+
+bool Session::may_map(const Frame& frame, const HybridTrack& track) const {
+  if (!options_.map_online || !is_pose_confirmed() || track.offline_is_right) return false;
+  if (image_fault(frame) != ImageFault::none) return false;
+  return needs_keyframe(track.tracked, keyframe_evidence(track), options_.keyframes);
+}
+
+// Places are looked for in the offline map while its points do not hold the pose.
+void Session::search_beside(const Frame& frame) {
+  if (!mission_ || !search_->idle() || waiting_correction_ || !is_pose_confirmed()) return;
+  const bool is_needed = !is_registered() || mission_->distance_since_offline() > options_.mission.search_after;
+  if (is_needed) search_->look_for(frame, rig_, anchored_.size() - 1);
+}
+
+void Session::consider_place(const FoundPlace& found) {
+  if (!has_pose_ || !is_pose_confirmed() || waiting_correction_ || found.frame >= anchored_.size()) return;
+  const AnchoredPose& then = anchored_[found.frame];
+  if (then.segment != segment_) return;
+  const Pose camera_from_online = then.camera_from_keyframe * camera_from_world(then.keyframe);
+  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
+  const Eigen::Vector3d camera_in_online = inverse(camera_from_online).translation;
+  const DriftBound drift = mission_->drift();
+  const bool is_jump =
+      is_registered() && ((offline_from_online * camera_in_online - camera_in_online).norm() > drift.translation ||
+                          rotation_log(offline_from_online.rotation).norm() > drift.rotation);
+  const auto correction = mission_->consider(offline_from_online, camera_in_online, found.median_depth, is_jump);
+  if (!correction) return;
+  waiting_correction_ =
+      is_registered() ? WaitingCorrection{last_held_keyframe_, *correction, CorrectionShape::spread}
+                      : WaitingCorrection{segments_[segment_].first_keyframe, *correction, CorrectionShape::rigid};
+}
+
+void Session::conclude(const Frame& frame, const Located& located, FrameReport& report) {
+  const double seconds_without = to_seconds(frame.time - last_confirmed_.value_or(*first_frame_));
+  state_ = next_state(state_, {has_pose_, is_pose_confirmed(), seconds_without}, options_.state);
+  tell_navigation_error(seconds_without, report);
+  report.state = state_;
+  report.features = frame.features->size();
+  if (has_pose_) {
+    if (is_registered()) report.map_from_body = last_body_;
+    report.odometry_from_body = odometry_.pose(last_body_);
+  }
+  if (located.track) {
+    const TrackedFrame& tracked = located.track->tracked;
+    report.expected_points = tracked.expected;
+    report.matches = tracked.matches;
+    report.inliers = static_cast<int>(tracked.features.size());
+    report.covariance = kNeglectedCorrelation * move_covariance(tracked.covariance, rig_.body_from_camera);
+    report.odometry_covariance =
+        odometry_covariance(kNeglectedCorrelation * move_covariance(tracked.match_covariance, rig_.body_from_camera),
+                            odometry_.travelled());
+  }
+  report.health = health_of(frame, located, report.covariance);
+}
+
+Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {
+  Health health;
+  health.image = frame.condition;
+  const HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed(), image_fault(frame)};
+  health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  if (mission_) {
+    health.suspended = mission_->suspension().count();
+    health.distance_since_offline = mission_->distance_since_offline();
+    health.seconds_since_offline = to_seconds(frame.time - mission_->last_offline_time().value_or(*first_frame_));
+  }
+  if (located.track) {
+    const HybridTrack& track = *located.track;
+    health.offline_expected = track.offline_expected;
+    health.offline_matches = track.offline_matches;
+    health.offline_inliers = track.offline_inliers;
+    health.online_inliers = track.online_inliers();
+    health.inlier_share = static_cast<double>(track.tracked.features.size()) / std::max(1, track.tracked.matches);
+    health.spread = spread_of(track.tracked.features, rig_);
+    if (track.from_offline && track.from_online) {
+      health.agreement = agreement_of(*track.from_offline, *track.from_online);
+    }
+  }
+  return judged(health, evidence, options_.health);
+}
+
+void Session::tell_navigation_error(double seconds_without_pose, FrameReport& report) {
+  const bool is_lost = mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
+  if (is_lost && !navigation_error_told_) report.events.push_back(SessionEvent::navigation_error);
+  navigation_error_told_ = is_lost;
+}
+
+}  // namespace byre

@@ -1,0 +1,174 @@
+// How a session finds the pose of a frame: by prediction, or from nothing.
+
+#include "byre/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+std::size_t inlier_count(const std::optional<HybridTrack>& track) {
+  return track ? track->tracked.features.size() : 0;
+}
+
+// A frame found in one map alone.
+HybridTrack found_in(Origin origin, const TrackedFrame& tracked) {
+  HybridTrack track;
+  track.tracked = tracked;
+  if (origin == Origin::online) {
+    track.online_reference = tracked.reference;
+    return track;
+  }
+  track.offline_reference = tracked.reference;
+  track.offline_expected = tracked.expected;
+  track.offline_matches = tracked.matches;
+  track.offline_inliers = static_cast<int>(tracked.features.size());
+  track.from_offline = tracked.camera_from_world;
+  for (const TrackedFeature& feature : tracked.features) track.offline_agreed.push_back(feature.point);
+  return track;
+}
+
+}  // namespace
+
+Pose Session::camera_from_world(KeyframeId id) const {
+  return id.origin == Origin::offline ? mission_->offline().map().camera_from_world(id) : online_.camera_from_world(id);
+}
+
+Pose Session::last_camera_from_world() const {
+  const AnchoredPose& last = anchored_.back();
+  return last.camera_from_keyframe * camera_from_world(last.keyframe);
+}
+
+Pose Session::predict(Timestamp time) const {
+  const double elapsed = to_seconds(time - anchored_.back().time);
+  return exp_pose(velocity_ * elapsed) * last_camera_from_world();
+}
+
+Vector6 Session::velocity_to(Timestamp time, const Pose& camera_from_world) const {
+  const double elapsed = to_seconds(time - anchored_.back().time);
+  if (elapsed <= 0.0) return Vector6::Zero();
+  return log_pose(camera_from_world * inverse(last_camera_from_world())) / elapsed;
+}
+
+Session::Located Session::locate(const Frame& frame) {
+  Located located;
+  const bool can_search = mission_ || places_;
+  if (!anchored_.empty() && (has_pose_ || !can_search)) located.track = find_pose(frame);
+  if (located.track && !is_still_confirming(*located.track)) located.track.reset();
+  if (!located.track && can_search) {
+    located.track = relocalise(frame);
+    located.without_prediction = located.track.has_value();
+  }
+  if (!located.track && may_begin_segment(frame)) located.is_new_segment = begin_segment(frame);
+  return located;
+}
+
+std::optional<HybridTrack> Session::track_from(const Frame& frame, const Pose& predicted,
+                                               const std::vector<PointId>& online) {
+  if (!mission_) {
+    const auto tracked = track(frame, predicted, rig_, map(), online, options_.track);
+    return tracked ? std::optional(found_in(Origin::online, *tracked)) : std::nullopt;
+  }
+  std::vector<PointId> candidates;
+  if (is_registered()) candidates = mission_->candidates(predicted);
+  std::ranges::copy_if(online, std::back_inserter(candidates), [](PointId id) { return id.origin == Origin::online; });
+  return track_hybrid(frame, predicted, rig_, map(), candidates, mission_->drift(), options_.track);
+}
+
+std::optional<HybridTrack> Session::find_pose(const Frame& frame) {
+  // Mapping may have removed the last frame's keyframe since, but never the newest.
+  if (!online_reference_ || online_.find_keyframe(*online_reference_) == nullptr) online_reference_ = last_keyframe_;
+  std::vector<PointId> online;
+  if (online_reference_) online = local_points(map(), *online_reference_, options_.local_keyframes);
+  const Pose predicted = has_pose_ ? predict(frame.time) : last_camera_from_world();
+  auto best = track_from(frame, predicted, online);
+  // A sudden loss of matches may mean that the prediction led astray: look again without it.
+  if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
+  for (const std::optional<KeyframeId>& keyframe : {std::optional(anchored_.back().keyframe), last_keyframe_}) {
+    const auto pose = keyframe ? pose_from_keyframe(frame, rig_, map(), *keyframe) : std::nullopt;
+    if (!pose) continue;
+    auto tracked = track_from(frame, *pose, online);
+    if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);
+  }
+  return best;
+}
+
+std::optional<HybridTrack> Session::relocalise(const Frame& frame) {
+  auto found = mission_ ? relocalise_offline(frame) : std::nullopt;
+  if (!found && places_ && online_.keyframe_count() > 0) found = relocalise_online(frame);
+  return found;
+}
+
+std::optional<HybridTrack> Session::relocalise_offline(const Frame& frame) {
+  const Localisation found = localise_in(mission_->offline(), frame, rig_, options_.relocalise);
+  if (!found.tracked) return std::nullopt;
+  enter_registered_segment();
+  return found_in(Origin::offline, *found.tracked);
+}
+
+std::optional<HybridTrack> Session::relocalise_online(const Frame& frame) {
+  const Localisation found = localise(frame, rig_, map(), *places_, options_.relocalise);
+  if (!found.tracked) return std::nullopt;
+  segment_ = segment_of(found.tracked->reference);
+  return found_in(Origin::online, *found.tracked);
+}
+
+// The piece of online map that a keyframe is of: they begin one after the other.
+std::size_t Session::segment_of(KeyframeId online) const {
+  const auto next = std::ranges::upper_bound(segments_, online.number, {}, &Segment::first_keyframe);
+  return static_cast<std::size_t>(std::distance(segments_.begin(), next)) - 1;
+}
+
+void Session::enter_registered_segment() {
+  if (is_registered()) return;
+  segments_.push_back({next_keyframe_number(), true});
+  segment_ = segments_.size() - 1;
+}
+
+bool Session::may_begin_segment(const Frame& frame) const {
+  if (!options_.map_online) return false;
+  if (anchored_.empty()) return online_.keyframe_count() == 0 || mission_;
+  if (!mission_ || image_fault(frame) != ImageFault::none) return false;
+  return to_seconds(frame.time - anchored_.back().time) >= options_.mission.restart_after;
+}
+
+// In a mission its place in the offline map is not known yet.
+bool Session::begin_segment(const Frame& frame) {
+  auto first = initialise_stereo(frame, rig_, options_.min_initial_points);
+  if (!first) return false;
+  segments_.push_back({next_keyframe_number(), !mission_});
+  segment_ = segments_.size() - 1;
+  if (online_.keyframe_count() == 0) {
+    online_ = std::move(*first);
+    last_keyframe_ = online_.keyframe_ids().front();
+  } else {
+    TrackedFrame tracked;
+    tracked.camera_from_world = last_camera_from_world();
+    Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig_));
+    keyframe.parent.reset();
+    last_keyframe_ = online_.add_keyframe(std::move(keyframe));
+    add_stereo_points(online_, *last_keyframe_);
+  }
+  index_place(*last_keyframe_);
+  online_reference_ = last_keyframe_;
+  const Pose body = body_pose(online_.camera_from_world(*last_keyframe_));
+  if (anchored_.empty()) {
+    odometry_.start(body);
+  } else {
+    odometry_.absorb(last_body_, body);
+  }
+  anchored_.push_back({frame.time, *last_keyframe_, Pose{}, segment_});
+  last_body_ = body;
+  velocity_ = Vector6::Zero();
+  frames_since_keyframe_ = 0;
+  reference_.reset();
+  has_pose_ = true;
+  confirmations_left_ = 0;
+  confirmed_end_ = anchored_.size();
+  if (mission_) mission_->forget_reference();
+  return true;
+}
+
+}  // namespace byre

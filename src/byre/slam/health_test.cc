@@ -1,0 +1,123 @@
+#include "byre/slam/health.h"
+
+#include <ostream>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+
+void PrintTo(Verdict verdict, std::ostream* out) {
+  *out << to_string(verdict);
+}
+void PrintTo(Doubt doubt, std::ostream* out) {
+  *out << to_string(doubt);
+}
+
+namespace {
+
+// A frame in a known place, as it should be.
+Health good() {
+  Health health;
+  health.offline_expected = 400;
+  health.offline_matches = 220;
+  health.offline_inliers = 200;
+  health.online_inliers = 100;
+  health.inlier_share = 0.9;
+  health.spread = 0.2;
+  health.agreement = Agreement{0.003, 0.001};
+  health.position_sigma = 0.005;
+  health.rotation_sigma = 0.001;
+  return health;
+}
+
+constexpr HealthEvidence kPose{.pose_found = true};
+
+struct Judgement {
+  const char* name;
+  Health health;
+  HealthEvidence evidence;
+  Verdict verdict;
+  Doubt doubt;
+};
+
+void PrintTo(const Judgement& judgement, std::ostream* out) {
+  *out << judgement.name;
+}
+
+Health with(void (*change)(Health&)) {
+  Health health = good();
+  change(health);
+  return health;
+}
+
+class Judged : public ::testing::TestWithParam<Judgement> {};
+
+TEST_P(Judged, FollowsTheTable) {
+  const Health health = judged(GetParam().health, GetParam().evidence, {});
+  EXPECT_EQ(health.verdict, GetParam().verdict);
+  EXPECT_EQ(health.doubt, GetParam().doubt);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, Judged,
+    ::testing::Values(
+        Judgement{"known place", good(), kPose, Verdict::trusted, Doubt::none},
+        Judgement{"no pose", {}, {}, Verdict::untrusted, Doubt::no_pose},
+        Judgement{"no pose in the dark", {}, {.image_fault = ImageFault::dark}, Verdict::untrusted, Doubt::blinded},
+        Judgement{"place in the map unknown",
+                  good(),
+                  {.pose_found = true, .registered = false},
+                  Verdict::untrusted,
+                  Doubt::not_registered},
+        Judgement{
+            "found just now", good(), {.pose_found = true, .confirmed = false}, Verdict::untrusted, Doubt::unconfirmed},
+        Judgement{"some way off the map", with([](Health& h) {
+                    h.offline_expected = h.offline_inliers = 0;
+                    h.online_inliers = 300;
+                    h.distance_since_offline = 20.0;
+                  }),
+                  kPose, Verdict::trusted, Doubt::none},
+        Judgement{"far off the map", with([](Health& h) {
+                    h.offline_expected = h.offline_inliers = 0;
+                    h.online_inliers = 300;
+                    h.distance_since_offline = 60.0;
+                  }),
+                  kPose, Verdict::untrusted, Doubt::off_the_map},
+        Judgement{"uncertain position", with([](Health& h) { h.position_sigma = 0.1; }), kPose, Verdict::untrusted,
+                  Doubt::uncertain},
+        Judgement{"uncertain rotation", with([](Health& h) { h.rotation_sigma = 0.05; }), kPose, Verdict::degraded,
+                  Doubt::uncertain},
+        Judgement{"things that moved", with([](Health& h) {
+                    h.agreement = Agreement{0.3, 0.01};
+                  }),
+                  kPose, Verdict::degraded, Doubt::maps_disagree},
+        Judgement{"hardly any points", with([](Health& h) {
+                    h.offline_inliers = 20;
+                    h.online_inliers = 10;
+                  }),
+                  kPose, Verdict::degraded, Doubt::few_points},
+        Judgement{"hardly any points for blur",
+                  with([](Health& h) {
+                    h.offline_inliers = 20;
+                    h.online_inliers = 10;
+                  }),
+                  {.pose_found = true, .image_fault = ImageFault::blurred},
+                  Verdict::degraded,
+                  Doubt::blinded},
+        Judgement{"points in a corner", with([](Health& h) { h.spread = 0.01; }), kPose, Verdict::degraded,
+                  Doubt::clustered},
+        Judgement{"a changed place, passing", with([](Health& h) {
+                    h.offline_inliers = 5;
+                    h.online_inliers = 200;
+                    h.distance_since_offline = 2.0;
+                  }),
+                  kPose, Verdict::trusted, Doubt::none},
+        Judgement{"a changed place, for long", with([](Health& h) {
+                    h.offline_inliers = 5;
+                    h.online_inliers = 200;
+                    h.distance_since_offline = 8.0;
+                  }),
+                  kPose, Verdict::degraded, Doubt::few_offline_points}));
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,156 @@
+#include "byre/slam/hybrid_tracking.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/mission_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr std::size_t kFrame = 20;
+constexpr double kDegree = 0.01745;
+
+Pose shift_by(double metres) {
+  return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
+}
+
+// The same map elsewhere in the world.
+void move(Map& map, const Pose& world_motion) {
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    map.move_keyframe(id, keyframe.camera_from_world * inverse(world_motion), keyframe.covariance);
+  }
+  for (const PointId id : map.point_ids()) {
+    MapPoint point = *map.find_point(id);
+    point.position_in_world = world_motion * point.position_in_world;
+    map.update_point(id, point);
+  }
+}
+
+// A room mapped at one visit, and again at another.
+class TrackHybrid : public ::testing::Test {
+ protected:
+  static SimulationOptions visit(std::uint64_t noise_seed) {
+    SimulationOptions options;
+    options.noise_seed = noise_seed;
+    return options;
+  }
+
+  std::optional<HybridTrack> track_frame(const DriftBound& drift, OfflinePolicy policy = OfflinePolicy::first) const {
+    std::vector<PointId> candidates = offline_.point_ids();
+    const std::vector<PointId> online = online_.point_ids();
+    candidates.insert(candidates.end(), online.begin(), online.end());
+    TrackOptions options;
+    options.offline_policy = policy;
+    return track_hybrid(now_.frames[kFrame], truth_, now_.rig, {&offline_, online_}, candidates, drift, options);
+  }
+
+  const SimulatedMission before_ = quarter_circle(visit(1));
+  const SimulatedMission earlier_ = quarter_circle(visit(2));
+  const SimulatedMission now_ = quarter_circle(visit(3));
+  const Pose truth_ = true_camera_from_world(now_, kFrame);
+  Map offline_ = true_map(before_, 4, Origin::offline);
+  Map online_ = true_map(earlier_, 4, Origin::online);
+};
+
+TEST_F(TrackHybrid, UsesThePointsOfBothMapsWhereTheyAgree) {
+  for (const OfflinePolicy policy : {OfflinePolicy::first, OfflinePolicy::together}) {
+    const auto track = track_frame({}, policy);
+    ASSERT_TRUE(track);
+    EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+    EXPECT_FALSE(track->maps_disagree);
+    EXPECT_GT(track->offline_inliers, 50);
+    EXPECT_EQ(track->offline_agreed.size(), static_cast<std::size_t>(track->offline_inliers));
+    EXPECT_EQ(track->offline_reference->origin, Origin::offline);
+  }
+}
+
+TEST_F(TrackHybrid, FollowsTheOfflineMapWhereTheOnlineMapHasDrifted) {
+  move(online_, shift_by(0.06));
+  const auto track = track_frame({.translation = 0.1, .rotation = 0.02});
+  ASSERT_TRUE(track);
+  EXPECT_TRUE(track->maps_disagree);
+  EXPECT_TRUE(track->offline_is_right);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  ASSERT_TRUE(track->from_online);
+  EXPECT_THAT(inverse(*track->from_online).translation,
+              PointNear((shift_by(0.06) * inverse(truth_)).translation, 0.01));
+}
+
+TEST_F(TrackHybrid, FollowsTheOnlineMapWhereMoreThanDriftWouldBeNeeded) {
+  move(offline_, shift_by(0.08));
+  const auto track = track_frame({.translation = 0.05, .rotation = 0.02});
+  ASSERT_TRUE(track);
+  EXPECT_TRUE(track->maps_disagree);
+  EXPECT_FALSE(track->offline_is_right);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  EXPECT_EQ(track->offline_inliers, 0);
+  EXPECT_GT(track->offline_moved.size(), 50U);
+}
+
+TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
+  const std::vector<PointId> all = offline_.point_ids();
+  std::vector<PointId> shelf;  // a fifth of the points, moved by 4 cm
+  for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
+  for (const PointId id : shelf) {
+    MapPoint point = *offline_.find_point(id);
+    point.position_in_world = shift_by(0.04) * point.position_in_world;
+    offline_.update_point(id, point);
+  }
+  const auto track = track_frame({});
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  const auto count_shelf = [&](const std::vector<PointId>& points) {
+    return std::ranges::count_if(points, [&](PointId id) { return std::ranges::binary_search(shelf, id); });
+  };
+  EXPECT_GT(count_shelf(track->offline_moved), 4 * count_shelf(track->offline_agreed));
+}
+
+TEST_F(TrackHybrid, TracksOnOnlinePointsAloneOffTheMap) {
+  offline_ = Map(Origin::offline);
+  const auto track = track_frame({});
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  EXPECT_EQ(track->offline_expected, 0);
+  EXPECT_EQ(track->offline_reference, std::nullopt);
+  EXPECT_GT(track->online_inliers(), 50);
+}
+
+TEST_F(TrackHybrid, TracksOnOfflinePointsAloneBeforeThereIsAnOnlineMap) {
+  online_ = Map(Origin::online);
+  const auto track = track_frame({});
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  EXPECT_EQ(track->online_inliers(), 0);
+  EXPECT_EQ(track->online_reference, std::nullopt);
+}
+
+TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
+  move(online_, shift_by(0.008));  // less than is told apart
+  std::vector<PointId> candidates = offline_.point_ids();
+  const std::vector<PointId> online = online_.point_ids();
+  candidates.insert(candidates.end(), online.begin(), online.end());
+  std::vector<double> errors;
+  for (const double weight : {0.2, 1.0, 20.0}) {
+    TrackOptions options;
+    options.offline_weight = weight;
+    const auto track =
+        track_hybrid(now_.frames[kFrame], truth_, now_.rig, {&offline_, online_}, candidates, {}, options);
+    ASSERT_TRUE(track);
+    errors.push_back((inverse(track->tracked.camera_from_world).translation - inverse(truth_).translation).norm());
+  }
+  EXPECT_LT(errors[2], errors[0]);
+}
+
+TEST_F(TrackHybrid, FindsNothingInAnotherRoom) {
+  SimulationOptions another_room;
+  another_room.seed = 99;
+  const SimulatedMission elsewhere = quarter_circle(another_room);
+  const auto track =
+      track_hybrid(elsewhere.frames[kFrame], truth_, now_.rig, {&offline_, online_}, offline_.point_ids(), {}, {});
+  EXPECT_FALSE(track);
+}
+
+}  // namespace
+}  // namespace byre

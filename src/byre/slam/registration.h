@@ -1,0 +1,38 @@
+#pragma once
+
+#include "byre/map/map.h"
+#include "byre/slam/delta.h"
+
+#include <optional>
+
+namespace byre {
+
+struct RegistrationOptions {
+  int confirmations = 3;           // frames that must say the same before it is believed,
+  int confirmations_of_jump = 10;  // or when it means that the robot was carried, or went faster than it can
+  double max_speed = 3.0;          // metres a second that the robot may move
+  double max_disagreement = 0.01;  // of the median depth, and radians, between what two frames say
+  int max_misses = 2;              // frames that say something else, before it is given up
+};
+
+// Where the online map lies in the offline one, as several frames have it.
+struct RegistrationHypothesis {
+  Pose offline_from_online;
+  int confirmations = 1;
+  int misses = 0;
+};
+
+// What another frame says, where there is none yet or one already. Empty when it is refuted.
+std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHypothesis>& hypothesis,
+                                              const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
+                                              double median_depth, const RegistrationOptions& options);
+
+// The online map from a keyframe on, moved so that it lies in the offline one at its newest end. What hangs between:
+//   rigid   goes along as a whole: it had no place in the offline map before
+//   spread  bends by its share of the path: at the first keyframe both maps agreed
+enum class CorrectionShape : std::uint8_t { rigid, spread };
+
+MapDelta correction_of(const Map& online, std::uint32_t first_keyframe, const Pose& offline_from_online,
+                       CorrectionShape shape);
+
+}  // namespace byre

@@ -1,0 +1,97 @@
+#include "byre/slam/registration.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/mission_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}};
+constexpr double kDepth = 4.0;  // metres
+
+TEST(Confirm, BelievesAPlaceOnceEnoughFramesAgree) {
+  const RegistrationOptions options;
+  std::optional<RegistrationHypothesis> hypothesis;
+  for (int frame = 0; frame < 3; ++frame) {
+    hypothesis = confirm(hypothesis, kOfflineFromOnline, {1.0, 2.0, 0.0}, kDepth, options);
+  }
+  EXPECT_EQ(hypothesis.value().confirmations, 3);
+}
+
+TEST(Confirm, GivesUpWhenFramesSayDifferentThings) {
+  const RegistrationOptions options{.max_misses = 2};
+  auto hypothesis = confirm({}, kOfflineFromOnline, {1.0, 2.0, 0.0}, kDepth, options);
+  for (int frame = 0; frame < 3; ++frame) {
+    ASSERT_TRUE(hypothesis);
+    hypothesis = confirm(hypothesis, Pose{}, {1.0, 2.0, 0.0}, kDepth, options);
+  }
+  EXPECT_FALSE(hypothesis);
+}
+
+TEST(Confirm, ComparesWhereTheCameraIsNotWhereTheWorldBegins) {
+  const Pose turned_about_the_camera = [] {
+    const Eigen::Vector3d camera(50.0, 0.0, 0.0);
+    const Eigen::Quaterniond turn = rotation_exp({0.0, 0.0, 0.005});
+    return Pose{turn, camera - turn * camera};
+  }();
+  const auto first = confirm({}, Pose{}, {50.0, 0.0, 0.0}, kDepth, {});
+  EXPECT_EQ(confirm(first, turned_about_the_camera, {50.0, 0.0, 0.0}, kDepth, {}).value().confirmations, 2);
+  EXPECT_EQ(confirm(first, turned_about_the_camera, {0.0, 0.0, 0.0}, kDepth, {}).value().confirmations, 1);
+}
+
+class CorrectionOf : public ::testing::Test {
+ protected:
+  Pose world_motion_of(KeyframeId id, const Map& after) const {
+    return inverse(after.find_keyframe(id)->camera_from_world) * map_.find_keyframe(id)->camera_from_world;
+  }
+
+  const SimulatedMission mission_ = quarter_circle(without_noise());
+  const Map map_ = true_map(mission_, 4, Origin::online);
+};
+
+TEST_F(CorrectionOf, MovesAllThatHadNoPlaceBeforeAsAWhole) {
+  Map after = map_;
+  apply(correction_of(map_, 0, kOfflineFromOnline, CorrectionShape::rigid), after);
+  for (const KeyframeId id : map_.keyframe_ids()) {
+    EXPECT_THAT(world_motion_of(id, after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
+  }
+  for (const PointId id : map_.point_ids()) {
+    EXPECT_THAT(after.find_point(id)->position_in_world,
+                PointNear(kOfflineFromOnline * map_.find_point(id)->position_in_world, 1e-9));
+  }
+  EXPECT_THAT(find_faults(after), testing::IsEmpty());
+}
+
+TEST_F(CorrectionOf, BendsThePathFromNothingWhereMapsAgreedToAllAtItsEnd) {
+  Map after = map_;
+  apply(correction_of(map_, 0, kOfflineFromOnline, CorrectionShape::spread), after);
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  EXPECT_THAT(world_motion_of(ids.front(), after), PoseNear(Pose{}, 1e-9, 1e-9));
+  const auto moved = [&](KeyframeId id) {
+    return (inverse(after.find_keyframe(id)->camera_from_world).translation -
+            inverse(map_.find_keyframe(id)->camera_from_world).translation)
+        .norm();
+  };
+  for (std::size_t i = 1; i < ids.size(); ++i) EXPECT_GT(moved(ids[i]), moved(ids[i - 1]));
+  EXPECT_THAT(world_motion_of(ids.back(), after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
+}
+
+TEST_F(CorrectionOf, LeavesWhatIsOlderThanTheFirstKeyframeWhereItIs) {
+  const KeyframeId first = map_.keyframe_ids()[4];
+  const MapDelta delta = correction_of(map_, first.number, kOfflineFromOnline, CorrectionShape::rigid);
+  for (const MovedKeyframe& moved : delta.moved_keyframes) EXPECT_GE(moved.id.number, first.number);
+  for (const UpdatedPoint& updated : delta.updated_points) {
+    EXPECT_GE(map_.find_point(updated.id)->reference.keyframe.number, first.number);
+  }
+}
+
+TEST_F(CorrectionOf, IsEmptyForAPieceWithoutKeyframes) {
+  const MapDelta delta = correction_of(map_, 1000, kOfflineFromOnline, CorrectionShape::rigid);
+  EXPECT_TRUE(delta.moved_keyframes.empty());
+  EXPECT_TRUE(delta.updated_points.empty());
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,108 @@
+#include "byre/slam/tracking_steps.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+PoseObservation pose_observation(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
+  PoseObservation observation;
+  observation.point_in_world = point.position_in_world;
+  observation.point_covariance = point.covariance;
+  observation.measured << pixel.pixel.cast<double>(), keypoint.disparity;
+  observation.pixel_sigma = pixel.sigma;
+  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
+  return observation;
+}
+
+// The pixel of the point in the frame.
+PixelMeasurement measure(const MapView& map, const MapPoint& point, const CameraView& frame, int feature) {
+  const Keyframe* const keyframe = map.find_keyframe(point.reference.keyframe);
+  if (keyframe == nullptr) return corner_measurement(frame.features.keypoint(feature));
+  const CameraView view{*keyframe->frame.features, map.rig_of(*keyframe, point.reference.keyframe),
+                        keyframe->camera_from_world};
+  const Sighting& sighting = keyframe->sightings[static_cast<std::size_t>(point.reference.feature)];
+  return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
+}
+
+}  // namespace
+
+MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                               const std::vector<GuidedMatch>& matches) {
+  const CameraView view{*frame.features, rig, camera_from_world};
+  MeasuredPoints measured;
+  measured.observations.reserve(matches.size());
+  measured.features.reserve(matches.size());
+  for (const GuidedMatch& match : matches) {
+    const MapPoint& point = *map.find_point(match.point);
+    const PixelMeasurement pixel = measure(map, point, view, match.feature);
+    measured.observations.push_back(pose_observation(point, frame.features->keypoint(match.feature), pixel));
+    measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
+  }
+  return measured;
+}
+
+bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
+  return refined.inlier_count >= options.min_inliers &&
+         refined.inlier_count >= options.min_inlier_share * static_cast<double>(matches);
+}
+
+std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
+                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const TrackOptions& options) {
+  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
+  std::vector<PoseObservation> observations;
+  observations.reserve(matches.size());
+  for (const GuidedMatch& match : matches) {
+    const Keypoint& keypoint = frame.features->keypoint(match.feature);
+    observations.push_back(pose_observation(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
+  }
+  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options.refinement);
+  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
+  return refined->camera_from_world;
+}
+
+SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features) {
+  SharedPoints shared;
+  for (const TrackedFeature& feature : features) {
+    map.visit_observations(feature.point, [&](const Observation& observation) { ++shared[observation.keyframe]; });
+  }
+  return shared;
+}
+
+std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin) {
+  std::optional<KeyframeId> best;
+  int most = 0;
+  for (const auto& [keyframe, count] : shared) {
+    if (count <= most || (origin && keyframe.origin != *origin)) continue;
+    best = keyframe;
+    most = count;
+  }
+  return best;
+}
+
+std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+  std::vector<TrackedFeature> inliers;
+  inliers.reserve(measured.features.size());
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    if (refined.inliers[i]) inliers.push_back(measured.features[i]);
+  }
+  return inliers;
+}
+
+TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,
+                           const MapView& map) {
+  TrackedFrame tracked;
+  tracked.camera_from_world = refined.camera_from_world;
+  tracked.covariance = refined.covariance;
+  tracked.match_covariance = refined.covariance;
+  tracked.features = std::move(inliers);
+  tracked.reference = reference;
+  if (const Keyframe* const keyframe = map.find_keyframe(reference)) {
+    tracked.covariance +=
+        move_covariance(keyframe->covariance, tracked.camera_from_world * inverse(keyframe->camera_from_world));
+  }
+  return tracked;
+}
+
+}  // namespace byre

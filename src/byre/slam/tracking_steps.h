@@ -1,0 +1,46 @@
+#pragma once
+
+#include "byre/slam/guided_matching.h"
+#include "byre/slam/measurement.h"
+#include "byre/slam/tracking.h"
+
+#include <map>
+#include <optional>
+#include <vector>
+
+// The steps that tracking on one map and on two have in common.
+namespace byre {
+
+// Matches measured in the image: what each says of the pose, and what it becomes when it is an inlier; in step.
+struct MeasuredPoints {
+  std::vector<PoseObservation> observations;
+  std::vector<TrackedFeature> features;
+};
+
+// Each match by its point's reference patch, where that keyframe still exists, else by its corner.
+MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                               const std::vector<GuidedMatch>& matches);
+
+// Whether enough of the matches agree on the pose.
+bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
+
+// A first pose from the corners as they were detected, matched within a radius (pixels) of where the prediction expects
+// them. Empty when it is not sound.
+std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
+                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const TrackOptions& options);
+
+// How many of the points each keyframe sees.
+using SharedPoints = std::map<KeyframeId, int>;
+SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features);
+
+// The keyframe that sees most of them; of one map only, unless origin is empty.
+std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});
+
+std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+
+// What is left to the caller: counts of expected points and of matches.
+TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,
+                           const MapView& map);
+
+}  // namespace byre
