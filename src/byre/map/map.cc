@@ -28,6 +28,10 @@ bool is_seen_by(std::vector<Observation>& observations, KeyframeId keyframe) {
   return place != observations.end() && place->keyframe == keyframe;
 }
 
+KeyframeId keyframe_of_view(const ForeignView& view) {
+  return view.observation.keyframe;
+}
+
 Sighting& sighting_of(Keyframe& keyframe, int feature) {
   assert(feature >= 0 && static_cast<std::size_t>(feature) < keyframe.sightings.size());
   return keyframe.sightings[static_cast<std::size_t>(feature)];
@@ -94,10 +98,33 @@ void Map::remove_observation(const Observation& observation) {
   }
 }
 
+bool Map::add_foreign_view(const ForeignView& view) {
+  assert(view.sighting.point);
+  const PointId point = *view.sighting.point;
+  const KeyframeId keyframe = view.observation.keyframe;
+  if (keyframe.origin == origin_ || origin_ == Origin::offline || !find_point(point)) return false;
+  std::vector<ForeignView>& views = points_[point.number].foreign_views;
+  const auto place = std::ranges::lower_bound(views, keyframe, {}, keyframe_of_view);
+  if (place != views.end() && place->observation.keyframe == keyframe) return false;
+  if (!points_of_foreign_views_.emplace(view.observation, point).second) return false;
+  views.insert(place, view);
+  return true;
+}
+
+void Map::remove_foreign_view(const Observation& observation) {
+  const auto known = points_of_foreign_views_.find(observation);
+  if (known == points_of_foreign_views_.end()) return;
+  std::vector<ForeignView>& views = points_[known->second.number].foreign_views;
+  views.erase(std::ranges::lower_bound(views, observation.keyframe, {}, keyframe_of_view));
+  points_of_foreign_views_.erase(known);
+}
+
 void Map::remove_point(PointId id) {
   if (!find_point(id)) return;
   const std::vector<Observation> observers = observations(id);
   for (const Observation& observation : observers) unlink(observation);
+  for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.erase(view.observation);
+  points_[id.number].foreign_views.clear();
   points_[id.number].point.reset();
   --point_count_;
 }
@@ -167,6 +194,26 @@ const std::vector<Observation>& Map::observations(PointId id) const {
   static const std::vector<Observation> kNone;
   if (id.origin == origin_) return id.number < points_.size() ? points_[id.number].observations : kNone;
   return id.number < offline_observations_.size() ? offline_observations_[id.number] : kNone;
+}
+
+const std::vector<ForeignView>& Map::foreign_views(PointId id) const {
+  static const std::vector<ForeignView> kNone;
+  return id.origin == origin_ && id.number < points_.size() ? points_[id.number].foreign_views : kNone;
+}
+
+std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
+  std::vector<Observation> observations;
+  for (auto view = points_of_foreign_views_.lower_bound({offline, 0});
+       view != points_of_foreign_views_.end() && view->first.keyframe == offline; ++view) {
+    observations.push_back(view->first);
+  }
+  return observations;
+}
+
+std::optional<PointId> Map::point_of_foreign_view(const Observation& observation) const {
+  const auto known = points_of_foreign_views_.find(observation);
+  if (known == points_of_foreign_views_.end()) return std::nullopt;
+  return known->second;
 }
 
 std::vector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {

@@ -4,6 +4,7 @@
 #include "byre/map/ids.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,12 @@ struct Sighting {
   std::optional<PointId> point;                     // may be offline
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // full-resolution pixels
   float pixel_sigma = 1.0f;                         // pixels
+};
+
+// A point of the online map as a keyframe of the offline one sees it, which is never to know of it.
+struct ForeignView {
+  Observation observation;  // by a keyframe of the other map
+  Sighting sighting;        // of a point of this map
 };
 
 using Word = std::uint32_t;  // a visual word of a vocabulary, see place/vocabulary.h
@@ -96,6 +103,13 @@ class Map {
   // A point left without observations goes too; one that loses its reference gets its lowest observation instead.
   void remove_observation(const Observation& observation);
 
+  // An offline keyframe sees the point that the sighting names. Kept apart from observations(): it goes with its point,
+  // keeps none alive, defines none, and counts for no covisibility. Does nothing (false) when the point is gone, the
+  // keyframe is not offline, the feature already sees a point of this map, or the keyframe already sees this point.
+  // Precondition: the feature sees no point of its own map.
+  bool add_foreign_view(const ForeignView& view);
+  void remove_foreign_view(const Observation& observation);
+
   void remove_point(PointId id);
   // Its children are handed to its parent, and its pose is kept relative to it. A keyframe without a parent stays:
   // the poses of the others hang from it.
@@ -115,6 +129,13 @@ class Map {
 
   // By this map's keyframes, ascending; of an offline point too. Empty for an unknown point.
   const std::vector<Observation>& observations(PointId id) const;
+  // Of one of this map's points, ascending by keyframe. Empty for an unknown or offline point.
+  const std::vector<ForeignView>& foreign_views(PointId id) const;
+  // The features by which an offline keyframe sees points of this map, ascending.
+  std::vector<Observation> foreign_observations(KeyframeId offline) const;
+  // The point of this map that an offline keyframe's feature sees.
+  std::optional<PointId> point_of_foreign_view(const Observation& observation) const;
+
   // Keyframes that share points with this one, most shared first (ties: lower id first); maintained, not computed.
   std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
@@ -130,7 +151,8 @@ class Map {
   };
   struct PointSlot {
     std::optional<MapPoint> point;
-    std::vector<Observation> observations;  // ascending
+    std::vector<Observation> observations;   // ascending
+    std::vector<ForeignView> foreign_views;  // ascending by keyframe
   };
 
   bool was_given_out(KeyframeId id) const;
@@ -155,6 +177,7 @@ class Map {
   std::vector<KeyframeSlot> keyframes_;
   std::vector<PointSlot> points_;
   std::vector<std::vector<Observation>> offline_observations_;  // by an online map's keyframes, per offline point
+  std::map<Observation, PointId> points_of_foreign_views_;
   int keyframe_count_ = 0;
   int point_count_ = 0;
 };

@@ -1,4 +1,5 @@
 #include "byre/map/map.h"
+#include "byre/map/map_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +80,24 @@ void check_observations(const Map& map, PointId id, Faults& faults) {
   }
 }
 
+void check_foreign_views(const Map& map, PointId id, Faults& faults) {
+  const std::vector<ForeignView>& views = map.foreign_views(id);
+  const auto by_keyframe = [](const ForeignView& a, const ForeignView& b) {
+    return a.observation.keyframe >= b.observation.keyframe;
+  };
+  if (std::ranges::adjacent_find(views, by_keyframe) != views.end()) {
+    faults.push_back(name_of(id) + " has foreign views out of order or two by one keyframe");
+  }
+  for (const auto& [observation, sighting] : views) {
+    const std::string view = name_of(id) + "'s view by " + name_of(observation.keyframe);
+    if (observation.keyframe.origin == map.origin()) faults.push_back(view + " is not foreign");
+    if (sighting.point != id || map.point_of_foreign_view(observation) != id) {
+      faults.push_back(view + " is also one of another point");
+    }
+    if (const auto fault = fault_in(sighting); !fault.empty()) faults.push_back(view + " " + std::string(fault));
+  }
+}
+
 void check_point(const Map& map, PointId id, Faults& faults) {
   const MapPoint& point = *map.find_point(id);
   if (map.observations(id).empty()) faults.push_back(name_of(id) + " is seen by no keyframe");
@@ -89,6 +108,7 @@ void check_point(const Map& map, PointId id, Faults& faults) {
     faults.push_back(name_of(id) + " has no proper range of distances");
   }
   check_observations(map, id, faults);
+  check_foreign_views(map, id, faults);
 }
 
 std::set<PointId> points_seen_from(const Map& map, KeyframeId id) {

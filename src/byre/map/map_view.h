@@ -11,6 +11,8 @@ namespace byre {
 class MapView {
  public:
   MapView(const Map* offline, const Map& online) : offline_(offline), online_(&online) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): an online map alone can be read wherever two can
+  MapView(const Map& online) : MapView(nullptr, online) {}
 
   const Map* offline() const { return offline_; }
   const Map& online() const { return *online_; }
@@ -26,6 +28,13 @@ class MapView {
     std::ranges::for_each(online_->observations(id), visit);
   }
 
+  // The same for every keyframe that sees it through a foreign view too.
+  template <typename Visitor>
+  void visit_views(PointId id, Visitor visit) const {
+    visit_observations(id, visit);
+    for (const ForeignView& view : online_->foreign_views(id)) visit(view.observation);
+  }
+
   // Keyframes of the same map that share points with this one, most shared first.
   std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
@@ -35,5 +44,9 @@ class MapView {
   const Map* offline_;
   const Map* online_;
 };
+
+// The online map as one that stands alone, to be kept: the offline points that its keyframes see become points of its
+// own, defined by the first of their online views, and foreign views are left out.
+Map standalone_copy(const MapView& map);
 
 }  // namespace byre

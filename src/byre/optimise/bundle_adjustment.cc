@@ -127,17 +127,23 @@ class CeresBundle {
   void add(const BundleObservation& observation, const Rig& rig) {
     assert(rig.is_stereo() || !observation.is_stereo());
     const Reprojection reprojection(rig, observation.measured, observation.pixel_sigma, observation.disparity_sigma);
+    ceres::LossFunction* const loss = loss_of(observation);
     const auto [pose, point] = std::pair(observation.pose, observation.point);
     if (!roles_.point_moves[point]) {
       auto& cost = pose_costs_.emplace_back(reprojection, points_[point]);
-      ceres_.AddResidualBlock(&cost, &loss_, rotation(pose), translation(pose));
+      ceres_.AddResidualBlock(&cost, loss, rotation(pose), translation(pose));
     } else if (!roles_.pose_moves[pose]) {
       auto& cost = point_costs_.emplace_back(reprojection, poses_[pose]);
-      ceres_.AddResidualBlock(&cost, &loss_, position(point));
+      ceres_.AddResidualBlock(&cost, loss, position(point));
     } else {
       auto& cost = pose_and_point_costs_.emplace_back(reprojection);
-      ceres_.AddResidualBlock(&cost, &loss_, rotation(pose), translation(pose), position(point));
+      ceres_.AddResidualBlock(&cost, loss, rotation(pose), translation(pose), position(point));
     }
+  }
+
+  ceres::LossFunction* loss_of(const BundleObservation& observation) {
+    if (observation.weight == 1.0) return &loss_;
+    return &weighted_losses_.emplace_back(&loss_, observation.weight, ceres::DO_NOT_TAKE_OWNERSHIP);
   }
 
   // The Schur complement needs both kinds; with one kind alone the normal matrix is sparse as it stands.
@@ -167,7 +173,8 @@ class CeresBundle {
   std::vector<Eigen::Vector3d> points_;
   ceres::HuberLoss loss_;
   RotationManifold manifold_;
-  // Deques, for Ceres holds the costs' addresses.
+  // Deques, for Ceres holds the addresses of costs and losses.
+  std::deque<ceres::ScaledLoss> weighted_losses_;
   std::deque<PoseAndPointCost> pose_and_point_costs_;
   std::deque<PoseCost> pose_costs_;
   std::deque<PointCost> point_costs_;

@@ -26,6 +26,7 @@ struct BundleObservation {
   StereoPixel measured;           // u, v, disparity; pixels
   double pixel_sigma = 1.0;       // pixels, of u and of v
   double disparity_sigma = -1.0;  // pixels
+  double weight = 1.0;            // of its share of the cost; errors and covariances are told without it
 
   bool is_stereo() const { return disparity_sigma > 0.0; }
 };

@@ -121,7 +121,7 @@ void Session::forget_places(const MapDelta& delta) {
 // A waiting correction goes first: what a job would work on is about to move.
 void Session::start_job() {
   if (pending_.empty() || !executor_->idle() || global_.is_waiting() || waiting_correction_) return;
-  MapWindow window = cut_window(online_, pending_, options_.mapping.window);
+  MapWindow window = cut_window(map(), pending_, options_.mapping.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
   executor_->submit([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });

@@ -1,5 +1,7 @@
 #include "byre/slam/delta.h"
 
+#include <cassert>
+
 namespace byre {
 namespace {
 
@@ -29,24 +31,64 @@ void append_point_changes(const MapWindow& before, const MapWindow& after, MapDe
   }
 }
 
+// A feature that sees another point than before, or another one now. Indices into the points of the window, or negative.
+struct ChangedFeature {
+  int feature = 0;
+  int then = kNoPoint;
+  int now = kNoPoint;
+};
+
+// But for what becomes of points that are removed, or were made in the window: those are named as a whole.
+std::vector<ChangedFeature> changed_features(const MapWindow& before, const MapWindow& after, std::size_t keyframe) {
+  const std::vector<int>& then = before.keyframes[keyframe].point_of_feature;
+  const std::vector<int>& now = after.keyframes[keyframe].point_of_feature;
+  std::vector<ChangedFeature> changed;
+  for (std::size_t f = 0; f < then.size(); ++f) {
+    if (then[f] == now[f]) continue;
+    const bool was_lost = then[f] >= 0 && !after.points[static_cast<std::size_t>(then[f])].removed;
+    const bool is_known = now[f] >= 0 && static_cast<std::size_t>(now[f]) < before.points.size();
+    changed.push_back({static_cast<int>(f), was_lost ? then[f] : kNoPoint, is_known ? now[f] : kNoPoint});
+  }
+  return changed;
+}
+
+Sighting sighting_of(const WindowKeyframe& keyframe, int feature, std::optional<PointId> point) {
+  Sighting sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(feature)];
+  sighting.point = point;
+  return sighting;
+}
+
 void append_observation_changes(const MapWindow& before, const MapWindow& after, std::size_t keyframe,
                                 MapDelta& delta) {
-  const std::vector<int>& then = before.keyframes[keyframe].point_of_feature;
   const WindowKeyframe& now = after.keyframes[keyframe];
   const OnlineKeyframeId id{now.id.number};
-  for (std::size_t f = 0; f < then.size(); ++f) {
-    const int old_point = then[f];
-    const int new_point = now.point_of_feature[f];
-    if (old_point == new_point) continue;
-    const int feature = static_cast<int>(f);
-    if (old_point >= 0 && !after.points[static_cast<std::size_t>(old_point)].removed) {
-      delta.removed_observations.push_back({id, feature, *before.points[static_cast<std::size_t>(old_point)].id});
+  for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
+    if (changed.then >= 0) {
+      const PointId point = *before.points[static_cast<std::size_t>(changed.then)].id;
+      delta.removed_observations.push_back({id, changed.feature, point});
     }
-    const bool was_there = new_point >= 0 && static_cast<std::size_t>(new_point) < before.points.size();
-    if (was_there) {
-      Sighting sighting = now.keyframe.sightings[f];
-      sighting.point = after.points[static_cast<std::size_t>(new_point)].id;
-      delta.new_observations.push_back({id, feature, sighting});
+    if (changed.now >= 0) {
+      const std::optional<PointId> point = after.points[static_cast<std::size_t>(changed.now)].id;
+      delta.new_observations.push_back({id, changed.feature, sighting_of(now, changed.feature, point)});
+    }
+  }
+}
+
+// Of an offline keyframe only what the online map keeps of it can change.
+void append_foreign_view_changes(const MapWindow& before, const MapWindow& after, std::size_t keyframe,
+                                 MapDelta& delta) {
+  const WindowKeyframe& now = after.keyframes[keyframe];
+  for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
+    const Observation observation{now.id, changed.feature};
+    if (changed.then >= 0) {
+      const PointId point = *before.points[static_cast<std::size_t>(changed.then)].id;
+      assert(is_online(point));
+      delta.removed_foreign_views.push_back({{point.number}, observation});
+    }
+    if (changed.now >= 0) {
+      const PointId point = *after.points[static_cast<std::size_t>(changed.now)].id;
+      assert(is_online(point));
+      delta.new_foreign_views.push_back({{point.number}, {observation, sighting_of(now, changed.feature, point)}});
     }
   }
 }
@@ -55,12 +97,15 @@ void append_new_points(const MapWindow& before, const MapWindow& after, MapDelta
   for (std::size_t i = before.points.size(); i < after.points.size(); ++i) {
     const WindowPoint& point = after.points[i];
     if (point.removed) continue;
-    NewPoint made{point.point, {}};
-    for (const WindowObservation& observation : point.observations) {
-      const WindowKeyframe& keyframe = after.keyframes[static_cast<std::size_t>(observation.keyframe)];
-      made.observations.push_back({{keyframe.id.number},
-                                   observation.feature,
-                                   keyframe.keyframe.sightings[static_cast<std::size_t>(observation.feature)]});
+    NewPoint made{point.point, {}, {}};
+    for (const WindowObservation& seen : point.observations) {
+      const WindowKeyframe& keyframe = after.keyframes[static_cast<std::size_t>(seen.keyframe)];
+      const Sighting& sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(seen.feature)];
+      if (is_offline(keyframe)) {
+        made.foreign_views.push_back({{keyframe.id, seen.feature}, sighting});
+      } else {
+        made.observations.push_back({{keyframe.id.number}, seen.feature, sighting});
+      }
     }
     delta.new_points.push_back(std::move(made));
   }
@@ -74,11 +119,29 @@ void add_new_point(const NewPoint& made, Map& online) {
     sighting.point = id;
     added += online.add_observation({observation.keyframe, observation.feature}, sighting) ? 1 : 0;
   }
+  for (ForeignView view : made.foreign_views) {
+    view.sighting.point = id;
+    added += online.add_foreign_view(view) ? 1 : 0;
+  }
   // Its keyframes may have been given other points, or have gone, while the job ran.
   const Keyframe* const reference = online.find_keyframe(made.point.reference.keyframe);
   const bool reference_sees_it =
       reference != nullptr && reference->sightings[static_cast<std::size_t>(made.point.reference.feature)].point == id;
   if (added < 2 || !reference_sees_it) online.remove_point(id);
+}
+
+// Losses before gains: no point depends on its foreign views.
+void change_foreign_views(const MapDelta& delta, Map& online) {
+  for (const RemovedForeignView& removed : delta.removed_foreign_views) {
+    if (online.point_of_foreign_view(removed.observation) == PointId(removed.point)) {
+      online.remove_foreign_view(removed.observation);
+    }
+  }
+  for (const NewForeignView& added : delta.new_foreign_views) {
+    ForeignView view = added.view;
+    view.sighting.point = added.point;
+    online.add_foreign_view(view);
+  }
 }
 
 // What is there already stays as it is.
@@ -105,7 +168,10 @@ MapDelta difference(const MapWindow& before, const MapWindow& after) {
   for (std::size_t i = 0; i < before.keyframes.size(); ++i) {
     const WindowKeyframe& then = before.keyframes[i];
     const WindowKeyframe& now = after.keyframes[i];
-    if (then.id.origin != Origin::online) continue;
+    if (is_offline(then)) {
+      append_foreign_view_changes(before, after, i, delta);
+      continue;
+    }
     if (now.removed) {
       delta.removed_keyframes.push_back({now.id.number});
       continue;
@@ -129,6 +195,7 @@ void apply(const MapDelta& delta, Map& online) {
   add_observations(delta, online);
   remove_observations(delta, online);
   add_observations(delta, online);
+  change_foreign_views(delta, online);
   for (const NewPoint& made : delta.new_points) add_new_point(made, online);
   for (const UpdatedPoint& updated : delta.updated_points) online.update_point(updated.id, updated.point);
   for (const OnlineKeyframeId id : delta.removed_keyframes) online.remove_keyframe(id);

@@ -40,9 +40,21 @@ struct RemovedObservation {
   PointId point;  // that it saw; if it sees another by now, that one stays
 };
 
+// An offline keyframe is found to see an online point: kept with the point, so that nothing offline changes.
+struct NewForeignView {
+  OnlinePointId point;
+  ForeignView view;
+};
+
+struct RemovedForeignView {
+  OnlinePointId point;
+  Observation observation;  // if it is of another point by now, that one keeps it
+};
+
 struct NewPoint {
   MapPoint point;
-  std::vector<NewObservation> observations;  // their sightings' points are set when the point gets its id
+  std::vector<NewObservation> observations;  // their sightings' points are set when the point gets its id,
+  std::vector<ForeignView> foreign_views;    // and so are those of these
 };
 
 // All that mapping may write. Names only online things, so an offline map cannot change.
@@ -52,6 +64,8 @@ struct MapDelta {
   std::vector<OnlinePointId> removed_points;
   std::vector<RemovedObservation> removed_observations;
   std::vector<NewObservation> new_observations;
+  std::vector<RemovedForeignView> removed_foreign_views;
+  std::vector<NewForeignView> new_foreign_views;
   std::vector<NewPoint> new_points;
   std::vector<OnlineKeyframeId> removed_keyframes;
 };

@@ -12,6 +12,8 @@
 namespace byre {
 namespace {
 
+constexpr int kMinOfflineSightings = 30;  // that tell where a keyframe, or a whole map, lies in the offline one
+
 using IndexOfKeyframe = std::map<KeyframeId, int>;
 
 IndexOfKeyframe index_keyframes(const MapWindow& window) {
@@ -75,6 +77,11 @@ PoseGraphEdge edge_between(const MapWindow& window, int first, int second, const
           .information = information};
 }
 
+// A loop is to bend what was mapped out of sight of the offline map, and to leave alone what lies in it.
+bool is_held(const MapWindow& window, const WindowKeyframe& keyframe) {
+  return !keyframe.movable || count_offline_sightings(window, keyframe) >= kMinOfflineSightings;
+}
+
 PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<LoopEdge>& loops,
                           const GlobalMappingOptions& options) {
   PoseGraph graph;
@@ -85,7 +92,8 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
   };
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
     const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
-    graph.nodes.push_back({.camera_from_world = keyframe.keyframe.camera_from_world, .fixed = !keyframe.movable});
+    graph.nodes.push_back(
+        {.camera_from_world = keyframe.keyframe.camera_from_world, .fixed = is_held(window, keyframe)});
     for (const auto& [shared, other] :
          nearest_keyframes(window, i, options.min_shared_points, options.max_neighbours)) {
       join(other, i, shared);
@@ -143,9 +151,10 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Gl
 
 }  // namespace
 
-MapWindow whole_map(const Map& map) {
-  MapWindow window = window_of(map, map.keyframe_ids());
-  for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = keyframe.keyframe.parent.has_value();
+MapWindow whole_map(const MapView& map) {
+  MapWindow window = window_of(map, map.online().keyframe_ids());
+  for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = true;
+  hold_the_world(window, kMinOfflineSightings);
   return window;
 }
 

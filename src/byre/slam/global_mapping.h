@@ -19,8 +19,8 @@ struct GlobalMappingOptions {
   int threads = 1;                   // one keeps the result reproducible
 };
 
-// A copy of a whole map, all of it movable but the keyframes that hold the world in place.
-MapWindow whole_map(const Map& map);
+// A copy of a whole online map, all of it movable but what holds the world in place, with the offline points it sees.
+MapWindow whole_map(const MapView& map);
 
 // Bends the map so that loops close: a pose graph over covisibility and loops moves the keyframes, and their points
 // along; points on both sides of a loop are fused; bundle adjustment of everything settles the rest. Without loops the

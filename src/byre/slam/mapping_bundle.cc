@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace byre {
 namespace {
@@ -12,11 +13,31 @@ struct WindowBundle {
   std::vector<WindowObservation> observations;
 };
 
-bool is_offline(const WindowPoint& point) {
-  return point.id && point.id->origin == Origin::offline;
+// A point that is held fixed is not known exactly for that: its covariance, as the camera sees it, adds to the sigmas.
+void widen(BundleObservation& observation, const MapPoint& point, const Pose& camera_from_world, const Rig& rig) {
+  const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
+  if (point_in_camera.z() <= 0.0) return;
+  const Eigen::Matrix3d jacobian =
+      rig.projection_jacobian(point_in_camera) * camera_from_world.rotation.toRotationMatrix();
+  const Eigen::Vector3d variances = (jacobian * point.covariance * jacobian.transpose()).diagonal();
+  observation.pixel_sigma = std::hypot(observation.pixel_sigma, std::sqrt(0.5 * (variances.x() + variances.y())));
+  if (observation.is_stereo()) {
+    observation.disparity_sigma = std::hypot(observation.disparity_sigma, std::sqrt(variances.z()));
+  }
 }
 
-WindowBundle make_bundle(const MapWindow& window) {
+BundleObservation weighted_observation(const MapWindow& window, const WindowPoint& point, const WindowObservation& seen,
+                                       double offline_weight) {
+  const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(seen.keyframe)];
+  BundleObservation observation = bundle_observation(keyframe, seen.feature);
+  if (!is_offline(point)) return observation;
+  widen(observation, point.point, keyframe.keyframe.camera_from_world, window.rig_of(keyframe));
+  observation.weight = offline_weight;
+  return observation;
+}
+
+// An anchor that sees an offline point has nothing to tell.
+WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
   bundle.problem.rigs = window.rigs;
   for (const WindowKeyframe& keyframe : window.keyframes) {
@@ -27,8 +48,8 @@ WindowBundle make_bundle(const MapWindow& window) {
     bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});
     if (point.removed) continue;
     for (const WindowObservation& seen : point.observations) {
-      BundleObservation observation =
-          bundle_observation(window.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
+      if (is_offline(point) && !window.keyframes[static_cast<std::size_t>(seen.keyframe)].movable) continue;
+      BundleObservation observation = weighted_observation(window, point, seen, offline_weight);
       observation.pose = seen.keyframe;
       observation.point = static_cast<int>(p);
       bundle.problem.observations.push_back(observation);
@@ -52,15 +73,18 @@ void take_over(MapWindow& window, const BundleResult& result) {
   }
 }
 
-// A point whose reference has gone is given the first of the views that are left.
-void repair_reference(MapWindow& window, int index) {
+// What is to become of an online point that has lost a view: one whose reference has gone is given the first of its
+// online views that are left, and one without any goes. Those outside the window are left to the map.
+void repair(MapWindow& window, int index) {
   WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+  if (is_offline(point) || point.observations_elsewhere > 0) return;
   const auto is_reference = [&](const WindowObservation& seen) {
     return window.keyframes[static_cast<std::size_t>(seen.keyframe)].id == point.point.reference.keyframe;
   };
-  if (point.observations.empty() || std::ranges::any_of(point.observations, is_reference)) return;
-  const WindowObservation& first = point.observations.front();
-  point.point.reference = {window.keyframes[static_cast<std::size_t>(first.keyframe)].id, first.feature};
+  if (std::ranges::any_of(point.observations, is_reference)) return;
+  const auto first = first_online_observation(window, point);
+  if (!first) return remove_point(window, index);
+  point.point.reference = {window.keyframes[static_cast<std::size_t>(first->keyframe)].id, first->feature};
 }
 
 void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result,
@@ -68,13 +92,13 @@ void remove_outliers(MapWindow& window, const WindowBundle& bundle, const Bundle
   for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
     const BundleObservation& observation = bundle.problem.observations[i];
     if (!is_outlier(observation, result.squared_errors[i], options)) continue;
-    remove_observation(window, bundle.observations[i]);
-    WindowPoint& point = window.points[static_cast<std::size_t>(observation.point)];
-    if (point.observations.empty() && point.observations_elsewhere == 0) {
-      remove_point(window, observation.point);
-    } else if (point.observations_elsewhere == 0) {
-      repair_reference(window, observation.point);
+    const WindowObservation& seen = bundle.observations[i];
+    if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
+            .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
+      continue;  // went with its point
     }
+    remove_observation(window, seen);
+    repair(window, observation.point);
   }
 }
 
@@ -101,7 +125,7 @@ void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, cons
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
     bundle_options.covariance_of_pose = last_round && window.keyframes.front().movable ? 0 : -1;
-    const WindowBundle bundle = make_bundle(window);
+    const WindowBundle bundle = make_bundle(window, options.offline_weight);
     const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
     if (!result.usable) return;
     take_over(window, result);

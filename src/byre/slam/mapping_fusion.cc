@@ -51,8 +51,8 @@ std::vector<Meeting> look_for(const MapWindow& window, const std::vector<int>& p
   return meetings;
 }
 
-bool is_offline(const WindowPoint& point) {
-  return point.id && point.id->origin == Origin::offline;
+bool is_offline(const MapWindow& window, const WindowObservation& seen) {
+  return is_offline(window.keyframes[static_cast<std::size_t>(seen.keyframe)]);
 }
 
 // Which of two points that are one is kept: an offline one, else the one seen more often, else the older.
@@ -68,11 +68,13 @@ int better_point(const MapWindow& window, int a, int b) {
 }
 
 // The views of the point that goes are measured anew against the reference of the one that stays: two corners of one
-// place may lie a pixel apart.
+// place may lie a pixel apart. An offline keyframe is not given another offline point.
 void fuse(MapWindow& window, int removed, int kept) {
   const std::vector<WindowObservation> observations = window.points[static_cast<std::size_t>(removed)].observations;
+  const bool kept_is_offline = is_offline(window.points[static_cast<std::size_t>(kept)]);
   remove_point(window, removed);
   for (const WindowObservation& observation : observations) {
+    if (kept_is_offline && is_offline(window, observation)) continue;
     if (sees(window.points[static_cast<std::size_t>(kept)], observation.keyframe)) continue;
     add_observation(window, kept, observation,
                     measure_in_window(window, kept, observation.keyframe, observation.feature));
@@ -86,6 +88,7 @@ void settle(MapWindow& window, const Meeting& meeting) {
                         .point_of_feature[static_cast<std::size_t>(meeting.seen.feature)];
   if (other == kPointElsewhere) return;
   if (other == kNoPoint) {
+    if (is_offline(point) && is_offline(window, meeting.seen)) return;
     add_observation(window, meeting.point, meeting.seen,
                     measure_in_window(window, meeting.point, meeting.seen.keyframe, meeting.seen.feature));
     return;
@@ -113,12 +116,8 @@ Sighting measure_in_window(const MapWindow& window, int point, int keyframe, int
 }
 
 void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options) {
-  std::vector<int> neighbours;
-  for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
-    if (i == keyframe || static_cast<int>(neighbours.size()) >= options.fusion_neighbours) continue;
-    neighbours.push_back(i);
-  }
-  fuse_between(window, keyframe, neighbours, options);
+  fuse_between(window, keyframe,
+               nearest_neighbours(window, keyframe, options.fusion_neighbours, options.offline_neighbours), options);
 }
 
 void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options) {

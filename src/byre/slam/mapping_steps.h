@@ -18,7 +18,7 @@ inline CameraView view_of(const MapWindow& window, int keyframe) {
 // window; by the corner alone where it is not.
 Sighting measure_in_window(const MapWindow& window, int point, int keyframe, int feature);
 
-// Observation of the window as bundle adjustment takes it; pose and point are left to the caller.
+// Observation of the window as bundle adjustment takes it; pose, point and weight are left to the caller.
 BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature);
 
 // New points between a keyframe and its nearest neighbours from features that see none yet: matched along the epipolar
@@ -26,12 +26,14 @@ BundleObservation bundle_observation(const WindowKeyframe& keyframe, int feature
 void triangulate_new_points(MapWindow& window, int keyframe, const MappingOptions& options);
 
 // Points of the neighbours looked for in the keyframe and its points in the neighbours: found at a free feature they
-// are observed once more, found at another point the one with fewer observations gives way.
+// are observed once more, found at another point the one with fewer observations gives way, and an online one to an
+// offline one.
 void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options);
 // The same with these neighbours.
 void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options);
 
-// Local bundle adjustment in two rounds, with observations that disagree removed after each.
+// Local bundle adjustment in two rounds, with observations that disagree removed after each. Offline points stay where
+// they are, and what sees them counts for more (see MappingOptions) but is trusted no further than their covariances.
 // should_stop, unless empty, ends it early with what was reached.
 void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop = {});
 

@@ -145,10 +145,8 @@ void triangulate_pair(MapWindow& window, int first, int second, const MappingOpt
 }  // namespace
 
 void triangulate_new_points(MapWindow& window, int keyframe, const MappingOptions& options) {
-  int searched = 0;
-  for (int other = 0; other < static_cast<int>(window.keyframes.size()); ++other) {
-    if (other == keyframe) continue;
-    if (++searched > options.triangulation_neighbours) return;
+  for (const int other :
+       nearest_neighbours(window, keyframe, options.triangulation_neighbours, options.offline_neighbours)) {
     triangulate_pair(window, keyframe, other, options);
   }
 }

@@ -108,8 +108,7 @@ void remove_keyframe(MapWindow& window, int index) {
 
 void refresh_points(MapWindow& window) {
   for (WindowPoint& point : window.points) {
-    const bool offline = point.id && point.id->origin == Origin::offline;
-    if (point.removed || offline || point.observations.empty()) continue;
+    if (point.removed || is_offline(point) || point.observations.empty()) continue;
     point.point.covariance = position_covariance(window, point);
     refresh_view(window, point);
     if (point.observations_elsewhere == 0) point.point.descriptor = most_central_descriptor(window, point);
@@ -120,8 +119,7 @@ void remove_weak_points(MapWindow& window, KeyframeId newest) {
   constexpr std::uint32_t kKeyframesToConfirm = 3;
   for (int i = 0; i < static_cast<int>(window.points.size()); ++i) {
     const WindowPoint& point = window.points[static_cast<std::size_t>(i)];
-    const bool offline = point.id && point.id->origin == Origin::offline;
-    if (point.removed || offline) continue;
+    if (point.removed || is_offline(point)) continue;
     const bool had_its_chance = newest.number >= point.point.reference.keyframe.number + kKeyframesToConfirm;
     const bool alone = !point.id && times_seen(point) < 2;  // one made here, and refuted at once
     const bool unconfirmed = had_its_chance && times_seen(point) < 2;

@@ -1,6 +1,7 @@
 #include "byre/slam/window.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <set>
 
@@ -23,17 +24,29 @@ std::vector<KeyframeId> choose_movable(const Map& map, const std::vector<Keyfram
   return chosen;
 }
 
-void append_keyframe(MapWindow& window, const Map& map, KeyframeId id, bool movable, bool is_new) {
+void append_keyframe(MapWindow& window, const MapView& map, KeyframeId id, bool movable, bool is_new) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   WindowKeyframe copy{id, keyframe, std::vector<int>(keyframe.sightings.size(), kNoPoint), movable, is_new};
   for (std::size_t feature = 0; feature < keyframe.sightings.size(); ++feature) {
     if (keyframe.sightings[feature].point) copy.point_of_feature[feature] = kPointElsewhere;
   }
+  if (is_offline(copy)) {
+    copy.keyframe.rig += static_cast<int>(map.online().rigs().size());
+    for (const Observation& seen : map.online().foreign_observations(id)) {
+      copy.point_of_feature[static_cast<std::size_t>(seen.feature)] = kPointElsewhere;
+    }
+  }
   window.keyframes.push_back(std::move(copy));
 }
 
-// All points that the window's keyframes see so far.
-void append_points(MapWindow& window, const Map& map) {
+std::vector<Rig> rigs_of(const MapView& map) {
+  std::vector<Rig> rigs = map.online().rigs();
+  if (map.offline() != nullptr) rigs.insert(rigs.end(), map.offline()->rigs().begin(), map.offline()->rigs().end());
+  return rigs;
+}
+
+// Ascending: the points that the window's keyframes see, but for those that see them through foreign views.
+std::vector<PointId> points_seen(const MapWindow& window, const MapView& map) {
   std::vector<PointId> ids;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     for (const Sighting& sighting : keyframe.keyframe.sightings) {
@@ -42,91 +55,165 @@ void append_points(MapWindow& window, const Map& map) {
   }
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+void append_points(MapWindow& window, const MapView& map, const std::vector<PointId>& ids) {
   window.points.reserve(ids.size());
   for (const PointId id : ids) window.points.push_back({id, *map.find_point(id), {}, 0, false});
 }
 
-// Keyframes outside the window that see its points, those that see most of them first.
-std::vector<KeyframeId> choose_anchors(const MapWindow& window, const Map& map, int limit) {
+// Keyframes outside the window that see these points, those that see most of them first.
+std::vector<KeyframeId> rank_anchors(const MapWindow& window, const MapView& map, const std::vector<PointId>& points) {
   std::set<KeyframeId> inside;
   for (const WindowKeyframe& keyframe : window.keyframes) inside.insert(keyframe.id);
   std::map<KeyframeId, int> shared;
-  for (const WindowPoint& point : window.points) {
-    for (const Observation& observation : map.observations(*point.id)) {
+  for (const PointId point : points) {
+    map.visit_views(point, [&](const Observation& observation) {
       if (!inside.contains(observation.keyframe)) ++shared[observation.keyframe];
-    }
+    });
   }
   std::vector<std::pair<int, KeyframeId>> ranked;
   for (const auto& [id, count] : shared) ranked.emplace_back(-count, id);
   std::sort(ranked.begin(), ranked.end());
   std::vector<KeyframeId> anchors;
-  for (const auto& [count, id] : ranked) {
-    if (static_cast<int>(anchors.size()) >= limit) break;
-    anchors.push_back(id);
-  }
+  for (const auto& [count, id] : ranked) anchors.push_back(id);
   return anchors;
 }
 
-// Where the map's keyframes are in the window, by number; -1 for those that are not in it.
-std::vector<int> index_by_number(const MapWindow& window, Origin origin) {
-  std::vector<int> index;
-  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
-    const KeyframeId id = window.keyframes[i].id;
+void append_anchors(MapWindow& window, const MapView& map, const std::vector<KeyframeId>& ranked, Origin origin,
+                    int limit) {
+  for (const KeyframeId id : ranked) {
+    if (limit <= 0) return;
     if (id.origin != origin) continue;
-    if (id.number >= index.size()) index.resize(id.number + std::size_t{1}, -1);
-    index[id.number] = static_cast<int>(i);
+    append_keyframe(window, map, id, false, false);
+    --limit;
   }
-  return index;
 }
 
-void link_observations(MapWindow& window, const Map& map) {
-  const std::vector<int> index_of = index_by_number(window, map.origin());
-  for (std::size_t p = 0; p < window.points.size(); ++p) {
-    WindowPoint& point = window.points[p];
-    for (const Observation& observation : map.observations(*point.id)) {
-      const std::uint32_t number = observation.keyframe.number;
-      const int keyframe = number < index_of.size() ? index_of[number] : -1;
-      if (keyframe < 0) {
-        ++point.observations_elsewhere;
-        continue;
-      }
-      point.observations.push_back({keyframe, observation.feature});
-      window.keyframes[static_cast<std::size_t>(keyframe)]
-          .point_of_feature[static_cast<std::size_t>(observation.feature)] = static_cast<int>(p);
+// Where keyframes are in a window.
+class KeyframeIndex {
+ public:
+  explicit KeyframeIndex(const MapWindow& window) {
+    for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+      places_.emplace_back(window.keyframes[i].id, static_cast<int>(i));
+    }
+    std::ranges::sort(places_);
+  }
+
+  // -1 for a keyframe that is not in it.
+  int operator()(KeyframeId id) const {
+    const auto place = std::ranges::lower_bound(places_, id, {}, &std::pair<KeyframeId, int>::first);
+    return place != places_.end() && place->first == id ? place->second : -1;
+  }
+
+ private:
+  std::vector<std::pair<KeyframeId, int>> places_;
+};
+
+void link_observation(MapWindow& window, int point, int keyframe, const Observation& observation) {
+  WindowPoint& seen = window.points[static_cast<std::size_t>(point)];
+  if (keyframe < 0) {
+    ++seen.observations_elsewhere;
+    return;
+  }
+  seen.observations.push_back({keyframe, observation.feature});
+  window.keyframes[static_cast<std::size_t>(keyframe)]
+      .point_of_feature[static_cast<std::size_t>(observation.feature)] = point;
+}
+
+// The window's copy of an offline keyframe is told what the online map knows of its feature.
+void link_foreign_view(MapWindow& window, int point, int keyframe, const ForeignView& view) {
+  link_observation(window, point, keyframe, view.observation);
+  if (keyframe < 0) return;
+  window.keyframes[static_cast<std::size_t>(keyframe)]
+      .keyframe.sightings[static_cast<std::size_t>(view.observation.feature)] = view.sighting;
+}
+
+void link_observations(MapWindow& window, const MapView& map) {
+  const KeyframeIndex index_of(window);
+  for (int point = 0; point < static_cast<int>(window.points.size()); ++point) {
+    const PointId id = *window.points[static_cast<std::size_t>(point)].id;
+    map.visit_observations(id, [&](const Observation& observation) {
+      link_observation(window, point, index_of(observation.keyframe), observation);
+    });
+    for (const ForeignView& view : map.online().foreign_views(id)) {
+      link_foreign_view(window, point, index_of(view.observation.keyframe), view);
     }
   }
 }
 
+bool is_online_anchor(const WindowKeyframe& keyframe) {
+  return !is_offline(keyframe) && !keyframe.movable;
+}
+
 }  // namespace
 
-MapWindow cut_window(const Map& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options) {
+MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options) {
   MapWindow window;
-  window.rigs = map.rigs();
-  for (const KeyframeId id : choose_movable(map, new_keyframes, options.movable)) {
+  window.rigs = rigs_of(map);
+  for (const KeyframeId id : choose_movable(map.online(), new_keyframes, options.movable)) {
     const bool is_new = std::find(new_keyframes.begin(), new_keyframes.end(), id) != new_keyframes.end();
-    const bool is_first = !map.find_keyframe(id)->parent.has_value();
-    append_keyframe(window, map, id, !is_first, is_new);
+    append_keyframe(window, map, id, true, is_new);
   }
-  append_points(window, map);
-  for (const KeyframeId id : choose_anchors(window, map, options.anchors)) {
-    append_keyframe(window, map, id, false, false);
-  }
+  const std::vector<KeyframeId> ranked = rank_anchors(window, map, points_seen(window, map));
+  append_anchors(window, map, ranked, Origin::offline, options.offline_anchors);
+  append_points(window, map, points_seen(window, map));
+  append_anchors(window, map, ranked, Origin::online, options.anchors);
+  link_observations(window, map);
+  hold_the_world(window, options.min_offline_sightings);
+  return window;
+}
+
+MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes) {
+  MapWindow window;
+  window.rigs = rigs_of(map);
+  for (const KeyframeId id : keyframes) append_keyframe(window, map, id, false, false);
+  append_points(window, map, points_seen(window, map));
   link_observations(window, map);
   return window;
 }
 
-MapWindow window_of(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  MapWindow window;
-  window.rigs = map.rigs();
-  for (const KeyframeId id : keyframes) append_keyframe(window, map, id, false, false);
-  append_points(window, map);
-  link_observations(window, map);
-  return window;
+void hold_the_world(MapWindow& window, int min_offline_sightings) {
+  int sightings = 0;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (keyframe.movable) sightings += count_offline_sightings(window, keyframe);
+  }
+  if (sightings >= min_offline_sightings) return;
+  for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable &= keyframe.keyframe.parent.has_value();
+  if (sightings == 0 || std::ranges::any_of(window.keyframes, is_online_anchor)) return;
+  const auto age = [](const WindowKeyframe& keyframe) { return std::pair(is_offline(keyframe), keyframe.id); };
+  std::ranges::min_element(window.keyframes, {}, age)->movable = false;
+}
+
+std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int online_count, int offline_count) {
+  std::vector<int> online, offline;
+  for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
+    if (i != keyframe) (is_offline(window.keyframes[static_cast<std::size_t>(i)]) ? offline : online).push_back(i);
+  }
+  online.resize(std::min(online.size(), static_cast<std::size_t>(online_count)));
+  offline.resize(std::min(offline.size(), static_cast<std::size_t>(offline_count)));
+  online.insert(online.end(), offline.begin(), offline.end());
+  return online;
+}
+
+int count_offline_sightings(const MapWindow& window, const WindowKeyframe& keyframe) {
+  return static_cast<int>(std::ranges::count_if(keyframe.point_of_feature, [&](int point) {
+    return point >= 0 && is_offline(window.points[static_cast<std::size_t>(point)]);
+  }));
+}
+
+std::optional<WindowObservation> first_online_observation(const MapWindow& window, const WindowPoint& point) {
+  const auto found = std::ranges::find_if(point.observations, [&](const WindowObservation& seen) {
+    return !is_offline(window.keyframes[static_cast<std::size_t>(seen.keyframe)]);
+  });
+  return found == point.observations.end() ? std::nullopt : std::optional(*found);
 }
 
 void add_observation(MapWindow& window, int point, const WindowObservation& observation, const Sighting& sighting) {
   WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(observation.keyframe)];
   const auto feature = static_cast<std::size_t>(observation.feature);
+  assert(!is_offline(keyframe) || !is_offline(window.points[static_cast<std::size_t>(point)]));
   keyframe.point_of_feature[feature] = point;
   keyframe.keyframe.sightings[feature] = sighting;
   window.points[static_cast<std::size_t>(point)].observations.push_back(observation);

@@ -12,7 +12,7 @@ inline constexpr int kNoPoint = -1;
 inline constexpr int kPointElsewhere = -2;  // a point outside the window
 
 struct WindowKeyframe {
-  KeyframeId id;
+  KeyframeId id;                      // an offline keyframe is always an anchor
   Keyframe keyframe;                  // sightings' pixels hold; which point they see is told by point_of_feature
   std::vector<int> point_of_feature;  // index into MapWindow::points, kNoPoint or kPointElsewhere
   bool movable = false;               // else an anchor: it sees the same points and stays put
@@ -26,17 +26,17 @@ struct WindowObservation {
 };
 
 struct WindowPoint {
-  std::optional<PointId> id;  // empty for one made in this window
+  std::optional<PointId> id;  // empty for one made in this window; one that is offline stays as it is
   MapPoint point;
   std::vector<WindowObservation> observations;
   int observations_elsewhere = 0;  // by keyframes outside the window
   bool removed = false;
 };
 
-// A bounded copy of the map around its newest keyframes: all that mapping may read.
+// A bounded copy of the maps around the newest keyframes: all that mapping may read.
 struct MapWindow {
-  std::vector<Rig> rigs;
-  std::vector<WindowKeyframe> keyframes;  // the newest first, then by shared points, anchors last
+  std::vector<Rig> rigs;                  // the online map's, then the offline one's
+  std::vector<WindowKeyframe> keyframes;  // the newest first, then by shared points, then offline and online anchors
   std::vector<WindowPoint> points;
 
   const Rig& rig_of(const WindowKeyframe& keyframe) const {
@@ -45,18 +45,40 @@ struct MapWindow {
 };
 
 struct WindowOptions {
-  int movable = 16;  // keyframes
-  int anchors = 16;
+  int movable = 16;                // online keyframes
+  int anchors = 16;                // online keyframes
+  int offline_anchors = 8;         // offline keyframes
+  int min_offline_sightings = 30;  // see hold_the_world
 };
 
-// The window of one or several new keyframes (the newest is its centre). Keyframes that no longer exist are left out;
-// empty keyframes when none does. The very first keyframe of a map is never movable: it holds the world in place.
-MapWindow cut_window(const Map& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options);
+// The window of one or several new online keyframes (the newest is its centre). Keyframes that no longer exist are left
+// out; empty keyframes when none does. Offline anchors bring their points along, for what is new may be one of them.
+MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options);
 
-// The window of just these keyframes and the points they see, none of them movable. Precondition: all exist.
-MapWindow window_of(const Map& map, const std::vector<KeyframeId>& keyframes);
+// The window of just these online keyframes and the points they see, none of them movable. Precondition: all exist.
+MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes);
 
-// Keeps both ends of an observation in step within a window.
+// Many enough sightings of offline points tell where the world is. With fewer, the very first keyframe of the online map
+// becomes an anchor, or, should a window with a few have no online anchor at all, its oldest keyframe.
+void hold_the_world(MapWindow& window, int min_offline_sightings);
+
+inline bool is_offline(const WindowKeyframe& keyframe) {
+  return keyframe.id.origin == Origin::offline;
+}
+inline bool is_offline(const WindowPoint& point) {
+  return point.id && point.id->origin == Origin::offline;
+}
+
+// The first of the other keyframes, in the window's order, hence the nearest: online ones, then offline ones.
+std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int online_count, int offline_count);
+
+// How many offline points a keyframe of the window sees.
+int count_offline_sightings(const MapWindow& window, const WindowKeyframe& keyframe);
+
+// By an online keyframe, the first in the window; empty when there is none. A point's reference must be such a one.
+std::optional<WindowObservation> first_online_observation(const MapWindow& window, const WindowPoint& point);
+
+// Keeps both ends of an observation in step within a window. Precondition: keyframe and point are not both offline.
 void add_observation(MapWindow& window, int point, const WindowObservation& observation, const Sighting& sighting);
 void remove_observation(MapWindow& window, const WindowObservation& observation);
 void remove_point(MapWindow& window, int point);

@@ -1,0 +1,249 @@
+// Missions on an offline map: finding oneself in it, leaving it, being blinded, carried and lost.
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/session/session.h"
+#include "byre/slam/mission_scene.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr int kLap = 120;  // frames, at 10 Hz
+constexpr double kDegree = 0.0174533;
+
+SimulatedMission circling(double laps, std::uint64_t noise_seed, std::uint64_t room = 1) {
+  SimulationOptions options;
+  options.seed = room;
+  options.noise_seed = noise_seed;
+  const int frames = static_cast<int>(kLap * laps);
+  return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, laps), options);
+}
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary trained = [] {
+    const SimulatedMission mission = circling(1.0, 1);
+    std::vector<std::vector<Descriptor>> images;
+    for (std::size_t i = 0; i < mission.frames.size(); i += 4) {
+      images.push_back(mission.frames[i].features->descriptors());
+    }
+    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
+  }();
+  return trained;
+}
+
+// A map of so many laps, by a visit before.
+std::shared_ptr<const OfflineMap> mapped(double laps, std::uint64_t room = 1) {
+  Map map = true_map(circling(laps, 1, room), 4, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+}
+
+Session session_on(std::shared_ptr<const OfflineMap> offline, const SessionOptions& options = {}) {
+  return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(),
+          std::move(offline)};
+}
+
+Frame without_features(const Frame& frame) {
+  return {frame.time, std::make_shared<const Features>()};
+}
+
+// The frames of other, at the times of mission.
+Frame at_time_of(const Frame& frame, const Frame& now) {
+  return {now.time, frame.features};
+}
+
+std::vector<FrameReport> run(Session& session, const std::vector<Frame>& frames) {
+  std::vector<FrameReport> reports;
+  for (const Frame& frame : frames) reports.push_back(session.process(frame));
+  return reports;
+}
+
+int count(const std::vector<FrameReport>& reports, SessionEvent event) {
+  return static_cast<int>(std::ranges::count_if(reports, [=](const FrameReport& report) { return report.has(event); }));
+}
+
+int count_trusted(const std::vector<FrameReport>& reports) {
+  return static_cast<int>(
+      std::ranges::count(reports, Verdict::trusted, [](const FrameReport& report) { return report.health.verdict; }));
+}
+
+// The largest error of a pose that was reported as trusted, metres; the map's frame is the truth's.
+double worst_trusted(const std::vector<FrameReport>& reports, const Trajectory& truth) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    if (reports[i].health.verdict != Verdict::trusted) continue;
+    worst = std::max(worst, (reports[i].map_from_body->translation - truth[i].world_from_body.translation).norm());
+  }
+  return worst;
+}
+
+// By how much the odometry's steps differ from the true ones at most, metres.
+double worst_step(const std::vector<FrameReport>& reports, const Trajectory& truth) {
+  double worst = 0.0;
+  for (std::size_t i = 1; i < reports.size(); ++i) {
+    if (!reports[i].odometry_from_body || !reports[i - 1].odometry_from_body) continue;
+    const Pose step = inverse(*reports[i - 1].odometry_from_body) * *reports[i].odometry_from_body;
+    const Pose true_step = inverse(truth[i - 1].world_from_body) * truth[i].world_from_body;
+    worst = std::max(worst, (step.translation - true_step.translation).norm());
+  }
+  return worst;
+}
+
+TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
+  const SimulatedMission mission = circling(0.5, 2);
+  Session session = session_on(mapped(1.0));
+  const auto reports = run(session, mission.frames);
+  ASSERT_TRUE(reports[0].map_from_body);
+  EXPECT_THAT(*reports[0].map_from_body, PoseNear(mission.truth[0].world_from_body, 0.03, 0.3 * kDegree));
+  EXPECT_EQ(reports[0].health.verdict, Verdict::untrusted);
+  EXPECT_EQ(reports[0].health.doubt, Doubt::unconfirmed);
+  EXPECT_TRUE(reports[3].has(SessionEvent::localised));
+  EXPECT_EQ(count_trusted(reports), static_cast<int>(reports.size()) - 3);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session on_map = session_on(mapped(1.0));
+  Session plain(mission.rig, {}, Lanes(make_inline_executor()), vocabulary());
+  const auto count_keyframes = [](const std::vector<FrameReport>& reports) {
+    return std::ranges::count(reports, true, &FrameReport::keyframe_added);
+  };
+  EXPECT_LE(10 * count_keyframes(run(on_map, mission.frames)), count_keyframes(run(plain, mission.frames)));
+}
+
+TEST(Mission, MakesNoKeyframesWhenItOnlyLocalises) {
+  const SimulatedMission mission = circling(1.0, 2);
+  SessionOptions options;
+  options.map_online = false;
+  Session session = session_on(mapped(0.3), options);
+  run(session, mission.frames);
+  EXPECT_EQ(session.map().online().keyframe_count(), 0);
+}
+
+TEST(Mission, GoesOnOutsideTheMappedAreaAndIsHeldAgainWhenItComesBack) {
+  const SimulatedMission mission = circling(2.0, 2);
+  Session session = session_on(mapped(0.25));
+  const auto reports = run(session, mission.frames);
+  session.finish();
+  EXPECT_TRUE(std::ranges::all_of(reports, [](const FrameReport& report) { return report.map_from_body.has_value(); }));
+  EXPECT_GE(count(reports, SessionEvent::left_mapped_area), 1);
+  EXPECT_GE(count(reports, SessionEvent::entered_mapped_area), 2);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.2);
+  EXPECT_LT(worst_step(reports, mission.truth), 0.05);
+  const FrameReport& back = reports[kLap + 10];
+  EXPECT_GT(back.health.offline_inliers, 20);
+  EXPECT_THAT(*back.map_from_body, PoseNear(mission.truth[kLap + 10].world_from_body, 0.05, kDegree));
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+}
+
+TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
+  const SimulatedMission mission = circling(0.5, 2, 99);
+  SessionOptions options;
+  options.state.lost_after = 2.0;
+  Session session = session_on(mapped(1.0), options);
+  const auto reports = run(session, mission.frames);
+  EXPECT_EQ(count_trusted(reports), 0);
+  EXPECT_EQ(count(reports, SessionEvent::navigation_error), 1);
+  EXPECT_TRUE(reports.back().odometry_from_body);
+  EXPECT_FALSE(reports.back().map_from_body);
+  EXPECT_EQ(reports.back().health.doubt, Doubt::not_registered);
+  EXPECT_LT(worst_step(reports, mission.truth), 0.05);
+  EXPECT_TRUE(session.final_trajectory().empty());
+}
+
+TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
+  SimulatedMission mission = circling(1.0, 2);
+  std::ranges::reverse(mission.truth);
+  std::vector<Frame> frames;  // backwards: from what the map has not seen to where it begins
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    frames.push_back(at_time_of(mission.frames[mission.frames.size() - 1 - i], mission.frames[i]));
+  }
+  Session session = session_on(mapped(0.3));
+  const auto reports = run(session, frames);
+  session.finish();
+  EXPECT_FALSE(reports.front().map_from_body);
+  EXPECT_EQ(count(reports, SessionEvent::online_corrected), 1);
+  EXPECT_EQ(count(reports, SessionEvent::localised), 1);
+  ASSERT_TRUE(reports.back().map_from_body);
+  EXPECT_THAT(*reports.back().map_from_body, PoseNear(mission.truth.back().world_from_body, 0.05, kDegree));
+  // What came before is in the map's frame by then too.
+  const Trajectory final = session.final_trajectory();
+  ASSERT_EQ(final.size(), frames.size());
+  EXPECT_THAT(final.front().world_from_body, PoseNear(mission.truth.front().world_from_body, 0.3, 3 * kDegree));
+  EXPECT_LT(worst_step(reports, mission.truth), 0.05);
+}
+
+TEST(Mission, IsTrustedAgainSoonAfterItWasBlinded) {
+  const SimulatedMission mission = circling(0.8, 2);
+  Session session = session_on(mapped(1.0));
+  std::vector<Frame> frames = mission.frames;
+  for (std::size_t i = 30; i < 50; ++i) frames[i] = without_features(frames[i]);
+  const auto reports = run(session, frames);
+  EXPECT_TRUE(reports[30].has(SessionEvent::pose_lost));
+  for (std::size_t i = 30; i < 50; ++i) {
+    EXPECT_EQ(reports[i].map_from_body, std::nullopt);
+    EXPECT_EQ(reports[i].state, State::relocalising);
+    EXPECT_EQ(reports[i].health.verdict, Verdict::untrusted);
+  }
+  EXPECT_TRUE(reports[50].map_from_body);
+  EXPECT_EQ(count(reports, SessionEvent::relocalised), 1);
+  for (std::size_t i = 55; i < reports.size(); ++i) EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, FindsItselfWhereItWasCarried) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session session = session_on(mapped(1.0));
+  std::vector<Frame> frames;
+  Trajectory truth;
+  for (std::size_t i = 0; i < 80; ++i) {
+    const std::size_t place = i < 30 ? i : i + 40;  // at once across the room
+    frames.push_back(at_time_of(mission.frames[place], mission.frames[i]));
+    truth.push_back(mission.truth[place]);
+  }
+  const auto reports = run(session, frames);
+  EXPECT_NE(reports[30].health.verdict, Verdict::trusted);
+  for (std::size_t i = 45; i < reports.size(); ++i) EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
+  EXPECT_LT(worst_trusted(reports, truth), 0.03);
+}
+
+TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Map map = true_map(circling(1.0, 1), 4, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  const std::vector<PointId> points = map.point_ids();
+  for (std::size_t i = 0; i < points.size(); i += 4) {
+    MapPoint point = *map.find_point(points[i]);
+    point.position_in_world += Eigen::Vector3d(0.05, 0.0, 0.03);
+    map.update_point(points[i], point);
+  }
+  Session session = session_on(std::make_shared<const OfflineMap>(std::move(map), vocabulary()));
+  const auto reports = run(session, mission.frames);
+  EXPECT_GT(reports.back().health.suspended, 20);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, TellsANavigationErrorOnceAndGoesOnSearching) {
+  const SimulatedMission mission = circling(1.0, 2);
+  SessionOptions options;
+  options.state.lost_after = 1.0;
+  Session session = session_on(mapped(1.0), options);
+  std::vector<Frame> frames = mission.frames;
+  for (std::size_t i = 20; i < 50; ++i) frames[i] = without_features(frames[i]);
+  const auto reports = run(session, frames);
+  EXPECT_EQ(count(reports, SessionEvent::navigation_error), 1);
+  EXPECT_EQ(reports[45].state, State::lost);
+  EXPECT_EQ(reports.back().state, State::tracking);
+  EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
+}
+
+}  // namespace
+}  // namespace byre
