@@ -8,7 +8,9 @@
 namespace byre {
 namespace {
 
-constexpr double kMaxDisagreement = 2.0;  // pixels by which two poses may see the same points apart
+// Two poses disagree when they see the same points farther apart than this, and than their uncertainty explains.
+constexpr double kMaxApparentShift = 2.0;      // pixels
+constexpr double kMaxSquaredDeviation = 30.0;  // squared sigmas, of six degrees of freedom
 
 // What is needed at every step.
 struct Query {
@@ -47,6 +49,13 @@ double median_depth(const Query& query, const std::vector<ExpectedPoint>& points
 double apparent_shift(const Pose& one, const Pose& other, double depth, const Rig& rig) {
   const Pose motion = one * inverse(other);
   return rig.focal * (rotation_log(motion.rotation).norm() + motion.translation.norm() / depth);
+}
+
+bool disagree(const PoseRefinement& one, const PoseRefinement& other, double depth, const Rig& rig) {
+  if (apparent_shift(one.camera_from_world, other.camera_from_world, depth, rig) <= kMaxApparentShift) return false;
+  const Vector6 deviation = log_pose(one.camera_from_world * inverse(other.camera_from_world));
+  const Matrix6 covariance = one.covariance + other.covariance;
+  return deviation.dot(covariance.ldlt().solve(deviation)) > kMaxSquaredDeviation;
 }
 
 std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points,
@@ -134,8 +143,9 @@ void sort_by_feature(std::vector<TrackedFeature>& features) {
   std::ranges::sort(features, {}, &TrackedFeature::feature);
 }
 
-// What the solution says of each offline match.
-void tell_offline_points(const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
+// What the solution says of each offline match. Elsewhere is a point only when its very patch was found there, not just
+// a corner that resembles it.
+void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
   std::vector<PointId> inliers;
   for (const TrackedFeature& feature : result.tracked.features) {
     if (feature.point.origin == Origin::offline) inliers.push_back(feature.point);
@@ -143,7 +153,9 @@ void tell_offline_points(const ByMap<MeasuredPoints>& measured, HybridTrack& res
   std::ranges::sort(inliers);
   result.offline_inliers = static_cast<int>(inliers.size());
   for (const TrackedFeature& feature : measured.offline.features) {
-    if (!std::ranges::binary_search(inliers, feature.point)) result.offline_moved.push_back(feature.point);
+    if (std::ranges::binary_search(inliers, feature.point)) continue;
+    const float corner_sigma = corner_measurement(query.frame.features->keypoint(feature.feature)).sigma;
+    if (feature.pixel_sigma < corner_sigma) result.offline_moved.push_back(feature.point);
   }
   result.offline_agreed = std::move(inliers);
 }
@@ -174,8 +186,8 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   if (offline) result.from_offline = offline->camera_from_world;
   if (online) result.from_online = online->camera_from_world;
   if (offline && online) {
-    const double depth = median_depth(query, expected.offline, *result.from_offline);
-    result.maps_disagree = apparent_shift(*result.from_offline, *result.from_online, depth, rig) > kMaxDisagreement;
+    result.maps_disagree =
+        disagree(*offline, *online, median_depth(query, expected.offline, *result.from_offline), rig);
   }
   result.offline_is_right = result.maps_disagree && is_within(*result.from_offline, *result.from_online, drift);
 
@@ -197,7 +209,7 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   result.offline_matches = static_cast<int>(matches.offline.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(expected.online.size());
   result.tracked.matches = result.offline_matches + static_cast<int>(matches.online.size());
-  tell_offline_points(measured, result);
+  tell_offline_points(query, measured, result);
   return result;
 }
 
