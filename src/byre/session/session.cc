@@ -177,7 +177,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
   keyframe.recording = options_.recording;
   keyframe.parent = track.online_reference;
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
-  add_stereo_points(online_, id);
+  add_stereo_points(online_, id, track.tracked.contradicting);
   index_place(id);
   last_keyframe_ = id;
   online_reference_ = id;

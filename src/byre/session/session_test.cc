@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(On, EveryMission,
 TEST(Session, TakesTheFirstBodyForTheWorld) {
   const SimulatedMission mission = circling(2);
   Session session(mission.rig, {}, make_inline_executor());
-  EXPECT_THAT(session.process(mission.frames[0]).world_from_body.value(), PoseNear(Pose{}, 1e-12, 1e-7));
+  EXPECT_THAT(session.process(mission.frames[0]).map_from_body.value(), PoseNear(Pose{}, 1e-12, 1e-7));
 }
 
 TEST(Session, ToleratesOutliers) {

@@ -31,7 +31,8 @@ void append_point_changes(const MapWindow& before, const MapWindow& after, MapDe
   }
 }
 
-// A feature that sees another point than before, or another one now. Indices into the points of the window, or negative.
+// A feature that sees another point than before, or another one now. Indices into the points of the window, or
+// negative.
 struct ChangedFeature {
   int feature = 0;
   int then = kNoPoint;

@@ -154,8 +154,7 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
   result.offline_inliers = static_cast<int>(inliers.size());
   for (const TrackedFeature& feature : measured.offline.features) {
     if (std::ranges::binary_search(inliers, feature.point)) continue;
-    const float corner_sigma = corner_measurement(query.frame.features->keypoint(feature.feature)).sigma;
-    if (feature.pixel_sigma < corner_sigma) result.offline_moved.push_back(feature.point);
+    if (shows_patch(feature, *query.frame.features)) result.offline_moved.push_back(feature.point);
   }
   result.offline_agreed = std::move(inliers);
 }
@@ -208,6 +207,7 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   result.offline_expected = static_cast<int>(expected.offline.size());
   result.offline_matches = static_cast<int>(matches.offline.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(expected.online.size());
+  result.tracked.contradicting = contradicting_features(solution->refined, solution->measured, *frame.features);
   result.tracked.matches = result.offline_matches + static_cast<int>(matches.online.size());
   tell_offline_points(query, measured, result);
   return result;

@@ -82,7 +82,7 @@ MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matri
   return point;
 }
 
-int add_stereo_points(Map& map, KeyframeId id) {
+int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving) {
   const Keyframe keyframe = *map.find_keyframe(id);  // a copy: adding observations changes the original
   const Rig rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   const Pose world_from_camera = inverse(keyframe.camera_from_world);
@@ -90,6 +90,7 @@ int add_stereo_points(Map& map, KeyframeId id) {
   for (int feature = 0; feature < keyframe.frame.features->size(); ++feature) {
     const Keypoint& keypoint = keyframe.frame.features->keypoint(feature);
     if (keyframe.sightings[static_cast<std::size_t>(feature)].point || !has_trustworthy_disparity(keypoint)) continue;
+    if (std::ranges::binary_search(moving, feature)) continue;
     const Eigen::Vector3d point_in_camera =
         rig.triangulate({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity});
     const float sigma = reference_sigma(*keyframe.frame.features, feature);

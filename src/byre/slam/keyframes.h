@@ -4,6 +4,7 @@
 #include "byre/slam/tracking.h"
 
 #include <optional>
+#include <span>
 
 namespace byre {
 
@@ -37,8 +38,9 @@ double median_depth(const TrackedFrame& tracked, const MapView& map);  // metres
 Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig);
 
 // Adds a point for every feature of the keyframe that has a trustworthy disparity and sees no point yet, so that the
-// very next frame can be tracked on them. Returns how many.
-int add_stereo_points(Map& map, KeyframeId id);
+// very next frame can be tracked on them; but for the features (ascending) of things that seem to move. Returns how
+// many.
+int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving = {});
 
 // A point as its reference view describes it; reference.keyframe must see it at the reference feature's pixel.
 MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matrix3d& covariance,

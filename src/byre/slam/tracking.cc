@@ -20,6 +20,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
   tracked.matches = static_cast<int>(matches.size());
+  tracked.contradicting = contradicting_features(*refined, measured, *frame.features);
   return tracked;
 }
 

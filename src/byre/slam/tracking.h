@@ -24,6 +24,7 @@ struct TrackedFrame {
   Matrix6 match_covariance = Matrix6::Zero();  // of that, what the matches leave open: relative to the map around it
   KeyframeId reference;                        // the keyframe that shares most points
   std::vector<TrackedFeature> features;        // inliers only, ascending
+  std::vector<int> contradicting;              // features that show a point's very patch, but not where the pose has it
   int expected = 0;                            // map points in the frustum
   int matches = 0;                             // of those, matched before outliers were taken out
 };

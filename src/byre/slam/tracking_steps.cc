@@ -1,5 +1,6 @@
 #include "byre/slam/tracking_steps.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace byre {
@@ -88,6 +89,22 @@ std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const Meas
     if (refined.inliers[i]) inliers.push_back(measured.features[i]);
   }
   return inliers;
+}
+
+bool shows_patch(const TrackedFeature& feature, const Features& features) {
+  return features.find_patch(feature.feature) == nullptr ||
+         feature.pixel_sigma < corner_measurement(features.keypoint(feature.feature)).sigma;
+}
+
+std::vector<int> contradicting_features(const PoseRefinement& refined, const MeasuredPoints& measured,
+                                        const Features& features) {
+  std::vector<int> contradicting;
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    const TrackedFeature& feature = measured.features[i];
+    if (!refined.inliers[i] && shows_patch(feature, features)) contradicting.push_back(feature.feature);
+  }
+  std::ranges::sort(contradicting);
+  return contradicting;
 }
 
 TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,

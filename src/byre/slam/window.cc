@@ -118,8 +118,8 @@ void link_observation(MapWindow& window, int point, int keyframe, const Observat
     return;
   }
   seen.observations.push_back({keyframe, observation.feature});
-  window.keyframes[static_cast<std::size_t>(keyframe)]
-      .point_of_feature[static_cast<std::size_t>(observation.feature)] = point;
+  window.keyframes[static_cast<std::size_t>(keyframe)].point_of_feature[static_cast<std::size_t>(observation.feature)] =
+      point;
 }
 
 // The window's copy of an offline keyframe is told what the online map knows of its feature.

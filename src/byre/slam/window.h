@@ -58,8 +58,8 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
 // The window of just these online keyframes and the points they see, none of them movable. Precondition: all exist.
 MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes);
 
-// Many enough sightings of offline points tell where the world is. With fewer, the very first keyframe of the online map
-// becomes an anchor, or, should a window with a few have no online anchor at all, its oldest keyframe.
+// Many enough sightings of offline points tell where the world is. With fewer, the very first keyframe of the online
+// map becomes an anchor, or, should a window with a few have no online anchor at all, its oldest keyframe.
 void hold_the_world(MapWindow& window, int min_offline_sightings);
 
 inline bool is_offline(const WindowKeyframe& keyframe) {
