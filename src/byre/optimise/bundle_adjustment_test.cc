@@ -258,6 +258,41 @@ TEST(BundleAdjust, SurvivesPointsSeenOnceWithoutDisparity) {
   EXPECT_THAT(result.camera_from_world[4], PoseNear(scene.truth.poses[4].camera_from_world, 1e-5, 1e-5));
 }
 
+// Half of the observations of one pose say that it lies a little to the side of where the others have it.
+TEST(BundleAdjust, FollowsTheObservationsThatWeighMore) {
+  BundleSceneOptions options{.fixed_poses = 2, .moving_poses = 1, .points = 80, .fixed_points = 80};
+  options.mono_fraction = 1.0;
+  options.start_position = options.start_rotation = 0.0;
+  const BundleScene scene = make_scene(17, options);
+  const Pose aside = exp_pose((Vector6() << 0.002, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
+  const auto shift_towards_first_half = [&](double weight) {
+    BundleProblem problem = scene.problem;
+    for (BundleObservation& observation : problem.observations) {
+      if (observation.point % 2 == 1 || observation.pose != 2) continue;
+      const Pose moved = aside * problem.poses[2].camera_from_world;
+      observation.measured = problem.rigs[0].project(moved * problem.points[observation.point].position_in_world);
+      observation.weight = weight;
+    }
+    const BundleResult result = bundle_adjust(problem, patient());
+    return (result.camera_from_world[2].translation - problem.poses[2].camera_from_world.translation).x() / 0.002;
+  };
+  EXPECT_NEAR(shift_towards_first_half(1.0), 0.5, 0.15);
+  EXPECT_NEAR(shift_towards_first_half(9.0), 0.9, 0.05);
+}
+
+TEST(BundleAdjust, TellsErrorsAndCovariancesWithoutWeights) {
+  const BundleScene scene = make_scene(18, {.noise = 1.0});
+  BundleProblem weighted = scene.problem;
+  for (BundleObservation& observation : weighted.observations) observation.weight = 4.0;
+  BundleOptions options = patient();
+  options.covariance_of_pose = 3;
+  const BundleResult plain = bundle_adjust(scene.problem, options);
+  const BundleResult result = bundle_adjust(weighted, options);
+  ASSERT_TRUE(plain.pose_covariance && result.pose_covariance);
+  EXPECT_NEAR(result.squared_errors.front(), plain.squared_errors.front(), 1e-3);
+  EXPECT_LT((*result.pose_covariance - *plain.pose_covariance).norm(), 1e-3 * plain.pose_covariance->norm());
+}
+
 TEST(BundleAdjust, ReturnsWhatWasGivenWhenTheSolverFails) {
   BundleScene scene = make_scene(16, {});
   scene.problem.observations.front().measured.x() = std::numeric_limits<double>::quiet_NaN();

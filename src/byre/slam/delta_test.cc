@@ -1,7 +1,7 @@
 #include "byre/slam/delta.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/slam/hybrid_scene.h"
 
 #include <random>
 
@@ -183,6 +183,8 @@ TEST(Difference, OfAnUnchangedWindowIsNothing) {
   EXPECT_THAT(delta.new_observations, IsEmpty());
   EXPECT_THAT(delta.new_points, IsEmpty());
   EXPECT_THAT(delta.removed_keyframes, IsEmpty());
+  EXPECT_THAT(delta.removed_foreign_views, IsEmpty());
+  EXPECT_THAT(delta.new_foreign_views, IsEmpty());
 }
 
 class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
@@ -260,6 +262,101 @@ TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
   apply(difference(before, after), map);
   expect_same(map, after);
   EXPECT_THAT(find_faults(map), IsEmpty());
+}
+
+// The newest online keyframe (0), an offline one (1), and two online points that the first sees.
+class DeltaOfForeignViews : public ::testing::Test {
+ protected:
+  DeltaOfForeignViews() {
+    for (const Sighting& sighting : scene_.online.find_keyframe(kNewest)->sightings) {
+      if (sighting.point && sighting.point->origin == Origin::online) points_.push_back(*sighting.point);
+    }
+    const WindowOptions options{.movable = 1, .anchors = 0, .offline_anchors = 1};
+    EXPECT_TRUE(scene_.online.add_foreign_view(view_of(0, points_[0])));
+    before_ = cut_window(scene_.view(), {kNewest}, options);
+    after_ = before_;
+  }
+
+  static constexpr KeyframeId kOffline{Origin::offline, 19};
+
+  // By the n-th feature of the offline keyframe that sees no point.
+  int free_feature(int n) const {
+    const std::vector<Sighting>& sightings = scene_.offline.find_keyframe(kOffline)->sightings;
+    for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {
+      if (!sightings[static_cast<std::size_t>(i)].point && n-- == 0) return i;
+    }
+    return -1;
+  }
+  ForeignView view_of(int n, PointId point) const { return {{kOffline, free_feature(n)}, {point, {1.0f, 2.0f}, 0.5f}}; }
+  int index_of(PointId id) const {
+    return static_cast<int>(std::ranges::find(after_.points, std::optional(id), &WindowPoint::id) -
+                            after_.points.begin());
+  }
+  void apply_difference() {
+    ASSERT_EQ(before_.keyframes[1].id, kOffline);
+    apply(difference(before_, after_), scene_.online);
+    EXPECT_THAT(find_faults(scene_.online), IsEmpty());
+  }
+
+  HybridScene scene_ = true_hybrid_scene({});
+  std::vector<PointId> points_;
+  MapWindow before_;
+  MapWindow after_;
+};
+
+TEST_F(DeltaOfForeignViews, AddsThemToTheOnlineMap) {
+  add_observation(after_, index_of(points_[1]), {1, free_feature(1)}, {points_[1], {3.0f, 4.0f}, 0.7f});
+  apply_difference();
+  ASSERT_EQ(scene_.online.foreign_views(points_[1]).size(), 1u);
+  const ForeignView& view = scene_.online.foreign_views(points_[1]).front();
+  EXPECT_EQ(view.observation, (Observation{kOffline, free_feature(1)}));
+  EXPECT_EQ(view.sighting.pixel, Eigen::Vector2f(3.0f, 4.0f));
+  EXPECT_EQ(scene_.online.foreign_views(points_[0]).size(), 1u) << "as it was";
+}
+
+TEST_F(DeltaOfForeignViews, TakesThemFromTheOnlineMap) {
+  remove_observation(after_, {1, free_feature(0)});
+  apply_difference();
+  EXPECT_THAT(scene_.online.foreign_views(points_[0]), IsEmpty());
+  EXPECT_NE(scene_.online.find_point(points_[0]), nullptr);
+}
+
+TEST_F(DeltaOfForeignViews, HandsAFeatureToAnotherPoint) {
+  remove_observation(after_, {1, free_feature(0)});
+  add_observation(after_, index_of(points_[1]), {1, free_feature(0)}, {points_[1], {3.0f, 4.0f}, 0.7f});
+  apply_difference();
+  EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), points_[1]);
+}
+
+TEST_F(DeltaOfForeignViews, GoWithTheirPoint) {
+  remove_point(after_, index_of(points_[0]));
+  apply_difference();
+  EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), std::nullopt);
+}
+
+TEST_F(DeltaOfForeignViews, ComeWithANewPoint) {
+  const auto& features = after_.keyframes[0].point_of_feature;
+  const int own =
+      static_cast<int>(std::ranges::find_if(features, [](int point) { return point >= 0; }) - features.begin());
+  remove_observation(after_, {0, own});
+  WindowPoint made;
+  made.point.reference = {kNewest, own};
+  after_.points.push_back(made);
+  const int index = static_cast<int>(after_.points.size()) - 1;
+  add_observation(after_, index, {0, own}, {});
+  add_observation(after_, index, {1, free_feature(1)}, {std::nullopt, {3.0f, 4.0f}, 0.7f});
+  apply_difference();
+  const auto point = scene_.online.point_of_foreign_view({kOffline, free_feature(1)});
+  ASSERT_TRUE(point);
+  EXPECT_EQ(scene_.online.find_keyframe(kNewest)->sightings[static_cast<std::size_t>(own)].point, point);
+}
+
+TEST_F(DeltaOfForeignViews, KeepAFeatureThatAnotherPointWasGivenMeanwhile) {
+  remove_observation(after_, {1, free_feature(0)});
+  scene_.online.remove_foreign_view({kOffline, free_feature(0)});
+  scene_.online.add_foreign_view(view_of(0, points_[2]));
+  apply_difference();
+  EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), points_[2]);
 }
 
 TEST(Apply, DropsANewPointThatOnlyOneKeyframeCanStillSee) {

@@ -15,7 +15,7 @@ struct MappingOptions {
   double max_relative_depth_sigma = 0.1;    // a new point's depth must be known to this share of itself
   double max_squared_error_mono = 5.991;    // squared sigmas: 95 % of chi-square, two degrees of freedom
   double max_squared_error_stereo = 7.815;  // 95 %, three degrees
-  double redundant_share = 0.9;             // of a keyframe's points seen by at least three others: it is redundant
+  double redundant_share = 0.9;             // of a keyframe's points offline or seen by three others: it is redundant
   double offline_weight = 2.0;              // of a sighting of an offline point in bundle adjustment; others have 1
   int first_bundle_iterations = 5;          // before outliers are taken out
   int second_bundle_iterations = 8;         // after

@@ -46,7 +46,7 @@ void refresh_points(MapWindow& window);
 // Points that keyframes made since should have confirmed and did not; newest: the keyframe by which age is told.
 void remove_weak_points(MapWindow& window, KeyframeId newest);
 
-// Keyframes that add nothing: nearly all of their points are seen by three others at least.
+// Keyframes that add nothing: nearly all of their points are offline, or seen by three other online keyframes at least.
 void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options);
 
 }  // namespace byre

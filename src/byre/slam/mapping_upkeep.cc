@@ -8,11 +8,18 @@ namespace byre {
 namespace {
 
 int times_seen(const WindowPoint& point) {
-  return static_cast<int>(point.observations.size()) + point.observations_elsewhere;
+  return static_cast<int>(point.observations.size()) + point.observations_elsewhere + point.foreign_views_elsewhere;
 }
 
 const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservation& seen) {
   return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
+}
+
+// Online keyframes that see an online point.
+int times_seen_online(const MapWindow& window, const WindowPoint& point) {
+  const auto inside = std::ranges::count_if(
+      point.observations, [&](const WindowObservation& seen) { return !is_offline(keyframe_of(window, seen)); });
+  return static_cast<int>(inside) + point.observations_elsewhere;
 }
 
 // From all views in the window, their poses taken as exact.
@@ -81,7 +88,8 @@ void refresh_view(const MapWindow& window, WindowPoint& point) {
   if (sum.norm() > 1e-3f) point.point.mean_viewing_direction = sum.normalized();
 }
 
-// Of the points the keyframe sees, the share that three others at least see too.
+// Of the points the keyframe sees, the share that is there without it: those that three others at least see too, and
+// offline ones. Online points are reached through online keyframes, so that an offline keyframe is no substitute.
 double redundant_share(const MapWindow& window, const WindowKeyframe& keyframe) {
   constexpr int kOthers = 3;
   int seen = 0;
@@ -89,7 +97,8 @@ double redundant_share(const MapWindow& window, const WindowKeyframe& keyframe) 
   for (const int index : keyframe.point_of_feature) {
     if (index < 0) continue;
     ++seen;
-    if (times_seen(window.points[static_cast<std::size_t>(index)]) > kOthers) ++redundant;
+    const WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+    if (is_offline(point) || times_seen_online(window, point) > kOthers) ++redundant;
   }
   return seen == 0 ? 0.0 : static_cast<double>(redundant) / seen;
 }

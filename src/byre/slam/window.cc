@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <map>
-#include <set>
+#include <iterator>
+#include <span>
+#include <unordered_map>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -45,10 +47,10 @@ std::vector<Rig> rigs_of(const MapView& map) {
   return rigs;
 }
 
-// Ascending: the points that the window's keyframes see, but for those that see them through foreign views.
-std::vector<PointId> points_seen(const MapWindow& window, const MapView& map) {
+// Ascending: the points that these keyframes see, but for those that they see through foreign views.
+std::vector<PointId> points_seen(std::span<const WindowKeyframe> keyframes, const MapView& map) {
   std::vector<PointId> ids;
-  for (const WindowKeyframe& keyframe : window.keyframes) {
+  for (const WindowKeyframe& keyframe : keyframes) {
     for (const Sighting& sighting : keyframe.keyframe.sightings) {
       if (sighting.point && map.find_point(*sighting.point) != nullptr) ids.push_back(*sighting.point);
     }
@@ -63,15 +65,30 @@ void append_points(MapWindow& window, const MapView& map, const std::vector<Poin
   for (const PointId id : ids) window.points.push_back({id, *map.find_point(id), {}, 0, false});
 }
 
-// Keyframes outside the window that see these points, those that see most of them first.
-std::vector<KeyframeId> rank_anchors(const MapWindow& window, const MapView& map, const std::vector<PointId>& points) {
-  std::set<KeyframeId> inside;
-  for (const WindowKeyframe& keyframe : window.keyframes) inside.insert(keyframe.id);
-  std::map<KeyframeId, int> shared;
+struct HashOfKeyframe {
+  std::size_t operator()(KeyframeId id) const {
+    return (static_cast<std::size_t>(id.origin) << 32U) | static_cast<std::size_t>(id.number);
+  }
+};
+using NumberOfKeyframe = std::unordered_map<KeyframeId, int, HashOfKeyframe>;
+
+NumberOfKeyframe index_keyframes(const MapWindow& window) {
+  NumberOfKeyframe index;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) index[window.keyframes[i].id] = static_cast<int>(i);
+  return index;
+}
+
+// -1 for a keyframe outside the window.
+int find(const NumberOfKeyframe& index, KeyframeId id) {
+  const auto found = index.find(id);
+  return found == index.end() ? -1 : found->second;
+}
+
+// Keyframes that see these points, those that see most of them first.
+std::vector<KeyframeId> rank_anchors(const MapView& map, const std::vector<PointId>& points) {
+  NumberOfKeyframe shared;
   for (const PointId point : points) {
-    map.visit_views(point, [&](const Observation& observation) {
-      if (!inside.contains(observation.keyframe)) ++shared[observation.keyframe];
-    });
+    map.visit_views(point, [&](const Observation& observation) { ++shared[observation.keyframe]; });
   }
   std::vector<std::pair<int, KeyframeId>> ranked;
   for (const auto& [id, count] : shared) ranked.emplace_back(-count, id);
@@ -81,64 +98,78 @@ std::vector<KeyframeId> rank_anchors(const MapWindow& window, const MapView& map
   return anchors;
 }
 
+// Those of one map that are not in the window yet, until it holds so many anchors of that map.
 void append_anchors(MapWindow& window, const MapView& map, const std::vector<KeyframeId>& ranked, Origin origin,
                     int limit) {
+  const auto is_anchor = [&](const WindowKeyframe& keyframe) {
+    return keyframe.id.origin == origin && !keyframe.movable;
+  };
+  auto room = limit - static_cast<int>(std::ranges::count_if(window.keyframes, is_anchor));
   for (const KeyframeId id : ranked) {
-    if (limit <= 0) return;
-    if (id.origin != origin) continue;
+    if (room <= 0) return;
+    if (id.origin != origin || std::ranges::find(window.keyframes, id, &WindowKeyframe::id) != window.keyframes.end()) {
+      continue;
+    }
     append_keyframe(window, map, id, false, false);
-    --limit;
+    --room;
   }
 }
 
-// Where keyframes are in a window.
-class KeyframeIndex {
- public:
-  explicit KeyframeIndex(const MapWindow& window) {
-    for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
-      places_.emplace_back(window.keyframes[i].id, static_cast<int>(i));
-    }
-    std::ranges::sort(places_);
-  }
+// First those that share most points with the new keyframes, which stand at the window's beginning. Returns the points
+// that they see.
+std::vector<PointId> append_offline_anchors(MapWindow& window, const MapView& map,
+                                            const std::vector<KeyframeId>& ranked, int limit) {
+  if (map.offline() == nullptr) return {};
+  const auto movable = window.keyframes.size();
+  const auto is_old = std::ranges::find(window.keyframes, false, &WindowKeyframe::is_new);
+  const auto new_count = static_cast<std::size_t>(is_old - window.keyframes.begin());
+  const std::vector<PointId> seen_by_new = points_seen(std::span(window.keyframes).first(new_count), map);
+  append_anchors(window, map, rank_anchors(map, seen_by_new), Origin::offline, limit);
+  append_anchors(window, map, ranked, Origin::offline, limit);
+  return points_seen(std::span(window.keyframes).subspan(movable), map);
+}
 
-  // -1 for a keyframe that is not in it.
-  int operator()(KeyframeId id) const {
-    const auto place = std::ranges::lower_bound(places_, id, {}, &std::pair<KeyframeId, int>::first);
-    return place != places_.end() && place->first == id ? place->second : -1;
-  }
+std::vector<PointId> united(const std::vector<PointId>& first, const std::vector<PointId>& second) {
+  std::vector<PointId> all;
+  std::ranges::set_union(first, second, std::back_inserter(all));
+  return all;
+}
 
- private:
-  std::vector<std::pair<KeyframeId, int>> places_;
-};
-
-void link_observation(MapWindow& window, int point, int keyframe, const Observation& observation) {
-  WindowPoint& seen = window.points[static_cast<std::size_t>(point)];
-  if (keyframe < 0) {
-    ++seen.observations_elsewhere;
-    return;
-  }
-  seen.observations.push_back({keyframe, observation.feature});
-  window.keyframes[static_cast<std::size_t>(keyframe)].point_of_feature[static_cast<std::size_t>(observation.feature)] =
+void link_observation(MapWindow& window, int point, const WindowObservation& seen) {
+  window.points[static_cast<std::size_t>(point)].observations.push_back(seen);
+  window.keyframes[static_cast<std::size_t>(seen.keyframe)].point_of_feature[static_cast<std::size_t>(seen.feature)] =
       point;
 }
 
-// The window's copy of an offline keyframe is told what the online map knows of its feature.
-void link_foreign_view(MapWindow& window, int point, int keyframe, const ForeignView& view) {
-  link_observation(window, point, keyframe, view.observation);
-  if (keyframe < 0) return;
-  window.keyframes[static_cast<std::size_t>(keyframe)]
-      .keyframe.sightings[static_cast<std::size_t>(view.observation.feature)] = view.sighting;
+void link_observations(MapWindow& window, const MapView& map) {
+  const NumberOfKeyframe index = index_keyframes(window);
+  for (int p = 0; p < static_cast<int>(window.points.size()); ++p) {
+    WindowPoint& point = window.points[static_cast<std::size_t>(p)];
+    map.visit_observations(*point.id, [&](const Observation& observation) {
+      const int keyframe = find(index, observation.keyframe);
+      if (keyframe < 0) {
+        ++point.observations_elsewhere;
+      } else {
+        link_observation(window, p, {keyframe, observation.feature});
+      }
+    });
+  }
 }
 
-void link_observations(MapWindow& window, const MapView& map) {
-  const KeyframeIndex index_of(window);
-  for (int point = 0; point < static_cast<int>(window.points.size()); ++point) {
-    const PointId id = *window.points[static_cast<std::size_t>(point)].id;
-    map.visit_observations(id, [&](const Observation& observation) {
-      link_observation(window, point, index_of(observation.keyframe), observation);
-    });
-    for (const ForeignView& view : map.online().foreign_views(id)) {
-      link_foreign_view(window, point, index_of(view.observation.keyframe), view);
+// The window's copy of an offline keyframe is told what the online map knows of its features.
+void link_foreign_views(MapWindow& window, const MapView& map) {
+  const NumberOfKeyframe index = index_keyframes(window);
+  for (int p = 0; p < static_cast<int>(window.points.size()); ++p) {
+    WindowPoint& point = window.points[static_cast<std::size_t>(p)];
+    for (const auto& [observation, sighting] : map.online().foreign_views(*point.id)) {
+      const int keyframe = find(index, observation.keyframe);
+      if (keyframe < 0) {
+        ++point.foreign_views_elsewhere;
+        continue;
+      }
+      link_observation(window, p, {keyframe, observation.feature});
+      window.keyframes[static_cast<std::size_t>(keyframe)]
+          .keyframe.sightings[static_cast<std::size_t>(observation.feature)] = sighting;
     }
   }
 }
@@ -156,11 +187,12 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
     const bool is_new = std::find(new_keyframes.begin(), new_keyframes.end(), id) != new_keyframes.end();
     append_keyframe(window, map, id, true, is_new);
   }
-  const std::vector<KeyframeId> ranked = rank_anchors(window, map, points_seen(window, map));
-  append_anchors(window, map, ranked, Origin::offline, options.offline_anchors);
-  append_points(window, map, points_seen(window, map));
+  const std::vector<PointId> points = points_seen(window.keyframes, map);
+  const std::vector<KeyframeId> ranked = rank_anchors(map, points);
+  append_points(window, map, united(points, append_offline_anchors(window, map, ranked, options.offline_anchors)));
   append_anchors(window, map, ranked, Origin::online, options.anchors);
   link_observations(window, map);
+  link_foreign_views(window, map);
   hold_the_world(window, options.min_offline_sightings);
   return window;
 }
@@ -169,8 +201,9 @@ MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes
   MapWindow window;
   window.rigs = rigs_of(map);
   for (const KeyframeId id : keyframes) append_keyframe(window, map, id, false, false);
-  append_points(window, map, points_seen(window, map));
+  append_points(window, map, points_seen(window.keyframes, map));
   link_observations(window, map);
+  link_foreign_views(window, map);
   return window;
 }
 

@@ -31,6 +31,7 @@ struct WindowPoint {
   std::vector<WindowObservation> observations;
   int observations_elsewhere = 0;  // by keyframes outside the window
   bool removed = false;
+  int foreign_views_elsewhere = 0;  // by offline keyframes outside the window, of an online point
 };
 
 // A bounded copy of the maps around the newest keyframes: all that mapping may read.
@@ -52,7 +53,8 @@ struct WindowOptions {
 };
 
 // The window of one or several new online keyframes (the newest is its centre). Keyframes that no longer exist are left
-// out; empty keyframes when none does. Offline anchors bring their points along, for what is new may be one of them.
+// out; empty keyframes when none does. Offline anchors are those that share most points with the new keyframes, and
+// bring all of theirs along, for what is new may be one of them.
 MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options);
 
 // The window of just these online keyframes and the points they see, none of them movable. Precondition: all exist.

@@ -1,0 +1,196 @@
+// Windows of an online map beside an offline one.
+
+#include "byre/slam/hybrid_scene.h"
+
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::Each;
+using ::testing::Gt;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr KeyframeId kFirst{Origin::online, 0};
+constexpr KeyframeId kNewest{Origin::online, 19};
+constexpr WindowOptions kSmall{.movable = 5, .anchors = 4, .offline_anchors = 3};
+
+const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservation& seen) {
+  return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
+}
+
+int count(const MapWindow& window, bool offline, bool movable) {
+  return static_cast<int>(std::ranges::count_if(window.keyframes, [&](const WindowKeyframe& keyframe) {
+    return is_offline(keyframe) == offline && keyframe.movable == movable;
+  }));
+}
+
+class HybridWindow : public ::testing::Test {
+ protected:
+  MapWindow cut(KeyframeId newest, const WindowOptions& options = kSmall) const {
+    return cut_window(scene_.view(), {newest}, options);
+  }
+
+  // That an online keyframe sees.
+  PointId first_point(KeyframeId id, Origin origin) const {
+    const std::vector<Sighting>& sightings = scene_.online.find_keyframe(id)->sightings;
+    return *std::ranges::find_if(sightings, [&](const Sighting& sighting) {
+              return sighting.point && sighting.point->origin == origin;
+            })->point;
+  }
+
+  // Of an offline keyframe: the first that sees no point.
+  int free_feature(KeyframeId id) const {
+    const std::vector<Sighting>& sightings = scene_.offline.find_keyframe(id)->sightings;
+    const auto sees_none = [](const Sighting& sighting) { return !sighting.point; };
+    return static_cast<int>(std::ranges::find_if(sightings, sees_none) - sightings.begin());
+  }
+
+  HybridScene scene_ = true_hybrid_scene({});
+};
+
+TEST_F(HybridWindow, HoldsAnchorsOfBothMaps) {
+  const MapWindow window = cut(kNewest);
+  EXPECT_EQ(count(window, false, true), kSmall.movable);
+  EXPECT_EQ(count(window, false, false), kSmall.anchors);
+  EXPECT_EQ(count(window, true, false), kSmall.offline_anchors);
+  EXPECT_EQ(count(window, true, true), 0);
+  EXPECT_EQ(window.keyframes.front().id, kNewest);
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    EXPECT_EQ(keyframe.is_new, keyframe.id == kNewest);
+  }
+}
+
+TEST_F(HybridWindow, TakesThoseOfflineKeyframesThatSeeMostPointsOfTheNewest) {
+  const MapWindow window = cut(kNewest);
+  std::set<PointId> seen;
+  for (const Sighting& sighting : window.keyframes.front().keyframe.sightings) {
+    if (sighting.point) seen.insert(*sighting.point);
+  }
+  const auto shared = [&](KeyframeId id) {
+    return std::ranges::count_if(scene_.offline.find_keyframe(id)->sightings, [&](const Sighting& sighting) {
+      return sighting.point && seen.contains(*sighting.point);
+    });
+  };
+  std::vector<std::ptrdiff_t> shares;
+  for (const KeyframeId id : scene_.offline.keyframe_ids()) shares.push_back(shared(id));
+  std::ranges::sort(shares, std::greater<>{});
+  std::size_t next = 0;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (is_offline(keyframe)) {
+      EXPECT_EQ(shared(keyframe.id), shares[next++]);
+    }
+  }
+}
+
+TEST_F(HybridWindow, KnowsTheRigsOfBothMaps) {
+  Rig other = scene_.first.rig;
+  other.baseline *= 2.0;
+  Map offline(Origin::offline);
+  offline.add_rig(other);
+  for (const PointId id : scene_.offline.point_ids()) offline.add_point(*scene_.offline.find_point(id));
+  for (const KeyframeId id : scene_.offline.keyframe_ids()) offline.add_keyframe(*scene_.offline.find_keyframe(id));
+  const MapWindow window = cut_window({&offline, scene_.online}, {kNewest}, kSmall);
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    EXPECT_EQ(window.rig_of(keyframe).baseline, is_offline(keyframe) ? other.baseline : scene_.first.rig.baseline);
+  }
+}
+
+TEST_F(HybridWindow, HoldsAllPointsOfMovableAndOfOfflineKeyframes) {
+  const MapWindow window = cut(kNewest);
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (keyframe.movable || is_offline(keyframe)) {
+      EXPECT_THAT(keyframe.point_of_feature, Each(Not(kPointElsewhere)));
+    }
+  }
+}
+
+TEST_F(HybridWindow, LinksOfflinePointsToTheKeyframesOfBothMaps) {
+  const MapWindow window = cut(kNewest);
+  int by_online = 0;
+  for (const WindowPoint& point : window.points) {
+    const std::size_t all =
+        scene_.offline.observations(*point.id).size() + scene_.online.observations(*point.id).size();
+    EXPECT_EQ(point.observations.size() + static_cast<std::size_t>(point.observations_elsewhere), all);
+    if (!is_offline(point)) continue;
+    by_online += first_online_observation(window, point) ? 1 : 0;
+  }
+  EXPECT_THAT(by_online, Gt(50));
+}
+
+TEST_F(HybridWindow, LinksForeignViews) {
+  const KeyframeId offline = cut(kNewest).keyframes[static_cast<std::size_t>(kSmall.movable)].id;
+  const PointId point = first_point(kNewest, Origin::online);
+  const int free = free_feature(offline);
+  ASSERT_TRUE(scene_.online.add_foreign_view({{offline, free}, {point, {3.0f, 4.0f}, 0.5f}}));
+
+  const MapWindow window = cut(kNewest);
+  const auto linked = std::ranges::find(window.points, std::optional(point), &WindowPoint::id);
+  ASSERT_NE(linked, window.points.end());
+  const auto seen = std::ranges::find_if(linked->observations, [&](const WindowObservation& observation) {
+    return keyframe_of(window, observation).id == offline;
+  });
+  ASSERT_NE(seen, linked->observations.end());
+  const Keyframe& copy = keyframe_of(window, *seen).keyframe;
+  EXPECT_EQ(copy.sightings[static_cast<std::size_t>(free)].pixel, Eigen::Vector2f(3.0f, 4.0f));
+  EXPECT_EQ(linked->foreign_views_elsewhere, 0);
+
+  WindowOptions without_offline = kSmall;
+  without_offline.offline_anchors = 0;
+  const MapWindow alone = cut(kNewest, without_offline);
+  EXPECT_EQ(std::ranges::find(alone.points, std::optional(point), &WindowPoint::id)->foreign_views_elsewhere, 1);
+}
+
+TEST_F(HybridWindow, LetsTheFirstKeyframeMoveWhereOfflinePointsHoldTheWorld) {
+  const MapWindow window = cut(kFirst);
+  EXPECT_EQ(window.keyframes.front().id, kFirst);
+  EXPECT_TRUE(window.keyframes.front().movable);
+}
+
+TEST_F(HybridWindow, HoldsTheFirstKeyframeWhereOfflinePointsAreTooFew) {
+  WindowOptions demanding = kSmall;
+  demanding.min_offline_sightings = 1'000'000;
+  EXPECT_FALSE(cut(kFirst, demanding).keyframes.front().movable);
+}
+
+TEST_F(HybridWindow, HoldsItsOldestKeyframeWhenNothingElseDoes) {
+  WindowOptions demanding = kSmall;
+  demanding.min_offline_sightings = 1'000'000;
+  demanding.anchors = 0;
+  const MapWindow window = cut(kNewest, demanding);
+  const WindowKeyframe* held = nullptr;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (is_offline(keyframe) || keyframe.movable) continue;
+    EXPECT_EQ(held, nullptr) << "one is enough";
+    held = &keyframe;
+  }
+  ASSERT_NE(held, nullptr);
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    EXPECT_TRUE(is_offline(keyframe) || held->id <= keyframe.id);
+  }
+}
+
+TEST_F(HybridWindow, IsThatOfTheOnlineMapWhereTheOfflineOneIsFar) {
+  for (const PointId id : scene_.offline.point_ids()) scene_.offline.remove_point(id);
+  for (const KeyframeId id : scene_.online.keyframe_ids()) {  // nothing offline is seen
+    const std::vector<Sighting> sightings = scene_.online.find_keyframe(id)->sightings;
+    for (int feature = 0; feature < static_cast<int>(sightings.size()); ++feature) {
+      const auto& point = sightings[static_cast<std::size_t>(feature)].point;
+      if (point && point->origin == Origin::offline) scene_.online.remove_observation({id, feature});
+    }
+  }
+  const MapWindow beside = cut(kNewest);
+  const MapWindow alone = cut_window(scene_.online, {kNewest}, kSmall);
+  ASSERT_EQ(beside.keyframes.size(), alone.keyframes.size());
+  for (std::size_t i = 0; i < alone.keyframes.size(); ++i) {
+    EXPECT_EQ(beside.keyframes[i].id, alone.keyframes[i].id);
+    EXPECT_EQ(beside.keyframes[i].movable, alone.keyframes[i].movable);
+    EXPECT_EQ(beside.keyframes[i].point_of_feature, alone.keyframes[i].point_of_feature);
+  }
+}
+
+}  // namespace
+}  // namespace byre
