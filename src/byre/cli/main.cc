@@ -26,6 +26,7 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"map", "Turn a stereo recording into a map and a trajectory", declare_map},
+    Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
     Command{"localise", "Find frames in a map, each without a guess", declare_localise},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},

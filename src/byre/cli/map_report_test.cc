@@ -13,7 +13,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 MapProtocol protocol_of(Pace pace) {
-  MapProtocol protocol{"MH_01_easy", RecordingFormat::euroc, {.start_s = 1.5, .stride = 2}, 4, {}, "", {"MH_01_easy"}};
+  MapProtocol protocol;
+  protocol.recording = "MH_01_easy";
+  protocol.range = {.start_s = 1.5, .stride = 2};
+  protocol.frames_in_range = 4;
+  protocol.recordings = {"MH_01_easy"};
   protocol.options.pace = pace;
   return protocol;
 }
