@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 // What every line tells.
 Json line_of(int number, const FrameReport& report, std::string_view event) {
   return {{"time_s", to_seconds(report.time)},
+          {"time_ns", report.time.count()},
           {"frame", number},
           {"event", event},
           {"state", to_string(report.state)},

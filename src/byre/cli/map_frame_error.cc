@@ -53,6 +53,11 @@ std::vector<PoseError> errors_in_map(const Trajectory& world_from_body, const Tr
   return errors;
 }
 
+const PoseError* find_error(const std::vector<PoseError>& errors, Timestamp time) {
+  const auto found = std::ranges::lower_bound(errors, time, {}, &PoseError::time);
+  return found != errors.end() && found->time == time ? &*found : nullptr;
+}
+
 ErrorStatistics position_statistics(const std::vector<PoseError>& errors) {
   return statistics_of(errors, &PoseError::position);
 }

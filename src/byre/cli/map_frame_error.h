@@ -30,6 +30,9 @@ struct PoseError {
 std::vector<PoseError> errors_in_map(const Trajectory& world_from_body, const Trajectory& truth,
                                      const MapAlignment& alignment);
 
+// Of the pose at that very time; nullptr when it has no truth. Precondition: errors are in order of time.
+const PoseError* find_error(const std::vector<PoseError>& errors, Timestamp time);
+
 ErrorStatistics position_statistics(const std::vector<PoseError>& errors);  // metres, or the unit of the truth
 ErrorStatistics rotation_statistics(const std::vector<PoseError>& errors);  // degrees
 

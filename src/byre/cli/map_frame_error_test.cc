@@ -1,6 +1,6 @@
 #include "byre/cli/map_frame_error.h"
 
-#include "byre/map/map.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +55,9 @@ TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
   EXPECT_EQ(errors[1].time, from_seconds(1.0));
   EXPECT_NEAR((errors[1].delta - delta).norm(), 0.0, 1e-9);
   EXPECT_NEAR(errors[1].position(), 0.01 * std::sqrt(14.0), 1e-9);
+  EXPECT_EQ(find_error(errors, from_seconds(1.0)), &errors[1]);
+  EXPECT_EQ(find_error(errors, from_seconds(0.75)), nullptr);
+  EXPECT_EQ(find_error(errors, from_seconds(60.0)), nullptr);
   EXPECT_NEAR(position_statistics(errors).max, errors[1].position(), 1e-12);
   EXPECT_NEAR(rotation_statistics(errors).max, 0.1 * std::sqrt(6.0) * 180.0 / 3.14159265358979, 1e-6);
 }

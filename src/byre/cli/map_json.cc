@@ -169,7 +169,7 @@ Json milliseconds_json(const MappedFrame& frame) {
   return json;
 }
 
-Json frame_json(const MappedFrame& frame) {
+Json frame_json(const MappedFrame& frame, const PoseError* error) {
   Json json = {{"time_s", to_seconds(frame.time)}, {"time_ns", frame.time.count()}};
   if (!frame.report) {
     json["state"] = "unreadable";
@@ -192,6 +192,7 @@ Json frame_json(const MappedFrame& frame) {
   if (report.map_from_body) json.update(pose_json(*report.map_from_body, report.covariance));
   if (report.odometry_from_body) json["odometry"] = pose_json(*report.odometry_from_body, report.odometry_covariance);
   json["health"] = health_json(report.health);
+  if (error != nullptr) json["error"] = {{"position_m", error->position()}, {"rotation_deg", error->rotation()}};
   json["ms"] = milliseconds_json(frame);
   return json;
 }
@@ -205,7 +206,9 @@ std::string to_json(const MapRun& run, const MapProtocol& protocol, const Resour
   text += ",\n  \"frames\": [";
   const char* separator = "\n    ";
   for (const MappedFrame& frame : run.frames) {
-    text += separator + dumped(frame_json(frame));
+    const bool has_truth = mission && mission->errors;
+    const PoseError* const error = has_truth ? find_error(mission->errors->causal, frame.time) : nullptr;
+    text += separator + dumped(frame_json(frame, error));
     separator = ",\n    ";
   }
   return text + "\n  ]\n}\n";

@@ -149,7 +149,7 @@ std::string mission_rows(const Mission& mission, const MapRun& run, const MapPro
   if (protocol.options.offline) text += row("offline map", describe_offline(protocol));
   text += row("poses", describe_coverage(run, mission.statistics));
   text += to_text(mission.statistics);
-  if (is_online) text += row("online map", describe_map(run, protocol, counts));
+  if (is_online) text += row(protocol.options.offline ? "online map" : "map", describe_map(run, protocol, counts));
   if (is_online) text += row("loops", describe_loops(counts));
   if (!protocol.options.offline) text += finishing_rows(run, protocol);
   if (mission.errors) text += to_text(*mission.errors);

@@ -1,40 +1,32 @@
 #include "byre/cli/mission_errors.h"
 
 #include <algorithm>
-#include <map>
+
+#include <Eigen/Cholesky>
 
 namespace byre::cli {
 namespace {
 
-using ErrorsByTime = std::map<Timestamp, PoseError>;
-
-ErrorsByTime by_time(const std::vector<PoseError>& errors) {
-  ErrorsByTime result;
-  for (const PoseError& error : errors) result.emplace(error.time, error);
-  return result;
-}
-
-std::vector<PoseError> errors_with(Verdict verdict, const MapRun& run, const ErrorsByTime& errors) {
+std::vector<PoseError> errors_with(Verdict verdict, const MapRun& run, const std::vector<PoseError>& causal) {
   std::vector<PoseError> chosen;
   for (const MappedFrame& frame : run.frames) {
-    const auto error = errors.find(frame.time);
-    if (error != errors.end() && frame.report->health.verdict == verdict) chosen.push_back(error->second);
+    const PoseError* const error = find_error(causal, frame.time);
+    if (error != nullptr && frame.report->health.verdict == verdict) chosen.push_back(*error);
   }
   return chosen;
 }
 
-bool is_wrongly_trusted(const MappedFrame& frame, const ErrorsByTime& errors) {
-  const auto error = errors.find(frame.time);
-  return error != errors.end() && frame.report->health.verdict == Verdict::trusted &&
-         error->second.position() > kFarMetres;
+bool is_far(const PoseError& error) {
+  return error.position() > kFarMetres;
 }
 
 // From the first to the last of consecutive frames, so that a single one lasts no time.
-double longest_wrong_trust(const MapRun& run, const ErrorsByTime& errors) {
+double longest_wrong_trust(const MapRun& run, const std::vector<PoseError>& trusted) {
   double longest_s = 0.0;
   const MappedFrame* first = nullptr;
   for (const MappedFrame& frame : run.frames) {
-    if (!is_wrongly_trusted(frame, errors)) {
+    const PoseError* const error = find_error(trusted, frame.time);
+    if (error == nullptr || !is_far(*error)) {
       first = nullptr;
       continue;
     }
@@ -45,16 +37,16 @@ double longest_wrong_trust(const MapRun& run, const ErrorsByTime& errors) {
 }
 
 // The covariance is of a small motion as seen in the body, as the error is: their positions can be held together.
-std::optional<double> share_within_bound(const MapRun& run, const ErrorsByTime& errors) {
+std::optional<double> share_within_bound(const MapRun& run, const std::vector<PoseError>& causal) {
   constexpr double kBound95 = 7.815;  // 95 % of chi-square with three degrees of freedom
   int within = 0;
   int judged = 0;
   for (const MappedFrame& frame : run.frames) {
-    const auto error = errors.find(frame.time);
-    if (error == errors.end()) continue;
+    const PoseError* const error = find_error(causal, frame.time);
+    if (error == nullptr) continue;
     const Eigen::Matrix3d covariance = frame.report->covariance.topLeftCorner<3, 3>();
-    if (covariance.trace() <= 0.0) continue;  // where the map begins: exact by definition
-    const Eigen::Vector3d position = error->second.delta.head<3>();
+    if (covariance.trace() <= 0.0) continue;  // where a map begins: exact by definition
+    const Eigen::Vector3d position = error->delta.head<3>();
     ++judged;
     within += position.dot(covariance.ldlt().solve(position)) <= kBound95 ? 1 : 0;
   }
@@ -64,12 +56,10 @@ std::optional<double> share_within_bound(const MapRun& run, const ErrorsByTime& 
 
 // What verdicts are worth, given the causal errors.
 void judge_trust(const MapRun& run, MissionErrors& errors) {
-  const ErrorsByTime causal = by_time(errors.causal);
-  errors.trusted = errors_with(Verdict::trusted, run, causal);
-  errors.degraded = errors_with(Verdict::degraded, run, causal);
-  errors.wrongly_trusted = static_cast<int>(
-      std::ranges::count_if(errors.trusted, [](const PoseError& error) { return error.position() > kFarMetres; }));
-  errors.longest_wrong_trust_s = longest_wrong_trust(run, causal);
+  errors.trusted = errors_with(Verdict::trusted, run, errors.causal);
+  errors.degraded = errors_with(Verdict::degraded, run, errors.causal);
+  errors.wrongly_trusted = static_cast<int>(std::ranges::count_if(errors.trusted, is_far));
+  errors.longest_wrong_trust_s = longest_wrong_trust(run, errors.trusted);
 }
 
 std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Trajectory& truth) {
@@ -89,7 +79,7 @@ MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajec
   errors.causal = errors_in_map(run.causal, truth, alignment);
   errors.final = errors_in_map(run.final, truth, alignment);
   judge_trust(run, errors);
-  errors.within_bound = share_within_bound(run, by_time(errors.causal));
+  errors.within_bound = share_within_bound(run, errors.causal);
   return errors;
 }
 

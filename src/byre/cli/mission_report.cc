@@ -37,9 +37,11 @@ std::string describe_losses(const MissionStatistics& statistics) {
                    statistics.relocalisations, statistics.navigation_errors);
 }
 
-std::string describe(const KeyframeRate& rate) {
-  if (rate.minutes <= 0.0) return "none there";
-  return formatted("%.1f a minute (%d in %.1f min)", rate.per_minute(), rate.keyframes, rate.minutes);
+// Empty where the mission did not come to such places.
+std::string keyframe_row(const char* places, const KeyframeRate& rate) {
+  if (rate.minutes <= 0.0) return "";
+  return row("keyframes", formatted("%.1f a minute in %s places (%d in %.0f s)", rate.per_minute(), places,
+                                    rate.keyframes, 60.0 * rate.minutes));
 }
 
 std::string describe_inliers(const MissionStatistics& statistics) {
@@ -59,8 +61,9 @@ std::string describe_alignment(const MissionErrors& errors) {
 std::string error_row(const char* name, const std::vector<PoseError>& errors) {
   const ErrorStatistics position = position_statistics(errors);
   if (position.count == 0) return row(name, "no pose with truth");
-  return row(name, formatted("RMSE %.4f m, median %.4f m, 95 %% within %.4f m, worst %.4f m; %.3f deg", position.rmse,
-                             position.median, position.p95, position.max, rotation_statistics(errors).rmse));
+  return row(name,
+             formatted("RMSE %.4f m and %.3f deg, median %.4f m, 95 %% within %.4f m, worst %.4f m", position.rmse,
+                       rotation_statistics(errors).rmse, position.median, position.p95, position.max));
 }
 
 std::string trust_rows(const MissionErrors& errors) {
@@ -99,8 +102,8 @@ std::string to_text(const MissionStatistics& statistics) {
   std::string text = row("verdicts", describe_verdicts(statistics));
   if (!statistics.doubts.empty()) text += row("doubts", describe_doubts(statistics));
   text += row("lost", describe_losses(statistics));
-  text += row("keyframes", "in known places " + describe(statistics.in_known_places));
-  text += row("", "in changed or new ones " + describe(statistics.in_changed_or_new));
+  text += keyframe_row("known", statistics.in_known_places);
+  text += keyframe_row("changed or new", statistics.in_changed_or_new);
   text += row("inliers", describe_inliers(statistics));
   return text;
 }
