@@ -5,6 +5,7 @@
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
+#include "byre/slam/tracking.h"
 
 #include <sstream>
 #include <string>
