@@ -64,6 +64,8 @@ Json protocol_json(const MapProtocol& protocol) {
   if (!protocol.offline.empty()) {
     json["offline_map"] = protocol.offline;
     json["localise_only"] = !protocol.options.session.map_online;
+    json["offline_weight"] = protocol.options.session.track.offline_weight;
+    json["offline_policy"] = name_of(protocol.options.session.track.offline_policy);
   }
   json["options"] = options_json(protocol.options);
   json["body_covariance"] = kCovariance;

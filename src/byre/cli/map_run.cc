@@ -119,6 +119,16 @@ std::string_view name_of(Pace pace) {
   return "";
 }
 
+std::string_view name_of(OfflinePolicy policy) {
+  switch (policy) {
+    case OfflinePolicy::first:
+      return "first";
+    case OfflinePolicy::together:
+      return "together";
+  }
+  return "";
+}
+
 std::unique_ptr<Recording> open_stereo_recording(const std::filesystem::path& folder, const FrameRange& range) {
   std::unique_ptr<Recording> recording = open_recording(folder, range);
   if (recording->calibration().right) return recording;

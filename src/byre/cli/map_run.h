@@ -24,7 +24,9 @@ namespace byre::cli {
 //   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
-std::string_view name_of(Pace pace);  // as on the command line
+// As on the command line.
+std::string_view name_of(Pace pace);
+std::string_view name_of(OfflinePolicy policy);
 
 inline constexpr int kPacedLatency = 4;             // frames
 inline constexpr int kPacedCorrectionLatency = 40;  // frames

@@ -75,7 +75,7 @@ MapRun run_and_log(Recording& recording, const MapRunOptions& run_options, const
 
 Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth) {
   Mission mission;
-  mission.statistics = summarise_mission(run.frames, options.session.track.min_inliers);
+  mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
   if (!truth) return mission;
   mission.errors = options.offline ? mission_errors(run, options.offline->map(), truth->of_map, truth->of_frames)
                                    : aligned_errors(run, truth->of_frames);

@@ -1,8 +1,12 @@
 #include "byre/cli/run_options.h"
 
+#include "byre/cli/formatted.h"
 #include "byre/cli/frame_range_options.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
+
+#include <map>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -81,6 +85,26 @@ void require_consistent(const RunOptions& options) {
   }
 }
 
+// How points of the two maps go together; the defaults were measured.
+void declare_tracking(CLI::App& command, TrackOptions& track) {
+  std::map<std::string, OfflinePolicy> policies;
+  for (const OfflinePolicy known : {OfflinePolicy::first, OfflinePolicy::together}) {
+    policies.emplace(name_of(known), known);
+  }
+  command
+      .add_option(
+          "--offline-weight", track.offline_weight,
+          formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
+      ->type_name("FACTOR")
+      ->check(CLI::Range(1e-3, 1e3).description(""));
+  command
+      .add_option(
+          "--offline-policy", track.offline_policy,
+          "Offline points first, so that their pose guides the search for online ones, or both together (first)")
+      ->type_name("first|together")
+      ->transform(CLI::CheckedTransformer(policies).description(""));
+}
+
 }  // namespace
 
 std::vector<fs::path> RunOptions::outputs() const {
@@ -96,6 +120,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_outputs(command, options);
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
+  declare_tracking(command, options.track);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.parse_complete_callback([&options] { require_consistent(options); });
   command.footer(kFooter);

@@ -5,7 +5,7 @@
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
-#include "byre/slam/tracking.h"
+#include "byre/slam/state.h"
 
 #include <sstream>
 #include <string>
@@ -165,7 +165,7 @@ TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {
   EXPECT_THAT(events, Contains("localised"));
   const json last = json::parse(read("stats.json")).at("frames").back();
   EXPECT_EQ(last.at("health").at("verdict"), "trusted");
-  EXPECT_GE(last.at("health").at("offline_inliers"), TrackOptions{}.min_inliers);
+  EXPECT_GE(last.at("health").at("offline_inliers"), OfflineViewOptions{}.min_inliers);
   EXPECT_GT(json::parse(read("stats.json")).at("mission").at("in_known_places").at("minutes"), 0.0);
 }
 
