@@ -20,6 +20,7 @@ Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
 Action declare_refine(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
+Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
