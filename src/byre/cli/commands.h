@@ -17,8 +17,10 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 // Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
 // the command line is parsed.
 Action declare_map(CLI::App& command);
+Action declare_run(CLI::App& command);
 Action declare_refine(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
+Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);

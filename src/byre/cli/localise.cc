@@ -9,7 +9,6 @@
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
 #include "byre/place/map_words.h"
@@ -93,7 +92,7 @@ void write_found(const LocaliseRun& run, const fs::path& path) {
   for (const LocalisedFrame& frame : run.frames) {
     if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
   }
-  write_whole(path, [&found](const fs::path& unfinished) { write_trajectory(found, unfinished); });
+  write_whole(path, found);
 }
 
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {

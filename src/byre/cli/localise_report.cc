@@ -12,24 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kCloseMetres = 0.1;
 constexpr double kCloseDegrees = 2.0;
 constexpr double kFarMetres = 0.5;
-
-// Where the map's keyframes put the body, in order of time.
-Trajectory keyframe_trajectory(const StoredMap& stored) {
-  Trajectory trajectory;
-  for (const KeyframeId id : stored.map.keyframe_ids()) {
-    const Keyframe& keyframe = *stored.map.find_keyframe(id);
-    const Rig& rig = stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-    trajectory.push_back({keyframe.frame.time, inverse(rig.body_from_camera * keyframe.camera_from_world)});
-  }
-  std::ranges::stable_sort(trajectory, {}, &StampedPose::time);
-  const auto repeated = std::ranges::unique(trajectory, {}, &StampedPose::time);
-  trajectory.erase(repeated.begin(), repeated.end());
-  return trajectory;
-}
 
 Trajectory found_trajectory(const LocaliseRun& run) {
   Trajectory trajectory;
@@ -82,16 +67,13 @@ struct ErrorSummary {
 };
 
 ErrorSummary summarise_errors(const LocalisationErrors& errors) {
-  std::vector<double> positions, rotations;
   ErrorSummary summary;
-  for (const LocalisationError& error : errors.errors) {
-    positions.push_back(error.position);
-    rotations.push_back(error.rotation);
-    summary.close += error.position <= kCloseMetres && error.rotation <= kCloseDegrees;
-    summary.far += error.position > kFarMetres;
+  for (const PoseError& error : errors.errors) {
+    summary.close += error.position() <= kCloseMetres && error.rotation() <= kCloseDegrees;
+    summary.far += error.position() > kFarMetres;
   }
-  summary.position = summarise(positions);
-  summary.rotation = summarise(rotations);
+  summary.position = position_statistics(errors.errors);
+  summary.rotation = rotation_statistics(errors.errors);
   return summary;
 }
 
@@ -151,22 +133,9 @@ Json errors_json(const LocalisationErrors& errors) {
 
 LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored, const Trajectory& map_truth,
                                  const Trajectory& truth) {
-  constexpr int kFewestForAlignment = 3;
-  LocalisationErrors result;
-  Similarity truth_from_map;
-  const std::vector<PosePair> of_map = associate(keyframe_trajectory(stored), map_truth, {});
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
-  if (const auto aligned = absolute_trajectory_error(of_map, scale); aligned && of_map.size() >= kFewestForAlignment) {
-    truth_from_map = aligned->truth_from_estimate;
-    result.alignment_keyframes = static_cast<int>(of_map.size());
-  }
-  for (const PosePair& pair : associate(found_trajectory(run), truth, {})) {
-    const Pose difference =
-        inverse(pair.true_world_from_body) * aligned(truth_from_map, pair.estimated_world_from_body);
-    result.errors.push_back(
-        {pair.time, difference.translation.norm(), kDegreesPerRadian * rotation_log(difference.rotation).norm()});
-  }
-  return result;
+  const MapAlignment alignment = align_to_truth(stored.map, scale, map_truth);
+  return {errors_in_map(found_trajectory(run), truth, alignment), alignment.keyframes};
 }
 
 std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/cli/localise_run.h"
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/cli/map_frame_error.h"
 
 #include <optional>
 #include <string>
@@ -9,17 +9,10 @@
 
 namespace byre::cli {
 
-// A frame that was found and has truth.
-struct LocalisationError {
-  Timestamp time{};
-  double position = 0.0;  // metres, or the map's unit
-  double rotation = 0.0;  // degrees
-};
-
 // Errors in the map's frame: the map is aligned to the truth once, by its own keyframes, not by what was localised.
 struct LocalisationErrors {
-  std::vector<LocalisationError> errors;
-  int alignment_keyframes = 0;  // zero: the truth is taken for given in the map's frame
+  std::vector<PoseError> errors;  // of the frames that were found and have truth
+  int alignment_keyframes = 0;    // zero: the truth is taken for given in the map's frame
 };
 
 // map_truth holds the truth at the times of the map's keyframes, where it does: with less than three of them aligned

@@ -51,15 +51,15 @@ TEST(ErrorsInMap, AlignTheMapByItsKeyframesAndNotByWhatWasFound) {
   const LocalisationErrors errors = errors_in_map(small_run(), small_map(), truth(), truth());
   EXPECT_EQ(errors.alignment_keyframes, 4);
   ASSERT_EQ(errors.errors.size(), 4u);
-  EXPECT_NEAR(errors.errors[0].position, 0.0, 1e-9);
-  EXPECT_NEAR(errors.errors[0].rotation, 0.0, 1e-6);
-  EXPECT_NEAR(errors.errors[3].position, (at(4.5).translation - at(3.5).translation).norm(), 1e-9);
+  EXPECT_NEAR(errors.errors[0].position(), 0.0, 1e-9);
+  EXPECT_NEAR(errors.errors[0].rotation(), 0.0, 1e-6);
+  EXPECT_NEAR(errors.errors[3].position(), (at(4.5).translation - at(3.5).translation).norm(), 1e-9);
 }
 
 TEST(ErrorsInMap, TakeTheTruthAsItIsWhereItDoesNotCoverTheMap) {
   const LocalisationErrors errors = errors_in_map(small_run(), small_map(), {}, truth());
   EXPECT_EQ(errors.alignment_keyframes, 0);
-  EXPECT_GT(errors.errors[0].position, 1.0);
+  EXPECT_GT(errors.errors[0].position(), 1.0);
 }
 
 TEST(LocaliseReport, CountsWhatWasFoundAndWhyOthersWereNot) {

@@ -26,11 +26,14 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"map", "Turn a stereo recording into a map and a trajectory", declare_map},
+    Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
     Command{"localise", "Find frames in a map, each without a guess", declare_localise},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},
     Command{"validate", "Check that a map is sound", declare_validate},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
+    Command{"benchmark", "Run a protocol of recordings, and tell how accurate and fast each way to run them is",
+            declare_benchmark},
     Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
     Command{"import-colmap", "Make a map of a COLMAP model and its images", declare_import_colmap},
     Command{"export-colmap", "Write a map as a COLMAP model", declare_export_colmap},

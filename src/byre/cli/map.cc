@@ -1,24 +1,19 @@
 #include "byre/cli/autosave.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/finish_hooks.h"
-#include "byre/cli/formatted.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_options.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/output_file.h"
+#include "byre/cli/output_options.h"
 #include "byre/cli/posed_map.h"
-#include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
+#include "byre/cli/run_with_progress.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/warnings.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
 #include "byre/map/map_file.h"
 #include "byre/slam/online_copy.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <utility>
@@ -27,19 +22,6 @@ namespace byre::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::unique_ptr<Recording> open_stereo_recording(const MapOptions& options) {
-  std::unique_ptr<Recording> recording = open_recording(options.recording, options.range);
-  if (recording->calibration().right) return recording;
-  throw InputError(options.recording.string(), "has no right camera: only stereo recordings can be mapped",
-                   "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
-}
-
-std::string state_after(const MappedFrame& frame) {
-  if (!frame.report) return "unreadable frame";
-  return std::string(to_string(frame.report->state)) +
-         formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
-}
 
 // What is kept with a map, and where; all but the map itself.
 struct MapRecord {
@@ -55,54 +37,23 @@ void save(Map offline, const MapRecord& record) {
   save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
 }
 
-MapRun run_with_progress(Recording& recording, const MapRunOptions& run_options, const MapOptions& options,
-                         const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
-  Progress progress(std::cerr, progress_style(options.quiet), recording.size());
+MapRun run_and_autosave(Recording& recording, const MapRunOptions& run_options, const MapOptions& options,
+                        const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
                     [&record](const Map& online) { save(offline_copy(online), record); });
-  const Stopwatch watch;
-  const FinishHooks finishing = finish_hooks(interrupt, options.quiet);
   MapRunHooks hooks;
-  hooks.should_stop = finishing.should_stop;
-  hooks.after_frame = [&progress, &watch](int done, const MappedFrame& frame) {
-    progress.update(done, watch.seconds(), state_after(frame));
-  };
   if (options.autosave_s) hooks.offer_map = [&autosave](const Map& online) { autosave.offer(online); };
-  hooks.before_finishing_step = [&progress, &finishing](const char* step) {
-    progress.close();
-    if (finishing.before_step) finishing.before_step(step);
-  };
-  MapRun run = run_map(recording, run_options, hooks, std::move(before));
-  progress.close();
+  MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet, std::move(before));
   autosave.finish();
   run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
   return run;
 }
 
-void write_text(const std::string& text, const fs::path& path) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
-}
-
 void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
                    const ResourceUse& resources) {
-  if (options.trajectory) {
-    write_whole(*options.trajectory, [&run](const fs::path& path) { write_trajectory(run.final, path); });
-  }
-  if (options.causal_trajectory) {
-    write_whole(*options.causal_trajectory, [&run](const fs::path& path) { write_trajectory(run.causal, path); });
-  }
-  if (options.stats) {
-    write_whole(*options.stats, [&](const fs::path& path) { write_text(to_json(run, protocol, resources), path); });
-  }
-}
-
-std::vector<std::string> names_of(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.string());
-  return names;
+  if (options.trajectory) write_whole(*options.trajectory, run.final);
+  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+  if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
 }
 
 // The map that is gone on with, out of which its record takes all but the map.
@@ -125,8 +76,11 @@ MapRecord record_of(const MapOptions& options) {
 }
 
 MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, const Recording& recording) {
-  MapProtocol protocol{
-      options.recording.string(), guess_format(options.recording), options.range, recording.size(), {}, "", {}};
+  MapProtocol protocol;
+  protocol.recording = options.recording.string();
+  protocol.format = guess_format(options.recording);
+  protocol.range = options.range;
+  protocol.frames_in_range = recording.size();
   protocol.options.pace = options.pace;
   protocol.options.extract.refinement = options.refinement;
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
@@ -149,14 +103,14 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
   MapRecord record = record_of(options);
-  const std::unique_ptr<Recording> recording = open_stereo_recording(options);
+  const std::unique_ptr<Recording> recording = open_stereo_recording(options.recording, options.range);
   std::optional<Map> extended = take_extended(options, record);
   record.about.recordings.push_back(describe_source(options.recording, *recording));
   const MapProtocol protocol = protocol_of(options, record, *recording);
 
   limit_image_threads(1);
   const InterruptCatcher interrupt(options.outputs());
-  const MapRun run = run_with_progress(*recording, protocol.options, options, record, std::move(extended), interrupt);
+  const MapRun run = run_and_autosave(*recording, protocol.options, options, record, std::move(extended), interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   const ResourceUse resources = resources_used_so_far();
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep

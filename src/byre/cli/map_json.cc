@@ -1,5 +1,6 @@
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
+#include "byre/cli/report_json.h"
 #include "byre/cli/stored_map.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ Json options_json(const MapRunOptions& options) {
 
 Json protocol_json(const MapProtocol& protocol) {
   const FrameRange& range = protocol.range;
-  Json json = {{"program", "byre map"},
+  Json json = {{"program", protocol.program},
                {"version", BYRE_VERSION},
                {"recording", protocol.recording},
                {"format", protocol.format == RecordingFormat::euroc ? "euroc" : "kitti"},
@@ -60,6 +61,12 @@ Json protocol_json(const MapProtocol& protocol) {
     json["correction_latency_frames"] = kPacedCorrectionLatency;
   }
   if (!protocol.extended.empty()) json["extended"] = protocol.extended;
+  if (!protocol.offline.empty()) {
+    json["offline_map"] = protocol.offline;
+    json["localise_only"] = !protocol.options.session.map_online;
+    json["offline_weight"] = protocol.options.session.track.offline_weight;
+    json["offline_policy"] = name_of(protocol.options.session.track.offline_policy);
+  }
   json["options"] = options_json(protocol.options);
   json["body_covariance"] = kCovariance;
   return json;
@@ -125,7 +132,8 @@ Json warnings_json(const std::vector<std::string>& warnings) {
   return {{"count", warnings.size()}, {"first", std::vector(warnings.begin(), warnings.begin() + listed)}};
 }
 
-Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources) {
+Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+              const std::optional<Mission>& mission) {
   const Pace pace = protocol.options.pace;
   Json json = {{"protocol", protocol_json(protocol)},
                {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
@@ -137,6 +145,8 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"mapping_jobs", jobs_json(run.job_seconds)}};
   if (pace == Pace::same_thread) json["frame_thread_without_jobs_ms"] = to_json(summarise_without_jobs(run.frames));
   if (pace == Pace::live) json["late"] = late_json(run);
+  if (mission) json["mission"] = to_json(mission->statistics);
+  if (mission && mission->errors) json["errors"] = to_json(*mission->errors);
   json["cpu_s"] = resources.cpu_seconds;
   json["wall_s"] = run.wall_seconds;
   json["peak_memory_mb"] = resources.peak_memory_mb;
@@ -161,19 +171,7 @@ Json milliseconds_json(const MappedFrame& frame) {
   return json;
 }
 
-void add_pose(const FrameReport& report, Json& json) {
-  const Eigen::Vector3d& t = report.map_from_body->translation;
-  const Eigen::Quaterniond& q = report.map_from_body->rotation;
-  json["position_m"] = {t.x(), t.y(), t.z()};
-  json["quaternion_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
-  Json covariance = Json::array();
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) covariance.push_back(report.covariance(row, column));
-  }
-  json["body_covariance"] = covariance;
-}
-
-Json frame_json(const MappedFrame& frame) {
+Json frame_json(const MappedFrame& frame, const PoseError* error) {
   Json json = {{"time_s", to_seconds(frame.time)}, {"time_ns", frame.time.count()}};
   if (!frame.report) {
     json["state"] = "unreadable";
@@ -193,24 +191,26 @@ Json frame_json(const MappedFrame& frame) {
   json["expected"] = report.expected_points;
   json["matches"] = report.matches;
   json["inliers"] = report.inliers;
-  if (report.map_from_body) add_pose(report, json);
+  if (report.map_from_body) json.update(pose_json(*report.map_from_body, report.covariance));
+  if (report.odometry_from_body) json["odometry"] = pose_json(*report.odometry_from_body, report.odometry_covariance);
+  json["health"] = health_json(report.health);
+  if (error != nullptr) json["error"] = {{"position_m", error->position()}, {"rotation_deg", error->rotation()}};
   json["ms"] = milliseconds_json(frame);
   return json;
 }
 
-std::string dumped(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
-std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources) {
-  std::string text = dumped(run_json(run, protocol, resources), 2);
+std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+                    const std::optional<Mission>& mission) {
+  std::string text = dumped(run_json(run, protocol, resources, mission), 2);
   text.erase(text.rfind("\n}"));
   text += ",\n  \"frames\": [";
   const char* separator = "\n    ";
   for (const MappedFrame& frame : run.frames) {
-    text += separator + dumped(frame_json(frame), -1);
+    const bool has_truth = mission && mission->errors;
+    const PoseError* const error = has_truth ? find_error(mission->errors->causal, frame.time) : nullptr;
+    text += separator + dumped(frame_json(frame, error));
     separator = ",\n    ";
   }
   return text + "\n  ]\n}\n";

@@ -1,9 +1,10 @@
 #include "byre/cli/map_options.h"
 
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/output_options.h"
+#include "byre/cli/pace_option.h"
 
 #include <map>
-#include <set>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -68,10 +69,6 @@ void declare_building(CLI::App& command, MapOptions& options) {
                    "Recognise no places and leave out what comes after the last frame; for comparison");
 }
 
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
-}
-
 void require_consistent_extension(const MapOptions& options) {
   if (!options.extended) return;
   if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: name a file for it (-o barn2.byre)");
@@ -102,12 +99,7 @@ void require_consistent(const MapOptions& options) {
     throw CLI::ValidationError("--autosave", "saves the map: name a file for it (-o barn.byre)");
   }
   require_consistent_extension(options);
-  std::set<fs::path> files;
-  for (const fs::path& file : options.outputs()) {
-    if (!files.insert(fs::absolute(file).lexically_normal()).second) {
-      throw CLI::ValidationError(file.string(), "is named for two outputs");
-    }
-  }
+  require_distinct(options.outputs());
 }
 
 }  // namespace
@@ -126,11 +118,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_map_content(command, options);
   declare_building(command, options);
   declare_frame_range(command, options.range);
-  const std::map<std::string, Pace> paces = {
-      {"inline", Pace::same_thread}, {"paced", Pace::paced}, {"live", Pace::live}};
-  command.add_option("--pace", options.pace, "Where mapping runs and how fast frames are fed (paced)")
-      ->type_name("inline|paced|live")
-      ->transform(CLI::CheckedTransformer(paces).description(""));
+  declare_pace(command, options.pace);
   std::map<std::string, Refinement> refinements;
   for (const Refinement refinement : {Refinement::none, Refinement::stereo, Refinement::all}) {
     refinements.emplace(name_of(refinement), refinement);

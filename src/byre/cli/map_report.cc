@@ -8,13 +8,6 @@
 namespace byre::cli {
 namespace {
 
-std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
-  std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
-  const auto frames = static_cast<int>(run.frames.size());
-  if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
-  return text;
-}
-
 std::string describe_poses(const FrameCounts& counts) {
   std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
   if (counts.lost_episodes > 0) text += formatted(", lost %d times for %d frames", counts.lost_episodes, counts.lost);
@@ -48,11 +41,11 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
   return text;
 }
 
-std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
-  if (run.finishing) return to_text(*run.finishing);
-  if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
-  if (run.causal.empty()) return row("finishing", "left out, as there is no map");
-  return row("finishing", "left out; \"byre refine\" does it");
+std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
+  std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
+  const auto frames = static_cast<int>(run.frames.size());
+  if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
+  return text;
 }
 
 std::string describe(const TimeSummary& times) {
@@ -95,28 +88,83 @@ std::string listing(const std::vector<std::string>& files) {
   return text;
 }
 
-}  // namespace
+std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
+  return row("recording", describe_recording(run, protocol)) + row("pace", std::string(name_of(protocol.options.pace)));
+}
 
-std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
-                    const std::vector<std::string>& files) {
+std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
+  if (run.finishing) return to_text(*run.finishing);
+  if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
+  if (run.causal.empty()) return row("finishing", "left out, as there is no map");
+  return row("finishing", "left out; \"byre refine\" does it");
+}
+
+std::string cost_rows(const MapRun& run, Pace pace, const ResourceUse& resources) {
+  std::string text = row("frame time", describe_frame_time(run, pace));
+  text += row("mapping", describe_mapping(run));
+  if (pace == Pace::live) text += row("late", describe_late(run));
+  text += row("CPU time", describe_processor(run, resources));
+  text += row("memory", describe_memory(run, resources));
+  return text;
+}
+
+std::string closing_rows(const MapRun& run, const std::vector<std::string>& files) {
+  std::string text;
+  if (!run.warnings.empty()) {
+    text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
+  }
+  if (!files.empty()) text += row("written", listing(files));
+  return text;
+}
+
+std::string describe_offline(const MapProtocol& protocol) {
+  const Map& map = protocol.options.offline->map();
+  return protocol.offline + formatted(", %d keyframes, %d points", map.keyframe_count(), map.point_count()) +
+         (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)");
+}
+
+// What "byre map" is about.
+std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
-  std::string text = row("recording", describe_recording(run, protocol));
-  text += row("pace", std::string(name_of(protocol.options.pace)));
-  text += row("poses", describe_poses(counts));
+  std::string text = row("poses", describe_poses(counts));
   text += row("map", describe_map(run, protocol, counts));
   text += extension_rows(run, protocol, counts);
   if (protocol.options.vocabulary) text += row("loops", describe_loops(counts));
   text += finishing_rows(run, protocol);
+  return text;
+}
+
+std::string describe_coverage(const MapRun& run, const MissionStatistics& statistics) {
+  const FrameCounts counts = count_frames(run.frames);
+  std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
+  if (!statistics.seconds_to_first_pose) return text;
+  return text + formatted(", the first after %.2f s", *statistics.seconds_to_first_pose);
+}
+
+// What "byre run" is about, with an offline map or without.
+std::string mission_rows(const Mission& mission, const MapRun& run, const MapProtocol& protocol) {
+  const FrameCounts counts = count_frames(run.frames);
+  const bool is_online = protocol.options.session.map_online;
+  std::string text;
+  if (protocol.options.offline) text += row("offline map", describe_offline(protocol));
+  text += row("poses", describe_coverage(run, mission.statistics));
+  text += to_text(mission.statistics);
+  if (is_online) text += row(protocol.options.offline ? "online map" : "map", describe_map(run, protocol, counts));
+  if (is_online) text += row("loops", describe_loops(counts));
+  if (!protocol.options.offline) text += finishing_rows(run, protocol);
+  if (mission.errors) text += to_text(*mission.errors);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+                    const std::vector<std::string>& files, const std::optional<Mission>& mission) {
+  std::string text = recording_rows(run, protocol);
+  text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
   text += row("path", formatted("%.2f m", path_length(run.final)));
-  text += row("frame time", describe_frame_time(run, protocol.options.pace));
-  text += row("mapping", describe_mapping(run));
-  if (protocol.options.pace == Pace::live) text += row("late", describe_late(run));
-  text += row("CPU time", describe_processor(run, resources));
-  text += row("memory", describe_memory(run, resources));
-  if (!run.warnings.empty()) {
-    text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
-  }
-  text += row("written", listing(files));
+  text += cost_rows(run, protocol.options.pace, resources);
+  text += closing_rows(run, files);
   return text;
 }
 

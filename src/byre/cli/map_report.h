@@ -1,8 +1,10 @@
 #pragma once
 
 #include "byre/cli/map_run.h"
+#include "byre/cli/mission_report.h"
 #include "byre/cli/resources.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +19,17 @@ struct MapProtocol {
   MapRunOptions options;
   std::string extended;                 // the map that was gone on with; empty for none
   std::vector<std::string> recordings;  // of the whole map
+  std::string offline;                  // the map of a mission; empty for none
+  std::string program = "byre map";
 };
 
-// Everything known about the run: protocol, figures, and an array with an object for each frame, one a line.
-std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources);
+// Everything known about the run: protocol, figures, and an array with an object for each frame, one a line. With a
+// mission also what that came to.
+std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+                    const std::optional<Mission>& mission = {});
 
-// A dozen lines for people. The files are those that were written.
+// A page for people, about the map, or with a mission about that. The files are those that were written.
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
-                    const std::vector<std::string>& files);
+                    const std::vector<std::string>& files, const std::optional<Mission>& mission = {});
 
 }  // namespace byre::cli

@@ -13,7 +13,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 MapProtocol protocol_of(Pace pace) {
-  MapProtocol protocol{"MH_01_easy", RecordingFormat::euroc, {.start_s = 1.5, .stride = 2}, 4, {}, "", {"MH_01_easy"}};
+  MapProtocol protocol;
+  protocol.recording = "MH_01_easy";
+  protocol.range = {.start_s = 1.5, .stride = 2};
+  protocol.frames_in_range = 4;
+  protocol.recordings = {"MH_01_easy"};
   protocol.options.pace = pace;
   return protocol;
 }
@@ -46,8 +50,8 @@ MapRun small_run() {
   run.frames[1].report.reset();
   run.frames[1].has_right = false;
   for (const int i : {0, 2, 3})
-    run.final.push_back({run.frames[static_cast<std::size_t>(i)].time,
-                         *run.frames[static_cast<std::size_t>(i)].report->map_from_body});
+    run.final.push_back(
+        {run.frames[static_cast<std::size_t>(i)].time, *run.frames[static_cast<std::size_t>(i)].report->map_from_body});
   run.causal = run.final;
   run.map.add_keyframe({});
   for (int i = 0; i < 1234; ++i) run.map.add_point({});
@@ -145,6 +149,47 @@ TEST(MapJson, HoldsEveryFrame) {
   EXPECT_TRUE(frames[0].at("ms").at("job_taken_over").is_null());
 }
 
+TEST(MapJson, HoldsHealthAndSmoothPoseOfEveryFrame) {
+  MapRun run = small_run();
+  FrameReport& report = *run.frames[2].report;
+  report.odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {0.0, 1.5, 0.0}};
+  report.odometry_covariance(0, 1) = 0.125;
+  report.health.verdict = Verdict::degraded;
+  report.health.doubt = Doubt::maps_disagree;
+  report.health.offline_inliers = 77;
+  report.health.position_sigma = 0.5;
+  report.health.agreement = Agreement{0.25, 0.125};
+  const json frames = stats_of(run).at("frames");
+  EXPECT_EQ(frames[2].at("odometry").at("position_m"), (json{0.0, 1.5, 0.0}));
+  EXPECT_EQ(frames[2].at("odometry").at("body_covariance")[1], 0.125);
+  const json& health = frames[2].at("health");
+  EXPECT_EQ(health.at("verdict"), "degraded");
+  EXPECT_EQ(health.at("doubt"), "offline and online points disagree");
+  EXPECT_EQ(health.at("offline_inliers"), 77);
+  EXPECT_EQ(health.at("position_sigma_m"), 0.5);
+  EXPECT_EQ(health.at("agreement"), (json{{"translation_m", 0.25}, {"rotation_rad", 0.125}}));
+  EXPECT_TRUE(health.at("image").is_null());
+  EXPECT_FALSE(frames[0].contains("odometry"));
+  EXPECT_FALSE(frames[2].contains("error")) << "there is no truth";
+}
+
+TEST(MapJson, TellsOfTheMissionAndHowFarEachPoseWasOff) {
+  Mission mission;
+  mission.statistics.losses = 3;
+  mission.errors.emplace().causal = {{milliseconds(100), Vector6::Unit(1)}};
+  MapProtocol protocol = protocol_of(Pace::paced);
+  protocol.offline = "barn.byre";
+  protocol.options.session.map_online = false;
+  const json stats = json::parse(to_json(small_run(), protocol, {}, mission));
+  EXPECT_EQ(stats.at("protocol").at("offline_map"), "barn.byre");
+  EXPECT_EQ(stats.at("protocol").at("localise_only"), true);
+  EXPECT_EQ(stats.at("mission").at("losses"), 3);
+  EXPECT_EQ(stats.at("errors").at("causal").at("count"), 1);
+  EXPECT_EQ(stats.at("frames")[2].at("error").at("position_m"), 1.0);
+  EXPECT_FALSE(stats.at("frames")[3].contains("error"));
+  EXPECT_FALSE(stats_of(small_run()).contains("mission"));
+}
+
 TEST(MapJson, KeepsAFrameThatCouldNotBeRead) {
   const json frame = stats_of(small_run()).at("frames")[1];
   EXPECT_EQ(frame.at("state"), "unreadable");
@@ -205,6 +250,16 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
   EXPECT_THAT(text, HasSubstr("extended     barn.byre, found in it after 2 frames\n"));
   EXPECT_THAT(text, HasSubstr("map          3 keyframes, of those before and 1 made; 1234 points\n"));
   EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
+}
+
+TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
+  Mission mission;
+  mission.statistics.seconds_to_first_pose = 0.1;
+  const std::string text = to_text(small_run(), protocol_of(Pace::paced), {}, {}, mission);
+  EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
+  EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
+  EXPECT_THAT(text, HasSubstr("finishing    left out")) << "as of a map, for there is no offline one";
+  EXPECT_THAT(text, Not(HasSubstr("truth"))) << "there is none";
 }
 
 TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {

@@ -5,8 +5,8 @@
 #include "byre/cli/logged_executor.h"
 #include "byre/cli/resources.h"
 #include "byre/cli/stopwatch.h"
+#include "byre/input/input_error.h"
 
-#include <memory>
 #include <utility>
 
 namespace byre::cli {
@@ -99,6 +99,9 @@ void take_over_result(const FrameThread& thread, MapRun& run) {
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
+    if (frame.report && frame.report->odometry_from_body) {
+      run.odometry.push_back({frame.time, *frame.report->odometry_from_body});
+    }
   }
 }
 
@@ -114,6 +117,23 @@ std::string_view name_of(Pace pace) {
       return "live";
   }
   return "";
+}
+
+std::string_view name_of(OfflinePolicy policy) {
+  switch (policy) {
+    case OfflinePolicy::first:
+      return "first";
+    case OfflinePolicy::together:
+      return "together";
+  }
+  return "";
+}
+
+std::unique_ptr<Recording> open_stereo_recording(const std::filesystem::path& folder, const FrameRange& range) {
+  std::unique_ptr<Recording> recording = open_recording(folder, range);
+  if (recording->calibration().right) return recording;
+  throw InputError(folder.string(), "has no right camera: only stereo recordings can be mapped",
+                   "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
 }
 
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,

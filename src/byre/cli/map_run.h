@@ -7,7 +7,9 @@
 #include "byre/session/session.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,7 +24,9 @@ namespace byre::cli {
 //   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
-std::string_view name_of(Pace pace);  // as on the command line
+// As on the command line.
+std::string_view name_of(Pace pace);
+std::string_view name_of(OfflinePolicy policy);
 
 inline constexpr int kPacedLatency = 4;             // frames
 inline constexpr int kPacedCorrectionLatency = 40;  // frames
@@ -62,6 +66,7 @@ struct MapRun {
   std::vector<MappedFrame> frames;     // one for each frame of the recording, fewer when the run was stopped
   Trajectory causal;                   // poses as published when their frames came
   Trajectory final;                    // as recomputed after the last frame
+  Trajectory odometry;                 // the smooth poses as published, in a frame of their own
   Map map{Origin::offline};            // as it is kept; of the keyframes made, others were found redundant
   std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
   std::vector<double> job_seconds;     // wall time of each mapping job
@@ -76,6 +81,9 @@ struct MapRunHooks {
   std::function<void(const Map& online)> offer_map;  // unless empty, after each frame from the first with a pose on
   std::function<void(const char* step)> before_finishing_step;
 };
+
+// A recording that run_map takes. Throws InputError when it cannot be opened or has no right camera.
+std::unique_ptr<Recording> open_stereo_recording(const std::filesystem::path& folder, const FrameRange& range);
 
 // Maps a stereo recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
 // are left out. Goes on with the map before, an online copy, if there is one: it needs the vocabulary's words, and

@@ -23,6 +23,7 @@ TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsO
 void count_events(const FrameReport& report, FrameCounts& counts) {
   counts.relocalisations += report.has(SessionEvent::relocalised) ? 1 : 0;
   counts.loops += report.has(SessionEvent::loop_found) ? 1 : 0;
+  counts.resets += report.has(SessionEvent::restarted) ? 1 : 0;
   counts.corrections += report.has(SessionEvent::map_corrected) ? 1 : 0;
 }
 
@@ -63,9 +64,8 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
     const State before = std::exchange(state, frame.report->state);
     counts.with_pose += frame.report->map_from_body ? 1 : 0;
     counts.keyframes += frame.report->keyframe_added ? 1 : 0;
-    counts.lost += state == State::lost ? 1 : 0;
-    counts.lost_episodes += state == State::lost && before != State::lost ? 1 : 0;
-    counts.resets += state == State::initialising && before != State::initialising ? 1 : 0;
+    counts.lost += has_lost_its_way(state) ? 1 : 0;
+    counts.lost_episodes += has_lost_its_way(state) && !has_lost_its_way(before) ? 1 : 0;
   }
   return counts;
 }

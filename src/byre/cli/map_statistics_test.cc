@@ -58,17 +58,18 @@ TEST(SummariseWithoutJobs, TakesOffWhatWasSpentInSubmitting) {
 
 TEST(CountFrames, CountsEpisodesOfBeingLostAndTheirFrames) {
   std::vector<MappedFrame> frames;
-  for (const State state : {State::initialising, State::tracking, State::lost, State::lost, State::tracking,
-                            State::lost, State::initialising, State::tracking}) {
+  for (const State state : {State::initialising, State::tracking, State::relocalising, State::lost, State::tracking,
+                            State::relocalising, State::tracking, State::tracking}) {
     frames.push_back(frame_in(state));
   }
+  frames[6].report->events.push_back(SessionEvent::restarted);
   const FrameCounts counts = count_frames(frames);
   EXPECT_EQ(counts.frames, 8);
-  EXPECT_EQ(counts.with_pose, 3);
+  EXPECT_EQ(counts.with_pose, 4);
   EXPECT_EQ(counts.lost_episodes, 2);
   EXPECT_EQ(counts.lost, 3);
   EXPECT_EQ(counts.resets, 1);
-  EXPECT_DOUBLE_EQ(counts.coverage(), 3.0 / 8.0);
+  EXPECT_DOUBLE_EQ(counts.coverage(), 4.0 / 8.0);
 }
 
 TEST(CountFrames, TakesAnUnreadableFrameForNeitherLostNorFound) {

@@ -1,7 +1,9 @@
 #include "byre/cli/output_file.h"
 
+#include "byre/evaluation/trajectory_file.h"
 #include "byre/input/input_error.h"
 
+#include <fstream>
 #include <system_error>
 
 #include <unistd.h>
@@ -23,6 +25,13 @@ fs::path folder_of(const fs::path& path) {
 void require_access(const fs::path& path) {
   if (access(path.c_str(), W_OK) == 0) return;
   throw InputError(path.string(), "may not be written", "check its permissions");
+}
+
+void write_text(const std::string& text, const fs::path& path) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
 }
 
 }  // namespace
@@ -52,6 +61,14 @@ void write_whole(const fs::path& path, const std::function<void(const fs::path&)
     fs::remove(unfinished, ignored);
     throw;
   }
+}
+
+void write_whole(const fs::path& path, const std::string& text) {
+  write_whole(path, [&text](const fs::path& unfinished) { write_text(text, unfinished); });
+}
+
+void write_whole(const fs::path& path, const Trajectory& trajectory) {
+  write_whole(path, [&trajectory](const fs::path& unfinished) { write_trajectory(trajectory, unfinished); });
 }
 
 }  // namespace byre::cli

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "byre/geometry/trajectory.h"
+
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace byre::cli {
 
@@ -12,5 +15,9 @@ void require_writable(const std::filesystem::path& path);
 // program ends. A path that is no regular file, such as /dev/stdout, is written to directly. Hands on what write
 // throws.
 void write_whole(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+
+// The same for a text, and for a trajectory as a TUM file. Throw InputError when it cannot be written.
+void write_whole(const std::filesystem::path& path, const std::string& text);
+void write_whole(const std::filesystem::path& path, const Trajectory& trajectory);
 
 }  // namespace byre::cli

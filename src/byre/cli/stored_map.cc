@@ -19,12 +19,16 @@ SourceRecording describe_source(const fs::path& folder, const Recording& recordi
 StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
   StoredMap stored = load_map(path);
   if (stored.scale != MapScale::metric) {
-    throw InputError(path.string(), "has no metric scale, so mapping cannot go on with it",
+    throw InputError(path.string(), "has no metric scale, so stereo images cannot be compared with it",
                      "import the model with --scale, the length of its unit in metres");
   }
   if (stored.map.keyframe_count() == 0) throw InputError(path.string(), "holds no keyframes", "map a recording first");
   add_words(stored, vocabulary);
   return stored;
+}
+
+std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary) {
+  return std::make_shared<const OfflineMap>(load_for_mapping(path, vocabulary).map, vocabulary);
 }
 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {

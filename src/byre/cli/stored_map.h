@@ -3,8 +3,10 @@
 #include "byre/dataset/recording.h"
 #include "byre/map/map_file.h"
 #include "byre/place/vocabulary.h"
+#include "byre/slam/offline_map.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,9 +19,12 @@ Vocabulary open_vocabulary(const std::optional<std::filesystem::path>& path);
 // What a map says of a recording it was made from: not where it lies, so that equal maps are equal.
 SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording);
 
-// A map that mapping may go on with: its keyframes have words of this vocabulary. Throws InputError when it cannot be
-// loaded, or has no metric scale, without which stereo and loops cannot be compared with it.
+// A map that a recording may be tracked in: its keyframes have words of this vocabulary. Throws InputError when it
+// cannot be loaded, or has no metric scale, without which stereo and loops cannot be compared with it.
 StoredMap load_for_mapping(const std::filesystem::path& path, const Vocabulary& vocabulary);
+
+// The same as the offline map of missions.
+std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& path, const Vocabulary& vocabulary);
 
 // How many keyframes are of each of so many recordings.
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "byre/cli/map_frame_error.h"
+#include "byre/cli/map_run.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre::cli {
+
+// How far the poses of a run are from the truth.
+struct MissionErrors {
+  // True: in the frame of the offline map, which alone was aligned to the truth. False: of a run without one, whose
+  // causal and final trajectories were each aligned to the truth.
+  bool in_map_frame = false;
+  int alignment_keyframes = 0;      // of the offline map; zero: the truth is taken for given in the map's frame
+  std::vector<PoseError> causal;    // as published
+  std::vector<PoseError> trusted;   // of those, of frames reported as trusted
+  std::vector<PoseError> degraded;  // of those, of frames reported as degraded
+  std::vector<PoseError> final;     // as recomputed after the last frame
+  int wrongly_trusted = 0;          // frames trusted and yet off by more than kFarMetres
+  double longest_wrong_trust_s = 0.0;
+  std::optional<double> within_bound;  // share of causal positions within the 95 % bound of their covariance
+};
+
+inline constexpr double kFarMetres = 0.2;
+
+// Errors in the map's frame; map_truth holds the truth at the times of the map's keyframes, where it does.
+MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajectory& map_truth,
+                             const Trajectory& truth);
+
+// Errors after alignment, of a run without an offline map.
+MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth);
+
+}  // namespace byre::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "byre/cli/map_run.h"
+#include "byre/evaluation/trajectory_error.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace byre::cli {
+
+// Keyframes made in so much time of the recording.
+struct KeyframeRate {
+  int keyframes = 0;
+  double minutes = 0.0;
+
+  double per_minute() const { return minutes > 0.0 ? keyframes / minutes : 0.0; }
+};
+
+// What a mission on a map came to. Frames that could not be read are left out.
+struct MissionStatistics {
+  int frames = 0;
+  int trusted = 0;
+  int degraded = 0;
+  int untrusted = 0;
+  std::vector<std::pair<Doubt, int>> doubts;  // in frames that are not trusted, the most frequent first
+  std::optional<double> seconds_to_first_pose;
+  int losses = 0;
+  int relocalisations = 0;
+  int navigation_errors = 0;
+  KeyframeRate in_known_places;     // offline points held the pose
+  KeyframeRate in_changed_or_new;   // the rest of the frames with a pose
+  ErrorStatistics offline_inliers;  // of frames with a pose
+  ErrorStatistics online_inliers;   // of frames with a pose
+  int most_suspended = 0;           // offline points at a time
+};
+
+// A place is known where a frame has at least so many offline inliers.
+MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);
+
+}  // namespace byre::cli

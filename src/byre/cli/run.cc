@@ -1,0 +1,145 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/event_log.h"
+#include "byre/cli/interrupt.h"
+#include "byre/cli/map_report.h"
+#include "byre/cli/output_file.h"
+#include "byre/cli/output_options.h"
+#include "byre/cli/run_options.h"
+#include "byre/cli/run_with_progress.h"
+#include "byre/cli/stored_map.h"
+#include "byre/cli/trajectory_input.h"
+#include "byre/cli/warnings.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/input_error.h"
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// True poses, read before the run and not after an hour of it.
+struct Truth {
+  Trajectory of_frames;
+  Trajectory of_map;
+};
+
+std::optional<Truth> load_truths(const RunOptions& options) {
+  if (!options.truth) return std::nullopt;
+  Truth truth;
+  truth.of_frames = load_truth(*options.truth);
+  truth.of_map = options.map_truth ? load_truth(*options.map_truth) : truth.of_frames;
+  return truth;
+}
+
+MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
+  MapProtocol protocol;
+  protocol.program = "byre run";
+  protocol.recording = options.recording.string();
+  protocol.format = guess_format(options.recording);
+  protocol.range = options.range;
+  protocol.frames_in_range = recording.size();
+  protocol.options.pace = options.pace;
+  protocol.options.session.map_online = !options.localise_only;
+  protocol.options.session.track = options.track;
+  protocol.options.vocabulary = open_vocabulary(options.vocabulary);
+  if (!options.map) return protocol;
+  protocol.offline = options.map->string();
+  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary);
+  return protocol;
+}
+
+// Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends.
+std::ofstream open_events(const fs::path& path) {
+  std::ofstream file(path);
+  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
+  return file;
+}
+
+MapRun run_and_log(Recording& recording, const MapRunOptions& run_options, const RunOptions& options,
+                   const InterruptCatcher& interrupt) {
+  if (!options.events) return run_with_progress(recording, run_options, {}, interrupt, options.quiet);
+  std::ofstream file = open_events(*options.events);
+  EventLog log(file);
+  MapRunHooks hooks;
+  hooks.after_frame = [&log](int done, const MappedFrame& frame) { log.note(done - 1, frame); };
+  MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet);
+  if (!file)
+    run.warnings.push_back(options.events->string() + ": events are missing, as the file could not be written");
+  return run;
+}
+
+Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth) {
+  Mission mission;
+  mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
+  if (!truth) return mission;
+  mission.errors = options.offline ? mission_errors(run, options.offline->map(), truth->of_map, truth->of_frames)
+                                   : aligned_errors(run, truth->of_frames);
+  return mission;
+}
+
+void save_online_map(const Map& map, const SourceRecording& source, const Vocabulary& vocabulary,
+                     const fs::path& path) {
+  StoredMap stored;
+  stored.map = map;
+  stored.recordings = {source};
+  save_for_use(std::move(stored), vocabulary, "", path);
+}
+
+void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol, const Mission& mission,
+                   const ResourceUse& resources) {
+  if (options.trajectory) write_whole(*options.trajectory, run.final);
+  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+  if (options.odometry) write_whole(*options.odometry, run.odometry);
+  if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
+}
+
+void require_poses(const MapRun& run, const RunOptions& options) {
+  if (!run.causal.empty()) return;
+  if (options.map) {
+    throw std::runtime_error("no frame was found in " + options.map->string() +
+                             ": the recording may be of another place, or too different in light or viewpoint");
+  }
+  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
+}
+
+ExitCode run_mission(RunOptions options, std::ostream& result) {
+  for (const fs::path& output : options.outputs()) require_writable(output);
+  const std::unique_ptr<Recording> recording = open_stereo_recording(options.recording, options.range);
+  const std::optional<Truth> truth = load_truths(options);
+  const MapProtocol protocol = protocol_of(options, *recording);
+
+  limit_image_threads(1);
+  const InterruptCatcher interrupt(options.outputs());
+  MapRun run = run_and_log(*recording, protocol.options, options, interrupt);
+  if (options.online_map && run.map.keyframe_count() == 0) {
+    run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
+    options.online_map.reset();
+  }
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+  if (options.online_map) {
+    save_online_map(run.map, describe_source(options.recording, *recording), *protocol.options.vocabulary,
+                    *options.online_map);
+  }
+  const ResourceUse resources = resources_used_so_far();
+  const Mission mission = judge(run, protocol.options, truth);
+  write_results(options, run, protocol, mission, resources);
+  result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
+  if (interrupt.caught()) return ExitCode::interrupted;
+  require_poses(run, options);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_run(CLI::App& command) {
+  const auto options = std::make_shared<RunOptions>();
+  declare_run_options(command, *options);
+  return [options](std::ostream& result) { return run_mission(*options, result); };
+}
+
+}  // namespace byre::cli

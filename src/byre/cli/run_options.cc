@@ -1,0 +1,129 @@
+#include "byre/cli/run_options.h"
+
+#include "byre/cli/formatted.h"
+#include "byre/cli/frame_range_options.h"
+#include "byre/cli/output_options.h"
+#include "byre/cli/pace_option.h"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter = R"(Examples:
+  byre run evening_round --map barn.byre --events events.jsonl
+  byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
+  byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
+  byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
+  byre run evening_round --truth evening_round --stats without_map.json
+
+With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
+beside them, and says of each frame how far its pose may be trusted. The map's file is only read. Poses are in the map's
+frame, those of odometry in one that begins where the robot does and never jumps. With --localise-only nothing is mapped
+beside the map; without --map all is, as "byre map" does it, finishing included. With truth, errors are those in the map's
+frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
+that one's truth too (--map-truth). Ctrl-C stops after the current frame and still writes all files, then the exit code
+is 130. Exit code 1 when no frame got a pose. docs/mission.md describes the events and what health means.)";
+
+void declare_inputs(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("RECORDING", options.recording, "Folder of a stereo recording, as EuRoC or KITTI odometry has them")
+      ->type_name("FOLDER")
+      ->required();
+  CLI::Option* const map =
+      command.add_option("--map", options.map, "The offline map of the mission (none: plain SLAM)")->type_name("MAP");
+  command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
+      ->needs(map);
+  CLI::Option* const truth =
+      command
+          .add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
+          ->type_name("FILE|FOLDER");
+  command
+      .add_option("--map-truth", options.map_truth,
+                  "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+      ->type_name("FILE|FOLDER")
+      ->needs(truth)
+      ->needs(map);
+  command.add_option("--vocabulary", options.vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+}
+
+void declare_outputs(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--save-online", options.online_map, "What was mapped beside the offline map, as a map of its own")
+      ->type_name("MAP");
+  command.add_option("--events", options.events, "What happens, as it happens: JSON lines")->type_name("FILE");
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "Final poses in the map's frame: as recomputed after the last frame. TUM format")
+      ->type_name("FILE");
+  command
+      .add_option("--causal-trajectory", options.causal_trajectory,
+                  "Causal poses in the map's frame: as published when their frames came. TUM format")
+      ->type_name("FILE");
+  command.add_option("--odometry", options.odometry, "Smooth poses, as published, in a frame of their own. TUM format")
+      ->type_name("FILE");
+  command.add_option("--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
+      ->type_name("FILE");
+}
+
+void require_consistent(const RunOptions& options) {
+  require_sense(options.range);
+  if (options.localise_only && options.online_map) {
+    throw CLI::ValidationError("--localise-only", "maps nothing, so there is nothing to --save-online");
+  }
+  require_distinct(options.outputs());
+  for (const fs::path& output : options.outputs()) {
+    if (options.map && is_same_file(output, *options.map)) {
+      throw CLI::ValidationError("--map", "is only read: name another file for what is to be written");
+    }
+  }
+}
+
+// How points of the two maps go together; the defaults were measured.
+void declare_tracking(CLI::App& command, TrackOptions& track) {
+  std::map<std::string, OfflinePolicy> policies;
+  for (const OfflinePolicy known : {OfflinePolicy::first, OfflinePolicy::together}) {
+    policies.emplace(name_of(known), known);
+  }
+  command
+      .add_option(
+          "--offline-weight", track.offline_weight,
+          formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
+      ->type_name("FACTOR")
+      ->check(CLI::Range(1e-3, 1e3).description(""));
+  command
+      .add_option(
+          "--offline-policy", track.offline_policy,
+          "Offline points first, so that their pose guides the search for online ones, or both together (first)")
+      ->type_name("first|together")
+      ->transform(CLI::CheckedTransformer(policies).description(""));
+}
+
+}  // namespace
+
+std::vector<fs::path> RunOptions::outputs() const {
+  std::vector<fs::path> files;
+  for (const auto& file : {online_map, events, trajectory, causal_trajectory, odometry, stats}) {
+    if (file) files.push_back(*file);
+  }
+  return files;
+}
+
+void declare_run_options(CLI::App& command, RunOptions& options) {
+  declare_inputs(command, options);
+  declare_outputs(command, options);
+  declare_frame_range(command, options.range);
+  declare_pace(command, options.pace);
+  declare_tracking(command, options.track);
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  command.parse_complete_callback([&options] { require_consistent(options); });
+  command.footer(kFooter);
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "byre/cli/map_run.h"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+namespace byre::cli {
+
+// The command line of "byre run".
+struct RunOptions {
+  std::filesystem::path recording;
+  std::optional<std::filesystem::path> map;  // the offline map; without it plain SLAM
+  bool localise_only = false;
+  std::optional<std::filesystem::path> online_map;
+  std::optional<std::filesystem::path> events;
+  std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> causal_trajectory;
+  std::optional<std::filesystem::path> odometry;
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> truth;
+  std::optional<std::filesystem::path> map_truth;   // of the map's own recording, where that is another
+  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  FrameRange range;
+  Pace pace = Pace::paced;
+  TrackOptions track;
+  bool quiet = false;
+
+  std::vector<std::filesystem::path> outputs() const;  // those asked for
+};
+
+// The options must outlive the parsing of the command line.
+void declare_run_options(CLI::App& command, RunOptions& options);
+
+}  // namespace byre::cli

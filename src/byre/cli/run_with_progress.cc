@@ -1,0 +1,44 @@
+#include "byre/cli/run_with_progress.h"
+
+#include "byre/cli/finish_hooks.h"
+#include "byre/cli/formatted.h"
+#include "byre/cli/progress.h"
+#include "byre/cli/stopwatch.h"
+
+#include <iostream>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+std::string state_after(const MappedFrame& frame, bool is_mission) {
+  if (!frame.report) return "unreadable frame";
+  std::string state(to_string(frame.report->state));
+  if (is_mission) state += ", " + std::string(to_string(frame.report->health.verdict));
+  return state + formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
+}
+
+}  // namespace
+
+MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
+                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+  Progress progress(std::cerr, progress_style(quiet), recording.size());
+  const Stopwatch watch;
+  const FinishHooks finishing = finish_hooks(interrupt, quiet);
+  MapRunHooks hooks;
+  hooks.should_stop = finishing.should_stop;
+  hooks.offer_map = more_hooks.offer_map;
+  hooks.after_frame = [&](int done, const MappedFrame& frame) {
+    if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
+    progress.update(done, watch.seconds(), state_after(frame, options.offline != nullptr));
+  };
+  hooks.before_finishing_step = [&progress, &finishing](const char* step) {
+    progress.close();
+    if (finishing.before_step) finishing.before_step(step);
+  };
+  MapRun run = run_map(recording, options, hooks, std::move(before));
+  progress.close();
+  return run;
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "byre/cli/interrupt.h"
+#include "byre/cli/map_run.h"
+
+#include <optional>
+
+namespace byre::cli {
+
+// run_map, stopped by Ctrl-C, that tells on the standard error stream how far it is unless quiet. Of the hooks,
+// after_frame and offer_map are called too unless empty; the others are set here.
+MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
+                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before = {});
+
+}  // namespace byre::cli
