@@ -123,17 +123,6 @@ TEST(ImageCondition, TellsBrightnessAndTheShareOfClippedPixels) {
   EXPECT_FLOAT_EQ(condition_of(image).brightness, (255.0f + 0.0f + 200.0f) / 4.0f);
 }
 
-TEST(ImageCondition, ReadsRowsThatLieApart) {
-  const cv::Mat whole = wall();
-  const cv::Mat part = whole(cv::Rect(40, 24, 200, 100));
-  const ImageCondition apart =
-      measure_condition(part.data, part.cols, part.rows, static_cast<std::ptrdiff_t>(part.step));
-  const ImageCondition copied = condition_of(part);
-  EXPECT_EQ(apart.sharpness, copied.sharpness);
-  EXPECT_EQ(apart.contrast, copied.contrast);
-  EXPECT_EQ(apart.brightness, copied.brightness);
-}
-
 TEST(ImageCondition, KnowsOnlyTheLightOfATinyImage) {
   const ImageCondition tiny = condition_of(wall()(cv::Rect(0, 0, 32, 16)));
   EXPECT_GT(tiny.brightness, 50.0f);
