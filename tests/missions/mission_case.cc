@@ -12,13 +12,13 @@
 namespace byre {
 namespace {
 
-std::vector<MissionFrame> run(const Mission& mission, Recording& recording, const Trajectory& truth,
+std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Trajectory& truth,
                               std::shared_ptr<const OfflineMap> map) {
   limit_image_threads(1);
   Extractor extractor(recording.calibration(), {});
   Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
   std::vector<MissionFrame> frames;
-  for (const MissionStep& step : mission.steps) {
+  for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);
     if (!recorded) continue;
     ImageFrame images = step.disturb ? step.disturb(*recorded) : *recorded;
@@ -57,14 +57,14 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
   const KnownMap known = maps.get(mission_case.map);
   const std::filesystem::path folder = find(mission_case.recording).value();
   const auto recording = open_recording(folder, mission_case.range);
-  Mission mission = mission_case.plan(recording->times());
+  MissionPlan plan = mission_case.plan(recording->times());
   if (mission_case.mapped_again_after) {
-    mission.undisturbed_from = mission.steps.front().time + from_seconds(*mission_case.mapped_again_after);
+    plan.undisturbed_from = plan.steps.front().time + from_seconds(*mission_case.mapped_again_after);
   }
   FlownMission flown;
-  flown.frames = run(mission, *recording, truth_of(folder), known.map);
+  flown.frames = run(plan, *recording, truth_of(folder), known.map);
   if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
-  flown.score = score(flown.frames, flown.truth_from_map, mission.undisturbed_from);
+  flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
   return flown;
 }
 

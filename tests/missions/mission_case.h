@@ -1,7 +1,7 @@
 #pragma once
 
 #include "known_map.h"
-#include "mission.h"
+#include "mission_plan.h"
 #include "mission_score.h"
 
 #include <functional>
@@ -30,7 +30,7 @@ struct MissionCase {
   RecordingName recording;
   FrameRange range;
   MapChoice map;
-  std::function<Mission(const std::vector<Timestamp>& times)> plan;
+  std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
   Demand demand{};
   std::optional<double> mapped_again_after{};  // seconds: when it comes back from outside the mapped area
 };

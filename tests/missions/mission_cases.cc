@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-using Plan = std::function<Mission(const std::vector<Timestamp>&)>;
+using Plan = std::function<MissionPlan(const std::vector<Timestamp>&)>;
 
 constexpr double kHandCoverage = 0.7;
 constexpr double kBlurPixels = 20.0;
@@ -41,9 +41,9 @@ Plan degrade(const Span& span, const Degradation& degradation) {
 
 Plan degrade_all(const Degradation& degradation) {
   return [=](const std::vector<Timestamp>& times) {
-    Mission mission = degraded(times, {0.0, kToTheEnd}, degradation);
-    mission.undisturbed_from = times.front();
-    return mission;
+    MissionPlan plan = degraded(times, {0.0, kToTheEnd}, degradation);
+    plan.undisturbed_from = times.front();
+    return plan;
   };
 }
 

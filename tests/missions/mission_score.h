@@ -30,7 +30,8 @@ struct MissionScore {
 
 inline constexpr double kMaxTrustedError = 0.2;  // metres
 
-// truth_from_map: empty when the map is of another place, where no pose can be right. undisturbed_from: see Mission.
+// truth_from_map: empty when the map is of another place, where no pose can be right. undisturbed_from: see
+// MissionPlan.
 MissionScore score(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map,
                    const std::optional<Timestamp>& undisturbed_from);
 

@@ -18,7 +18,7 @@ struct MissionStep {
 };
 
 // What happens to the robot, as a rearrangement of a recording.
-struct Mission {
+struct MissionPlan {
   std::vector<MissionStep> steps;
   // From when on nothing disturbs any more; the first step's where nothing ever does, empty where it does to the end.
   std::optional<Timestamp> undisturbed_from;
@@ -31,13 +31,13 @@ struct Span {
 };
 
 // All frames, at their own times. Precondition, as below: times ascend and there are some.
-Mission as_recorded(const std::vector<Timestamp>& times);
+MissionPlan as_recorded(const std::vector<Timestamp>& times);
 
 // The same with the images of a span degraded. A span that reaches the end is never over.
-Mission degraded(const std::vector<Timestamp>& times, const Span& span, const Degradation& degradation);
+MissionPlan degraded(const std::vector<Timestamp>& times, const Span& span, const Degradation& degradation);
 
 // The robot is carried away after the first span and set down where the second begins; times go on as if nothing had
 // happened. For so many seconds before it is set down the images are black.
-Mission kidnapped(const std::vector<Timestamp>& times, const Span& before, const Span& after, double dark_seconds);
+MissionPlan kidnapped(const std::vector<Timestamp>& times, const Span& before, const Span& after, double dark_seconds);
 
 }  // namespace byre
