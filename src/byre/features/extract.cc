@@ -166,8 +166,7 @@ Extraction Extractor::extract(const ImageFrame& images) {
   }
   Extraction extraction;
   extraction.frame.time = images.time;
-  extraction.frame.condition =
-      measure_condition(left.data, left.cols, left.rows, static_cast<std::ptrdiff_t>(left.step));
+  extraction.frame.condition = measure_condition(images.left);
   extraction.frame.features =
       std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
                                        std::move(described.descriptors), std::move(described.patches));

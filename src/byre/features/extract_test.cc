@@ -80,7 +80,7 @@ TEST(Extractor, TellsTheConditionOfTheLeftImage) {
   const std::optional<ImageCondition> seen = extractor.extract(images).frame.condition;
   ASSERT_TRUE(seen);
   EXPECT_EQ(fault_of(*seen, {}), ImageFault::none);
-  EXPECT_EQ(seen->sharpness, measure_condition(images.left).sharpness) << "rectified already";
+  EXPECT_EQ(seen->sharpness, measure_condition(images.left).sharpness) << "before rectification";
   std::ranges::fill(images.left.pixels, std::uint8_t{0});
   EXPECT_EQ(fault_of(*extractor.extract(images).frame.condition, {}), ImageFault::dark);
 }

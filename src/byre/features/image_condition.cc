@@ -40,13 +40,13 @@ int sum_of_squared_differences(const std::uint8_t* a, const std::uint8_t* b, int
 }
 
 // Precondition: there are pixels to compare.
-std::array<Differences, kDirections.size()> differences_of(const std::uint8_t* pixels, int width, int height,
-                                                           std::ptrdiff_t stride) {
+std::array<Differences, kDirections.size()> differences_of(const Image& image) {
   std::array<Differences, kDirections.size()> differences;
-  const int columns = width - 2 * kMargin;
+  const std::ptrdiff_t stride = image.width;
+  const int columns = image.width - 2 * kMargin;
   double pairs = 0.0;
-  for (int y = 0; y + kMargin < height; y += kRowStep) {
-    const std::uint8_t* const row = pixels + y * stride + kMargin;
+  for (int y = 0; y + kMargin < image.height; y += kRowStep) {
+    const std::uint8_t* const row = image.pixels.data() + y * stride + kMargin;
     for (std::size_t i = 0; i < kDirections.size(); ++i) {
       const Direction& direction = kDirections[i];
       differences[i].near += sum_of_squared_differences(row, row + direction.offset(direction.near, stride), columns);
@@ -63,19 +63,19 @@ struct Light {
   float clipped = 0.0f;
 };
 
-Light light_of(const std::uint8_t* pixels, int width, int height, std::ptrdiff_t stride) {
+Light light_of(const Image& image) {
   constexpr std::uint8_t kBlack = 2, kWhite = 253;
   double sum = 0.0, clipped = 0.0, count = 0.0;
-  for (int y = 0; y < height; y += kRowStep) {
-    const std::uint8_t* const row = pixels + y * stride;
+  for (int y = 0; y < image.height; y += kRowStep) {
+    const std::uint8_t* const row = image.pixels.data() + static_cast<std::ptrdiff_t>(y) * image.width;
     int row_sum = 0, row_clipped = 0;
-    for (int x = 0; x < width; ++x) {
+    for (int x = 0; x < image.width; ++x) {
       row_sum += row[x];
       row_clipped += row[x] <= kBlack || row[x] >= kWhite ? 1 : 0;
     }
     sum += row_sum;
     clipped += row_clipped;
-    count += width;
+    count += image.width;
   }
   if (count == 0.0) return {};
   return {static_cast<float>(sum / count), static_cast<float>(clipped / count)};
@@ -83,10 +83,10 @@ Light light_of(const std::uint8_t* pixels, int width, int height, std::ptrdiff_t
 
 }  // namespace
 
-ImageCondition measure_condition(const std::uint8_t* pixels, int width, int height, std::ptrdiff_t stride) {
-  const Light light = light_of(pixels, width, height, stride);
-  if (width <= 2 * kMargin || height <= kMargin) return {light.brightness, 0.0f, light.clipped, 0.0f};
-  const auto differences = differences_of(pixels, width, height, stride);
+ImageCondition measure_condition(const Image& image) {
+  const Light light = light_of(image);
+  if (image.width <= 2 * kMargin || image.height <= kMargin) return {light.brightness, 0.0f, light.clipped, 0.0f};
+  const auto differences = differences_of(image);
   double contrast = 0.0;  // squared grey values
   double sharpness = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < kDirections.size(); ++i) {
@@ -96,10 +96,6 @@ ImageCondition measure_condition(const std::uint8_t* pixels, int width, int heig
     sharpness = std::min(sharpness, far > 0.0 ? steps * near / far : 0.0);
   }
   return {light.brightness, static_cast<float>(std::sqrt(contrast)), light.clipped, static_cast<float>(sharpness)};
-}
-
-ImageCondition measure_condition(const Image& image) {
-  return measure_condition(image.pixels.data(), image.width, image.height, image.width);
 }
 
 std::string_view to_string(ImageFault fault) {

@@ -1,0 +1,240 @@
+#include "degradation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+namespace byre {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A header over the image's own pixels; nothing writes through it.
+cv::Mat as_matrix(const Image& image) {
+  return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// Rounded and clipped to what a pixel can hold.
+Image to_image(const cv::Mat& grey) {
+  cv::Mat bytes;
+  grey.convertTo(bytes, CV_8U);
+  return {bytes.cols, bytes.rows, std::vector<std::uint8_t>(bytes.datastart, bytes.dataend)};
+}
+
+Image scaled(const Image& image, double scale, double offset) {
+  cv::Mat result;
+  as_matrix(image).convertTo(result, CV_32F, scale, offset);
+  return to_image(result);
+}
+
+cv::Mat white_noise(cv::Size size, double sigma, std::uint64_t seed) {
+  cv::Mat noise(size, CV_32F);
+  cv::RNG random(seed * 0x9E3779B97F4A7C15u + 1);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, sigma);
+  return noise;
+}
+
+// Noise of this standard deviation without detail finer than so many pixels.
+cv::Mat smooth_noise(cv::Size size, double sigma, double pixels, std::uint64_t seed) {
+  cv::Mat noise;
+  cv::GaussianBlur(white_noise(size, 1.0, seed), noise, {}, pixels);
+  const double left = 1.0 / (2.0 * std::sqrt(kPi) * pixels);  // of a deviation of one, by the blur
+  return noise * (sigma / left);
+}
+
+// From 0 at or below -width / 2 to 1 at or above width / 2, without corners.
+double soft_step(double value, double width) {
+  const double t = std::clamp(value / width + 0.5, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+// How far a pixel lies from the middle of the hand, 1 on an outline with four bulges, the knuckles.
+cv::Mat1f distance_from_hand(cv::Size size, const HandPosition& position, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any_phase(0.0, 2.0 * kPi);
+  const double phase = any_phase(random), bulge_phase = any_phase(random);
+  const double centre_x = 0.42 * size.width + position.right, centre_y = 0.62 * size.height + position.down;
+  cv::Mat1f distance(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const double dx = (x - centre_x) / size.width, dy = 1.2 * (y - centre_y) / size.height;
+      const double angle = std::atan2(dy, dx);
+      const double outline = 1.0 + 0.12 * std::cos(2.0 * angle + phase) + 0.07 * std::cos(5.0 * angle + bulge_phase);
+      distance(y, x) = static_cast<float>(std::hypot(dx, dy) / outline);
+    }
+  }
+  return distance;
+}
+
+float quantile_of(const cv::Mat1f& values, double share) {
+  std::vector<float> sorted(values.begin(), values.end());
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+cv::Mat shifted(const cv::Mat& image, const HandPosition& position) {
+  const cv::Matx23d image_from_hand(1.0, 0.0, position.right, 0.0, 1.0, position.down);
+  cv::Mat result;
+  cv::warpAffine(image, result, image_from_hand, image.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT_101);
+  return result;
+}
+
+template <typename Change>
+ImageFrame change_each(const ImageFrame& images, Change change) {
+  ImageFrame changed{images.time, change(images.left, 0), std::nullopt};
+  if (images.right) changed.right = change(*images.right, 1);
+  return changed;
+}
+
+std::uint64_t seed_of(int step, int camera) {
+  return 2 * static_cast<std::uint64_t>(step) + static_cast<std::uint64_t>(camera);
+}
+
+}  // namespace
+
+Image without_light(const Image& image, std::uint64_t seed) {
+  return to_image(white_noise({image.width, image.height}, 0.8, seed) + 1.0);
+}
+
+Image motion_blurred(const Image& image, double pixels, double angle) {
+  const int half = static_cast<int>(std::ceil(pixels / 2.0));
+  cv::Mat1f path(2 * half + 1, 2 * half + 1, 0.0f);
+  constexpr int kMoments = 200;  // at which the image is added up
+  for (int i = 0; i < kMoments; ++i) {
+    const double along = ((i + 0.5) / kMoments - 0.5) * pixels;
+    const double x = half + along * std::cos(angle), y = half + along * std::sin(angle);
+    path(static_cast<int>(std::lround(y)), static_cast<int>(std::lround(x))) += 1.0f / kMoments;
+  }
+  cv::Mat blurred;
+  cv::filter2D(as_matrix(image), blurred, CV_32F, path, {-1, -1}, 0.0, cv::BORDER_REFLECT_101);
+  return to_image(blurred);
+}
+
+Image exposed(const Image& image, double times) {
+  return scaled(image, times, 0.0);
+}
+
+Image hazed(const Image& image, double transmission) {
+  constexpr double kHazeGrey = 200.0;
+  return scaled(image, transmission, (1.0 - transmission) * kHazeGrey);
+}
+
+Image flattened(const Image& image, double share) {
+  return scaled(image, share, (1.0 - share) * cv::mean(as_matrix(image))[0]);
+}
+
+Image dirtied(const Image& image, int spots, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  cv::Mat1f covered(image.height, image.width, 0.0f);
+  for (int i = 0; i < spots; ++i) {
+    const cv::Point centre(static_cast<int>(any(random) * image.width), static_cast<int>(any(random) * image.height));
+    const cv::Size axes(static_cast<int>(8 + 28 * any(random)), static_cast<int>(8 + 28 * any(random)));
+    const double angle = 180.0 * any(random), opacity = 0.4 + 0.5 * any(random);
+    cv::ellipse(covered, centre, axes, angle, 0.0, 360.0, opacity, cv::FILLED);
+  }
+  cv::GaussianBlur(covered, covered, {}, 7.0);
+  cv::Mat clean;
+  as_matrix(image).convertTo(clean, CV_32F);
+  constexpr double kDirtGrey = 70.0;
+  return to_image(clean.mul(1.0 - covered) + kDirtGrey * covered);
+}
+
+Image blank_wall(const Image& image, std::uint64_t seed) {
+  cv::Mat1f wall(image.height, image.width);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double right = static_cast<double>(x) / image.width - 0.5,
+                   down = static_cast<double>(y) / image.height - 0.5;
+      wall(y, x) = static_cast<float>(205.0 + 14.0 * right - 10.0 * down - 45.0 * (right * right + down * down));
+    }
+  }
+  return to_image(wall + white_noise(wall.size(), 1.5, seed));
+}
+
+Image behind_hand(const Image& image, double coverage, const HandPosition& position, std::uint64_t seed) {
+  const cv::Size size(image.width, image.height);
+  const cv::Mat1f at_rest = distance_from_hand(size, {}, seed);
+  const double outline = quantile_of(at_rest, coverage);
+  const cv::Mat1f distance = distance_from_hand(size, position, seed);
+  const cv::Mat1f skin =
+      shifted(smooth_noise(size, 9.0, 60.0, seed + 1) + smooth_noise(size, 3.0, 4.0, seed + 2), position);
+  cv::Mat1f result(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const double depth = 1.0 - distance(y, x) / outline;  // 0 on the outline, 1 in the middle
+      const double open = soft_step(-depth, 0.14);
+      const double hand = 62.0 + 55.0 * std::exp(-4.0 * std::max(depth, 0.0)) + skin(y, x);
+      const double scene = image.pixels[static_cast<std::size_t>(y * size.width + x)];
+      result(y, x) = static_cast<float>(open * scene + (1.0 - open) * hand);
+    }
+  }
+  return to_image(result);
+}
+
+Degradation black_frames() {
+  return [](const ImageFrame& images, int step) {
+    return change_each(images,
+                       [&](const Image& image, int camera) { return without_light(image, seed_of(step, camera)); });
+  };
+}
+
+Degradation hand_over_the_lens(double coverage) {
+  return [coverage](const ImageFrame& images, int step) {
+    constexpr int kComing = 5;  // steps until it rests
+    const double far = std::max(0, kComing - 1 - step) / static_cast<double>(kComing);
+    return change_each(images, [&](const Image& image, int camera) {
+      const double beside = camera == 0 ? 0.0 : -0.06 * image.width;  // the right camera sees it further left
+      return behind_hand(image, coverage, {beside, far * 0.9 * image.height}, 7);
+    });
+  };
+}
+
+Degradation motion_blur(double pixels) {
+  return [pixels](const ImageFrame& images, int step) {
+    const double angle = 0.7 + 2.4 * step;  // radians: no two steps have the same
+    return change_each(images, [&](const Image& image, int) { return motion_blurred(image, pixels, angle); });
+  };
+}
+
+Degradation exposure_jumps(double factor, int steps_per_level) {
+  return [factor, steps_per_level](const ImageFrame& images, int step) {
+    const std::array<double, 4> levels = {factor, 1.0, 1.0 / factor, 1.0};
+    const double level = levels[static_cast<std::size_t>(step / steps_per_level) % levels.size()];
+    return change_each(images, [&](const Image& image, int) { return exposed(image, level); });
+  };
+}
+
+Degradation blank_close_up() {
+  return [](const ImageFrame& images, int step) {
+    return change_each(images,
+                       [&](const Image& image, int camera) { return blank_wall(image, seed_of(step, camera)); });
+  };
+}
+
+Degradation haze(double transmission) {
+  return [transmission](const ImageFrame& images, int) {
+    return change_each(images, [&](const Image& image, int) { return hazed(image, transmission); });
+  };
+}
+
+Degradation dirt(int spots) {
+  return [spots](const ImageFrame& images, int) {
+    return change_each(images,
+                       [&](const Image& image, int camera) { return dirtied(image, spots, seed_of(3, camera)); });
+  };
+}
+
+Degradation contrast_loss(double share) {
+  return [share](const ImageFrame& images, int) {
+    return change_each(images, [&](const Image& image, int) { return flattened(image, share); });
+  };
+}
+
+}  // namespace byre

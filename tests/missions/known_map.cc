@@ -1,0 +1,155 @@
+#include "known_map.h"
+
+#include "mapped_recording.h"
+
+#include "byre/features/extract.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/input_error.h"
+#include "byre/map/map_file.h"
+#include "byre/place/map_words.h"
+#include "byre/session/session.h"
+#include "byre/slam/map_from_poses.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path twin_folder() {
+  if (const char* const named = std::getenv("BYRE_TWIN")) return named;
+  const char* const home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : "/") / ".cache" / "byre" / "twin";
+}
+
+// The renderer writes this file last.
+bool is_complete_twin(const fs::path& folder) {
+  return fs::is_regular_file(folder / "twin.yaml");
+}
+
+fs::path folder_of(const RecordingName& name) {
+  if (const auto folder = find(name)) return *folder;
+  throw InputError(name.name, "is no recording here", why_missing(name));
+}
+
+Map map_by_session(Recording& recording) {
+  limit_image_threads(1);
+  Extractor extractor(recording.calibration(), {});
+  Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary());
+  for (int i = 0; i < recording.size(); ++i) {
+    if (const auto images = recording.read(i)) session.process(extractor.extract(*images).frame);
+  }
+  session.finish();
+  session.finish_map({}, {[] { return false; }, [](const char*) {}});
+  return session.map().online();
+}
+
+Map map_by_true_poses(Recording& recording, const Trajectory& truth) {
+  limit_image_threads(1);
+  Extractor extractor(recording.calibration(), {});
+  std::vector<PosedFrame> frames;
+  for (int i = 0; i < recording.size(); ++i) {
+    const auto images = recording.read(i);
+    const auto world_from_body = images ? pose_at(truth, images->time, std::chrono::milliseconds(60)) : std::nullopt;
+    if (!world_from_body) continue;
+    frames.push_back({extractor.extract(*images).frame, inverse(*world_from_body * extractor.rig().body_from_camera)});
+  }
+  return map_from_poses({extractor.rig()}, frames, {});
+}
+
+fs::path cache_file(const MapRecipe& recipe) {
+  return fs::temp_directory_path() / "byre_mission_maps" / (name_of(recipe) + ".byre");
+}
+
+StoredMap make_map(const MapRecipe& recipe) {
+  const fs::path folder = folder_of(recipe.recording);
+  const auto recording = open_recording(folder, recipe.range);
+  StoredMap stored;
+  stored.map = offline_copy(recipe.from_true_poses ? map_by_true_poses(*recording, truth_of(folder))
+                                                   : map_by_session(*recording));
+  stored.pose_source = recipe.from_true_poses ? PoseSource::given : PoseSource::slam;
+  stored.recordings = {
+      {folder.filename().string(), recording->calibration(), recording->times().front(), recording->times().back()}};
+  add_words(stored, mission_vocabulary());
+  return stored;
+}
+
+// Empty when there is none that this program can read.
+std::optional<StoredMap> load_cached(const fs::path& file) {
+  try {
+    StoredMap stored = load_map(file);
+    add_words(stored, mission_vocabulary());
+    return stored;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+StoredMap load_or_make(const MapRecipe& recipe) {
+  const fs::path file = cache_file(recipe);
+  if (std::optional<StoredMap> cached = load_cached(file)) return std::move(*cached);
+  StoredMap stored = make_map(recipe);
+  fs::create_directories(file.parent_path());
+  save_map(stored, file);
+  return stored;
+}
+
+Similarity align_to_truth(const Map& map, const Trajectory& truth) {
+  Trajectory keyframes;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    const Pose& body_from_camera = map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera;
+    keyframes.push_back({keyframe.frame.time, inverse(body_from_camera * keyframe.camera_from_world)});
+  }
+  const auto error = absolute_trajectory_error(associate(keyframes, truth, {}), Scale::fixed);
+  if (!error) throw InputError("map", "cannot be aligned to the truth of its recording");
+  return error->truth_from_estimate;
+}
+
+}  // namespace
+
+std::optional<fs::path> find(const RecordingName& name) {
+  if (name.source == Source::real) return find_recording(name.name);
+  const fs::path folder = twin_folder() / name.name;
+  return is_complete_twin(folder) ? std::optional(folder) : std::nullopt;
+}
+
+std::string why_missing(const RecordingName& name) {
+  if (name.source == Source::real) return missing(name.name);
+  return "no complete recording at " + (twin_folder() / name.name).string() +
+         "; BYRE_TWIN may name the folder that holds " + name.name;
+}
+
+std::string name_of(const MapRecipe& recipe) {
+  std::string name = recipe.recording.name;
+  if (recipe.range.last) name += "_to_" + std::to_string(*recipe.range.last);
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+const Vocabulary& mission_vocabulary() {
+  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
+  return loaded;
+}
+
+KnownMap make_known_map(const MapRecipe& recipe) {
+  StoredMap stored = load_or_make(recipe);
+  const Similarity truth_from_map = align_to_truth(stored.map, truth_of(folder_of(recipe.recording)));
+  return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary()), truth_from_map};
+}
+
+KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed) {
+  Map map = known.map->map();
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (const PointId id : map.point_ids()) {
+    if (any(random) < share) map.remove_point(id);
+  }
+  return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary()), known.truth_from_map};
+}
+
+}  // namespace byre

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "byre/dataset/recording.h"
+#include "byre/geometry/alignment.h"
+#include "byre/slam/offline_map.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Real recordings are looked for in $BYRE_DATA, or in ../shared/data beside the project's folder; rendered ones in
+// $BYRE_TWIN, or in ~/.cache/byre/twin.
+enum class Source : std::uint8_t { real, twin };
+
+struct RecordingName {
+  Source source = Source::real;
+  std::string name;
+};
+
+// Empty when it is not there, or not rendered to its end yet.
+std::optional<std::filesystem::path> find(const RecordingName& name);
+
+// Why a mission without its recording is left out, and how to have it flown.
+std::string why_missing(const RecordingName& name);
+
+// What an offline map is made of.
+struct MapRecipe {
+  RecordingName recording;
+  FrameRange range{};
+  bool from_true_poses = false;  // of frames too far apart for tracking
+};
+
+std::string name_of(const MapRecipe& recipe);  // different for different recipes of these tests
+
+struct KnownMap {
+  std::shared_ptr<const OfflineMap> map;
+  Similarity truth_from_map;  // by the map's own keyframes
+};
+
+// As "byre map" makes it. Kept in the temporary folder, in byre_mission_maps, since making it takes minutes: delete
+// that folder when mapping has changed. Throws InputError when the recording is not there.
+KnownMap make_known_map(const MapRecipe& recipe);
+
+// Without this share of its points, chosen by the seed.
+KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed);
+
+const Vocabulary& mission_vocabulary();
+
+}  // namespace byre

@@ -1,0 +1,90 @@
+#include "mission_case.h"
+
+#include "mapped_recording.h"
+
+#include "byre/features/extract.h"
+#include "byre/features/image_threads.h"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+namespace byre {
+namespace {
+
+std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Trajectory& truth,
+                              std::shared_ptr<const OfflineMap> map) {
+  limit_image_threads(1);
+  Extractor extractor(recording.calibration(), {});
+  Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
+  std::vector<MissionFrame> frames;
+  for (const MissionStep& step : plan.steps) {
+    const std::optional<ImageFrame> recorded = recording.read(step.frame);
+    if (!recorded) continue;
+    ImageFrame images = step.disturb ? step.disturb(*recorded) : *recorded;
+    images.time = step.time;
+    frames.push_back({session.process(extractor.extract(images).frame),
+                      pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
+  }
+  return frames;
+}
+
+std::string formatted(const char* format, double value) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+}  // namespace
+
+std::optional<RecordingName> missing_recording(const MissionCase& mission_case) {
+  for (const RecordingName& name : {mission_case.recording, mission_case.map.recipe.recording}) {
+    if (!find(name)) return name;
+  }
+  return std::nullopt;
+}
+
+KnownMap KnownMaps::get(const MapChoice& choice) {
+  constexpr std::uint64_t kSeed = 1;
+  const std::string name = name_of(choice.recipe) + formatted(" without %.2f", choice.share_deleted);
+  if (const auto known = maps_.find(name); known != maps_.end()) return known->second;
+  const KnownMap map = choice.share_deleted > 0.0 ? without_points(get({choice.recipe}), choice.share_deleted, kSeed)
+                                                  : make_known_map(choice.recipe);
+  return maps_.emplace(name, map).first->second;
+}
+
+FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
+  const KnownMap known = maps.get(mission_case.map);
+  const std::filesystem::path folder = find(mission_case.recording).value();
+  const auto recording = open_recording(folder, mission_case.range);
+  MissionPlan plan = mission_case.plan(recording->times());
+  if (mission_case.mapped_again_after) {
+    plan.undisturbed_from = plan.steps.front().time + from_seconds(*mission_case.mapped_again_after);
+  }
+  FlownMission flown;
+  flown.frames = run(plan, *recording, truth_of(folder), known.map);
+  if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
+  flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
+  return flown;
+}
+
+std::vector<std::string> broken_demands(const MissionCase& mission_case, const MissionScore& score) {
+  std::vector<std::string> broken;
+  if (mission_case.map.is_of_another_place && score.trusted > 0.0) {
+    broken.push_back(formatted("%.1f %% of the frames are trusted on the map of another place", 100.0 * score.trusted));
+  }
+  if (score.longest_wrong_trust > kMaxWrongTrust) {
+    broken.push_back(formatted("poses off by more than 0.2 m are trusted for %.2f s", score.longest_wrong_trust) +
+                     formatted(", the worst is off by %.2f m", score.worst_trusted_error));
+  }
+  if (mission_case.demand.recovers && !score.recovery) broken.emplace_back("is never trusted again");
+  if (mission_case.demand.recovers && score.recovery.value_or(0.0) > kMaxRecovery) {
+    broken.push_back(formatted("is trusted again only after %.2f s", *score.recovery));
+  }
+  if (score.trusted < mission_case.demand.min_trusted_share) {
+    broken.push_back(formatted("only %.1f %% of the frames are trusted", 100.0 * score.trusted));
+  }
+  return broken;
+}
+
+}  // namespace byre

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "known_map.h"
+#include "mission_plan.h"
+#include "mission_score.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// Which map the mission is given.
+struct MapChoice {
+  MapRecipe recipe;
+  double share_deleted = 0.0;  // of its points
+  bool is_of_another_place = false;
+};
+
+// What the robot must get right beyond never trusting a wrong pose for long.
+struct Demand {
+  bool recovers = true;            // trusted again soon after the disturbance
+  double min_trusted_share = 0.0;  // of all frames
+};
+
+// A mission that tries the session's health.
+struct MissionCase {
+  std::string name;
+  RecordingName recording;
+  FrameRange range;
+  MapChoice map;
+  std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
+  Demand demand{};
+  std::optional<double> mapped_again_after{};  // seconds: when it comes back from outside the mapped area
+};
+
+inline constexpr double kMaxWrongTrust = 0.5;  // seconds
+inline constexpr double kMaxRecovery = 2.0;    // seconds
+
+std::vector<MissionCase> real_mission_cases();
+std::vector<MissionCase> twin_mission_cases();
+
+// The first recording that the case needs and that is not there.
+std::optional<RecordingName> missing_recording(const MissionCase& mission_case);
+
+struct FlownMission {
+  std::vector<MissionFrame> frames;
+  std::optional<Similarity> truth_from_map;  // empty when the map is of another place
+  MissionScore score;
+};
+
+// Maps that were made or loaded, for the missions that follow. Owned by the calling thread.
+class KnownMaps {
+ public:
+  // Throws InputError when the map's recording is missing or damaged.
+  KnownMap get(const MapChoice& choice);
+
+ private:
+  std::map<std::string, KnownMap> maps_;
+};
+
+// Throws InputError when a recording is missing or damaged.
+FlownMission fly(const MissionCase& mission_case, KnownMaps& maps);
+
+// What the mission should have got right and did not, in words.
+std::vector<std::string> broken_demands(const MissionCase& mission_case, const MissionScore& score);
+
+}  // namespace byre

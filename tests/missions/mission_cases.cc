@@ -1,0 +1,159 @@
+// The missions that try the session's health: what is done to which recording, on which map.
+
+#include "mission_case.h"
+
+namespace byre {
+namespace {
+
+using Plan = std::function<MissionPlan(const std::vector<Timestamp>&)>;
+
+constexpr double kHandCoverage = 0.7;
+constexpr double kBlurPixels = 20.0;
+constexpr double kExposureFactor = 4.0;
+constexpr int kStepsPerExposure = 5;
+constexpr double kToTheEnd = 1e6;  // seconds
+
+RecordingName real(const char* name) {
+  return {Source::real, name};
+}
+
+RecordingName twin(const char* name) {
+  return {Source::twin, name};
+}
+
+FrameRange frames(int first, int last) {
+  FrameRange range;
+  range.first = first;
+  range.last = last;
+  return range;
+}
+
+FrameRange seconds(double start, double end) {
+  FrameRange range;
+  range.start_s = start;
+  range.end_s = end;
+  return range;
+}
+
+Plan degrade(const Span& span, const Degradation& degradation) {
+  return [=](const std::vector<Timestamp>& times) { return degraded(times, span, degradation); };
+}
+
+Plan degrade_all(const Degradation& degradation) {
+  return [=](const std::vector<Timestamp>& times) {
+    MissionPlan plan = degraded(times, {0.0, kToTheEnd}, degradation);
+    plan.undisturbed_from = times.front();
+    return plan;
+  };
+}
+
+Plan kidnap(const Span& before, const Span& after, double dark_seconds) {
+  return [=](const std::vector<Timestamp>& times) { return kidnapped(times, before, after, dark_seconds); };
+}
+
+struct NamedPlan {
+  const char* name;
+  Plan plan;
+};
+
+// What any recording can be put through, for the seconds of a span.
+std::vector<NamedPlan> passing_disturbances(const Span& span) {
+  return {{"black", degrade(span, black_frames())},
+          {"hand", degrade(span, hand_over_the_lens(kHandCoverage))},
+          {"blur", degrade(span, motion_blur(kBlurPixels))},
+          {"exposure", degrade(span, exposure_jumps(kExposureFactor, kStepsPerExposure))},
+          {"blank_wall", degrade(span, blank_close_up())}};
+}
+
+const MapRecipe kHall{real("euroc/MH_01_easy"), frames(0, 150)};
+const MapRecipe kRealRoom{real("euroc/V1_01_easy_sparse"), {}, true};
+const MapRecipe kTwinRoom{twin("V1_01_easy")};
+const MapRecipe kTwinShed{twin("cowshed_m1"), frames(0, 1320)};  // the way out, and the turn at its end
+
+MissionCase in_hall(const char* name, const Plan& plan) {
+  return {std::string("hall_") + name, kHall.recording, frames(150, 300), {kHall}, plan};
+}
+
+MissionCase in_room(const char* name, const FrameRange& range, const Plan& plan) {
+  return {std::string("room_") + name, twin("V1_02_medium"), range, {kTwinRoom}, plan};
+}
+
+MissionCase in_shed(const char* name, const FrameRange& range, const Plan& plan) {
+  return {std::string("shed_") + name, twin("cowshed_m2"), range, {kTwinShed}, plan};
+}
+
+MissionCase with_map(MissionCase mission_case, const MapChoice& map) {
+  mission_case.map = map;
+  return mission_case;
+}
+
+MissionCase with_demand(MissionCase mission_case, const Demand& demand) {
+  mission_case.demand = demand;
+  return mission_case;
+}
+
+MissionCase of_recording(MissionCase mission_case, const RecordingName& recording) {
+  mission_case.recording = recording;
+  return mission_case;
+}
+
+MapChoice half_of(const MapRecipe& recipe) {
+  return {recipe, 0.5};
+}
+
+MapChoice wrong(const MapRecipe& recipe) {
+  return {recipe, 0.0, true};
+}
+
+constexpr Demand kHardlyDisturbed{true, 0.98};
+constexpr Demand kHonestOnly{false, 0.0};
+
+}  // namespace
+
+// The second half of the flight on the map of the first, 7.5 s in which everything is mapped.
+std::vector<MissionCase> real_mission_cases() {
+  std::vector<MissionCase> cases = {with_demand(in_hall("undisturbed", as_recorded), kHardlyDisturbed)};
+  for (const NamedPlan& disturbance : passing_disturbances({2.5, 4.5})) {
+    cases.push_back(in_hall(disturbance.name, disturbance.plan));
+  }
+  cases.push_back(in_hall("kidnapped", kidnap({0.0, 2.5}, {4.5, 7.5}, 0.0)));
+  cases.push_back(in_hall("kidnapped_in_the_dark", kidnap({0.0, 3.0}, {4.5, 7.5}, 0.5)));
+  cases.push_back(in_hall("haze", degrade_all(haze(0.4))));
+  cases.push_back(in_hall("dirt", degrade_all(dirt(40))));
+  cases.push_back(in_hall("contrast_loss", degrade_all(contrast_loss(0.3))));
+  cases.push_back(with_map(in_hall("half_the_points", as_recorded), half_of(kHall)));
+  cases.push_back(with_demand(with_map(in_hall("wrong_map", as_recorded), wrong(kRealRoom)), kHonestOnly));
+  return cases;
+}
+
+std::vector<MissionCase> twin_mission_cases() {
+  const FrameRange ten_seconds = seconds(10.0, 20.0);
+  std::vector<MissionCase> cases = {with_demand(in_room("undisturbed", ten_seconds, as_recorded), kHardlyDisturbed)};
+  for (const NamedPlan& disturbance : passing_disturbances({3.0, 5.0})) {
+    cases.push_back(in_room(disturbance.name, ten_seconds, disturbance.plan));
+  }
+  // From one end of the room to the other.
+  cases.push_back(in_room("kidnapped", seconds(14.0, 52.0), kidnap({0.0, 5.0}, {33.0, 38.0}, 0.0)));
+  cases.push_back(in_room("kidnapped_in_the_dark", seconds(14.0, 52.0), kidnap({0.0, 5.0}, {33.0, 38.0}, 1.0)));
+  cases.push_back(with_map(in_room("half_the_points", ten_seconds, as_recorded), half_of(kTwinRoom)));
+  cases.push_back(with_demand(with_map(in_room("wrong_map", ten_seconds, as_recorded), wrong(kTwinShed)), kHonestOnly));
+  cases.push_back(with_demand(
+      of_recording(in_room("fast_flight", seconds(0.0, 40.0), as_recorded), twin("V1_03_difficult")), kHonestOnly));
+
+  cases.push_back(in_shed("black", seconds(20.0, 30.0), degrade({3.0, 5.0}, black_frames())));
+  // Along the fence, where one place looks like the next.
+  cases.push_back(in_shed("kidnapped", seconds(6.0, 40.0), kidnap({0.0, 5.0}, {28.0, 34.0}, 0.0)));
+  cases.push_back(in_shed("kidnapped_in_the_dark", seconds(6.0, 40.0), kidnap({0.0, 5.0}, {28.0, 34.0}, 1.0)));
+  cases.push_back(
+      with_demand(with_map(in_shed("wrong_map", seconds(20.0, 30.0), as_recorded), wrong(kTwinRoom)), kHonestOnly));
+  MissionCase detour = in_shed("detour", seconds(46.0, 106.0), as_recorded);
+  detour.mapped_again_after = 50.0;
+  cases.push_back(detour);
+  for (const char* condition : {"dirt", "haze", "flat"}) {
+    const std::string recording = std::string("cowshed_m2_") + condition;
+    cases.push_back(of_recording(in_shed(condition, seconds(0.0, 20.0), as_recorded), twin(recording.c_str())));
+  }
+  return cases;
+}
+
+}  // namespace byre

@@ -1,0 +1,184 @@
+// Flies the missions that try the session's health, and prints a row of a table for each.
+// Usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [CASE...]
+// All cases whose recordings are there are flown unless some are named. --trace writes a line of CSV for each frame
+// into FOLDER/CASE.csv. --dump flies nothing, and writes what the degradations make of an image into FOLDER as PNG.
+// Exit code: 0 all demands are met, 1 some are not, 2 wrong usage or bad data.
+
+#include "mission_case.h"
+
+#include "byre/dataset/recording.h"
+#include "byre/input/input_error.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrialOptions {
+  bool list = false;
+  std::optional<fs::path> trace;
+  std::optional<fs::path> dump;
+  std::vector<std::string> cases;
+};
+
+std::optional<TrialOptions> parse(std::span<char*> arguments) {
+  TrialOptions options;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view argument = arguments[i];
+    const bool has_value = i + 1 < arguments.size();
+    if (argument == "--list") {
+      options.list = true;
+    } else if (argument == "--trace" && has_value) {
+      options.trace = arguments[++i];
+    } else if (argument == "--dump" && has_value) {
+      options.dump = arguments[++i];
+    } else if (argument.starts_with("--")) {
+      return std::nullopt;
+    } else {
+      options.cases.emplace_back(argument);
+    }
+  }
+  return options;
+}
+
+std::vector<MissionCase> all_cases() {
+  std::vector<MissionCase> cases = real_mission_cases();
+  std::ranges::move(twin_mission_cases(), std::back_inserter(cases));
+  return cases;
+}
+
+std::vector<MissionCase> chosen(const TrialOptions& options) {
+  std::vector<MissionCase> cases = all_cases();
+  for (const std::string& name : options.cases) {
+    if (std::ranges::find(cases, name, &MissionCase::name) == cases.end()) {
+      throw InputError(name, "is no case", "--list names them");
+    }
+  }
+  std::erase_if(cases, [&](const MissionCase& mission_case) {
+    return !options.cases.empty() && std::ranges::find(options.cases, mission_case.name) == options.cases.end();
+  });
+  return cases;
+}
+
+void write_trace(const FlownMission& flown, const fs::path& file) {
+  std::ofstream out(file);
+  out << "frame,time_s,state,verdict,doubt,error_m,position_sigma_m,offline_expected,offline_matches,offline_inliers,"
+         "online_inliers,inlier_share,spread,agreement_m,since_offline_m,brightness,contrast,sharpness,events\n";
+  for (std::size_t i = 0; i < flown.frames.size(); ++i) {
+    const FrameReport& report = flown.frames[i].report;
+    const Health& health = report.health;
+    const ImageCondition image = health.image.value_or(ImageCondition{});
+    out << i << ',' << to_seconds(report.time - flown.frames.front().report.time) << ',' << to_string(report.state)
+        << ',' << to_string(health.verdict) << ',' << to_string(health.doubt) << ','
+        << position_error(flown.frames[i], flown.truth_from_map).value_or(-1.0) << ',' << health.position_sigma << ','
+        << health.offline_expected << ',' << health.offline_matches << ',' << health.offline_inliers << ','
+        << health.online_inliers << ',' << health.inlier_share << ',' << health.spread << ','
+        << (health.agreement ? health.agreement->translation : -1.0) << ',' << health.distance_since_offline << ','
+        << image.brightness << ',' << image.contrast << ',' << image.sharpness << ',';
+    for (const SessionEvent event : report.events) out << to_string(event) << ' ';
+    out << '\n';
+  }
+  if (!out) throw InputError(file.string(), "cannot be written");
+}
+
+std::string recovery_of(const MissionScore& score) {
+  if (!score.recovery) return "never";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f", *score.recovery);
+  return text.data();
+}
+
+void print_heading() {
+  std::printf(
+      "| case | recording | frames | coverage %% | trusted %% | worst trusted error m | longest wrong trust s | "
+      "recovery s | RMSE mm | within 95 %% bound %% |\n|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void print_row(const MissionCase& mission_case, const MissionScore& score) {
+  std::printf("| %s | %s | %d | %.1f | %.1f | %.3f | %.2f | %s | %.1f | %.1f |\n", mission_case.name.c_str(),
+              mission_case.recording.name.c_str(), score.frames, 100.0 * score.coverage, 100.0 * score.trusted,
+              score.worst_trusted_error, score.longest_wrong_trust, recovery_of(score).c_str(), 1e3 * score.rmse,
+              100.0 * score.within_bound);
+  std::fflush(stdout);
+}
+
+// Whether all demands are met.
+bool fly_and_tell(const MissionCase& mission_case, const TrialOptions& options, KnownMaps& maps) {
+  if (const auto missing = missing_recording(mission_case)) {
+    std::fprintf(stderr, "%s: left out, %s\n", mission_case.name.c_str(), why_missing(*missing).c_str());
+    return true;
+  }
+  const FlownMission flown = fly(mission_case, maps);
+  print_row(mission_case, flown.score);
+  if (options.trace) write_trace(flown, *options.trace / (mission_case.name + ".csv"));
+  const std::vector<std::string> broken = broken_demands(mission_case, flown.score);
+  for (const std::string& demand : broken) std::fprintf(stderr, "%s: %s\n", mission_case.name.c_str(), demand.c_str());
+  return broken.empty();
+}
+
+void write_png(const Image& image, const fs::path& file) {
+  const cv::Mat pixels(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  if (!cv::imwrite(file.string(), pixels)) throw InputError(file.string(), "cannot be written");
+}
+
+// Of each case's first image pairs that are disturbed: when the disturbance begins, and when it has come.
+void dump(const MissionCase& mission_case, const fs::path& folder) {
+  if (missing_recording(mission_case)) return;
+  const auto recording = open_recording(*find(mission_case.recording), mission_case.range);
+  int step = 0;
+  for (const MissionStep& frame : mission_case.plan(recording->times()).steps) {
+    if (!frame.disturb) continue;
+    ++step;
+    if (step != 1 && step != 3 && step != 12) continue;
+    const ImageFrame images = frame.disturb(recording->read(frame.frame).value());
+    const std::string name = mission_case.name + "_" + std::to_string(step);
+    write_png(images.left, folder / (name + "_left.png"));
+    if (images.right) write_png(*images.right, folder / (name + "_right.png"));
+  }
+}
+
+int run(const TrialOptions& options) {
+  const std::vector<MissionCase> cases = chosen(options);
+  for (const auto& folder : {options.trace, options.dump}) {
+    if (folder) fs::create_directories(*folder);
+  }
+  if (options.list) {
+    for (const MissionCase& mission_case : cases) std::printf("%s\n", mission_case.name.c_str());
+    return EXIT_SUCCESS;
+  }
+  if (options.dump) {
+    for (const MissionCase& mission_case : cases) dump(mission_case, *options.dump);
+    return EXIT_SUCCESS;
+  }
+  KnownMaps maps;
+  bool all_met = true;
+  print_heading();
+  for (const MissionCase& mission_case : cases) all_met = fly_and_tell(mission_case, options, maps) && all_met;
+  return all_met ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+}  // namespace byre
+
+int main(int argc, char** argv) {
+  const auto options = byre::parse({argv + 1, static_cast<std::size_t>(argc - 1)});
+  if (!options) {
+    std::fprintf(stderr, "usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [CASE...]\n");
+    return 2;
+  }
+  try {
+    return byre::run(*options);
+  } catch (const byre::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
