@@ -20,6 +20,7 @@ struct MissionOptions {
   double drift_share = 0.02;      // and of the path since both agreed
   double min_turn = 0.02;         // radians that it may be turned,
   double turn_per_metre = 0.002;  // and for each metre of that path
+  int held_by = 60;               // offline inliers from which the online map around is taken to lie in its place
   double search_after = 0.3;      // metres without offline points: then places are looked for beside tracking
   double restart_after = 1.0;     // seconds without a pose, until a new piece of online map is begun
   OfflineViewOptions view;

@@ -102,7 +102,6 @@ bool Session::correct_online() {
   const WaitingCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   apply(correction_of(online_, correction.first_keyframe, correction.offline_from_online, correction.shape), online_);
   segments_[segment_].is_registered = true;
-  last_held_keyframe_ = next_keyframe_number();
   if (last_keyframe_ && pending_.empty()) pending_.push_back(*last_keyframe_);
   return true;
 }

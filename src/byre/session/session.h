@@ -173,6 +173,7 @@ class Session {
   void add_keyframe(const Frame& frame, const HybridTrack& track);
   KeyframeEvidence keyframe_evidence(const HybridTrack& track) const;
   void conclude(const Frame& frame, const Located& located, FrameReport& report);
+  Matrix6 covariance_of(const TrackedFrame& tracked) const;
   Health health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const;
   void tell_navigation_error(double seconds_without_pose, FrameReport& report);
 

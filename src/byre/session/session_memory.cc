@@ -89,7 +89,9 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   tell(OfflineView::off_the_map, SessionEvent::left_mapped_area);
   tell(OfflineView::blinded, SessionEvent::blinded);
   tell(OfflineView::held, SessionEvent::entered_mapped_area);
-  if (now == OfflineView::held && !track.maps_disagree && last_keyframe_) last_held_keyframe_ = last_keyframe_->number;
+  const bool is_held = now == OfflineView::held && !track.maps_disagree &&
+                       track.offline_inliers >= options_.mission.held_by && last_keyframe_;
+  if (is_held) last_held_keyframe_ = last_keyframe_->number;
   if (!track.offline_is_right || waiting_correction_ || !is_pose_confirmed()) return;
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const auto correction = mission_->consider(offline_from_online, inverse(*track.from_online).translation,
@@ -132,7 +134,7 @@ void Session::lose_pose(const Frame& frame, FrameReport& report) {
 }
 
 bool Session::may_map(const Frame& frame, const HybridTrack& track) const {
-  if (!options_.map_online || !is_pose_confirmed() || track.offline_is_right) return false;
+  if (!options_.map_online || !is_pose_confirmed()) return false;
   if (image_fault(frame) != ImageFault::none) return false;
   return needs_keyframe(track.tracked, keyframe_evidence(track), options_.keyframes);
 }
@@ -177,12 +179,18 @@ void Session::conclude(const Frame& frame, const Located& located, FrameReport& 
     report.expected_points = tracked.expected;
     report.matches = tracked.matches;
     report.inliers = static_cast<int>(tracked.features.size());
-    report.covariance = kNeglectedCorrelation * move_covariance(tracked.covariance, rig_.body_from_camera);
+    report.covariance = kNeglectedCorrelation * move_covariance(covariance_of(tracked), rig_.body_from_camera);
     report.odometry_covariance =
         odometry_covariance(kNeglectedCorrelation * move_covariance(tracked.match_covariance, rig_.body_from_camera),
                             odometry_.travelled());
   }
   report.health = health_of(frame, located, report.covariance);
+}
+
+// Where offline points hold it, a pose is as exact as they are, in a frame as exact as the offline map.
+Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
+  if (tracked.reference.origin == Origin::online || !mission_) return tracked.covariance;
+  return tracked.match_covariance + mission_->offline().frame_covariance();
 }
 
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {

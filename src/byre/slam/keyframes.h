@@ -17,7 +17,7 @@ struct KeyframeOptions {
   int min_frames = 2;              // between keyframes, unless tracking is about to fail
   int max_pending = 3;             // keyframes that wait for mapping; more are not made,
   int max_pending_when_weak = 10;  // unless fewer than min_tracked points are left
-  int enough_offline = 100;        // offline points tracked: the place is known, and needs no keyframe
+  int enough_offline = 300;        // offline points tracked: the place is known, and needs no keyframe
 };
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.

@@ -5,9 +5,31 @@
 #include <utility>
 
 namespace byre {
+namespace {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Matrix6 median_covariance(const Map& map) {
+  std::vector<double> position_variances, rotation_variances;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Matrix6& covariance = map.find_keyframe(id)->covariance;
+    position_variances.push_back(covariance.topLeftCorner<3, 3>().trace() / 3.0);
+    rotation_variances.push_back(covariance.bottomRightCorner<3, 3>().trace() / 3.0);
+  }
+  Matrix6 result = Matrix6::Zero();
+  result.topLeftCorner<3, 3>().diagonal().setConstant(median(position_variances));
+  result.bottomRightCorner<3, 3>().diagonal().setConstant(median(rotation_variances));
+  return result;
+}
+
+}  // namespace
 
 OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary)
-    : map_(std::move(map)), places_(index_of(map_, vocabulary)) {
+    : map_(std::move(map)), places_(index_of(map_, vocabulary)), frame_covariance_(median_covariance(map_)) {
   for (const KeyframeId id : map_.keyframe_ids()) {
     const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});

@@ -16,6 +16,10 @@ class OfflineMap {
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
 
+  // How exactly its frame is known where a keyframe stands: what a keyframe's pose is uncertain by relative to the
+  // others on the whole, the median of them. The same in all directions.
+  const Matrix6& frame_covariance() const { return frame_covariance_; }
+
   // Keyframes near a camera that look in a similar direction, nearest first. Nearness is distance in metres, and a
   // metre for each radian between the directions.
   std::vector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
@@ -29,6 +33,7 @@ class OfflineMap {
     Eigen::Vector3d viewing_direction;  // unit length, in world
   };
   std::vector<View> views_;
+  Matrix6 frame_covariance_ = Matrix6::Zero();
 };
 
 }  // namespace byre

@@ -98,6 +98,17 @@ std::vector<KeyframeId> rank_anchors(const MapView& map, const std::vector<Point
   return anchors;
 }
 
+int sightings_of_offline(const MapWindow& window) {
+  int count = 0;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (!keyframe.movable) continue;
+    count += static_cast<int>(std::ranges::count_if(keyframe.keyframe.sightings, [](const Sighting& sighting) {
+      return sighting.point && sighting.point->origin == Origin::offline;
+    }));
+  }
+  return count;
+}
+
 // Those of one map that are not in the window yet, until it holds so many anchors of that map.
 void append_anchors(MapWindow& window, const MapView& map, const std::vector<KeyframeId>& ranked, Origin origin,
                     int limit) {
@@ -190,7 +201,9 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
   const std::vector<PointId> points = points_seen(window.keyframes, map);
   const std::vector<KeyframeId> ranked = rank_anchors(map, points);
   append_points(window, map, united(points, append_offline_anchors(window, map, ranked, options.offline_anchors)));
-  append_anchors(window, map, ranked, Origin::online, options.anchors);
+  if (sightings_of_offline(window) < options.sightings_in_place_of_anchors) {
+    append_anchors(window, map, ranked, Origin::online, options.anchors);
+  }
   link_observations(window, map);
   link_foreign_views(window, map);
   hold_the_world(window, options.min_offline_sightings);

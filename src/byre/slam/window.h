@@ -50,6 +50,9 @@ struct WindowOptions {
   int anchors = 16;                // online keyframes
   int offline_anchors = 8;         // offline keyframes
   int min_offline_sightings = 30;  // see hold_the_world
+  // Of offline points, by the movable keyframes: so many hold the window better than online anchors, which may have
+  // drifted, and these are left out.
+  int sightings_in_place_of_anchors = 200;
 };
 
 // The window of one or several new online keyframes (the newest is its centre). Keyframes that no longer exist are left
