@@ -141,17 +141,26 @@ std::string describe_coverage(const MapRun& run, const MissionStatistics& statis
   return text + formatted(", the first after %.2f s", *statistics.seconds_to_first_pose);
 }
 
+// Without the offline points that its keyframes see.
+std::string describe_online(const MapRun& run, const FrameCounts& counts) {
+  if (run.frames.empty()) return "none";
+  return formatted("%d keyframes, of %d made; %d points", run.frames.back().keyframes, counts.keyframes,
+                   run.frames.back().points);
+}
+
 // What "byre run" is about, with an offline map or without.
 std::string mission_rows(const Mission& mission, const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
-  const bool is_online = protocol.options.session.map_online;
+  const bool has_map = protocol.options.offline != nullptr;
   std::string text;
-  if (protocol.options.offline) text += row("offline map", describe_offline(protocol));
+  if (has_map) text += row("offline map", describe_offline(protocol));
   text += row("poses", describe_coverage(run, mission.statistics));
   text += to_text(mission.statistics);
-  if (is_online) text += row(protocol.options.offline ? "online map" : "map", describe_map(run, protocol, counts));
-  if (is_online) text += row("loops", describe_loops(counts));
-  if (!protocol.options.offline) text += finishing_rows(run, protocol);
+  if (protocol.options.session.map_online) {
+    text += has_map ? row("online map", describe_online(run, counts)) : row("map", describe_map(run, protocol, counts));
+    text += row("loops", describe_loops(counts));
+  }
+  if (!has_map) text += finishing_rows(run, protocol);
   if (mission.errors) text += to_text(*mission.errors);
   return text;
 }

@@ -94,7 +94,7 @@ bool has_pose(const MappedFrame& frame) {
 
 void take_over_result(const FrameThread& thread, MapRun& run) {
   run.final = thread.session().final_trajectory();
-  run.map = offline_copy(thread.online());
+  run.map = offline_copy(standalone_copy(thread.session().map()));
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {

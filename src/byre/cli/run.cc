@@ -28,11 +28,18 @@ struct Truth {
   Trajectory of_map;
 };
 
+Trajectory load_truth_later_by(const fs::path& path, Timestamp offset) {
+  Trajectory truth = load_truth(path);
+  for (StampedPose& sample : truth) sample.time += offset;
+  return truth;
+}
+
 std::optional<Truth> load_truths(const RunOptions& options) {
   if (!options.truth) return std::nullopt;
+  const Timestamp offset = from_seconds(options.time_offset_s);
   Truth truth;
-  truth.of_frames = load_truth(*options.truth);
-  truth.of_map = options.map_truth ? load_truth(*options.map_truth) : truth.of_frames;
+  truth.of_frames = load_truth_later_by(*options.truth, offset);
+  truth.of_map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.of_frames;
   return truth;
 }
 

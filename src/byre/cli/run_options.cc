@@ -49,6 +49,10 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("FILE|FOLDER")
       ->needs(truth)
       ->needs(map);
+  command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(-1e6, 1e6).description(""))
+      ->needs(truth);
   command.add_option("--vocabulary", options.vocabulary, "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");
 }

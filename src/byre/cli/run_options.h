@@ -23,6 +23,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> truth;
   std::optional<std::filesystem::path> map_truth;   // of the map's own recording, where that is another
+  double time_offset_s = 0.0;                       // added to the time stamps of both
   std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
   FrameRange range;
   Pace pace = Pace::paced;

@@ -75,6 +75,17 @@ TEST_F(RunProgram, ComparesPosesWithTheTruthAfterAlignmentWhereThereIsNoMap) {
   EXPECT_LT(stats.at("frames").at(5).at("error").at("position_m"), 0.1);
 }
 
+TEST_F(RunProgram, TakesAClockErrorOutOfTheTruth) {
+  const auto worst = [this](const std::string& options) {
+    EXPECT_EQ(run_room("--quiet --stats stats.json " + options).exit_code, 0);
+    return json::parse(read("stats.json")).at("errors").at("final").at("position_m").at("max").get<double>();
+  };
+  Trajectory late = RenderedFixture::shared().truth();
+  for (StampedPose& sample : late) sample.time += from_seconds(0.25);
+  write_trajectory(late, folder_ / "late.txt");
+  EXPECT_NEAR(worst("--truth late.txt --time-offset -0.25"), worst("--truth " + kRoom), 1e-6);
+}
+
 TEST_F(RunProgram, WritesWhatHappensOneObjectALine) {
   ASSERT_EQ(run_room("--frames 0:6 --events events.jsonl --quiet").exit_code, 0);
   const std::vector<json> lines = lines_of("events.jsonl");
@@ -184,6 +195,15 @@ TEST_F(MissionProgram, MapsNothingWhenItIsToLocaliseOnly) {
   const json counts = json::parse(read("stats.json")).at("counts");
   EXPECT_EQ(counts.at("keyframes_made"), 0);
   EXPECT_EQ(counts.at("frames_with_pose"), 12);
+}
+
+TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
+  ASSERT_EQ(run("map " + kRoom + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
+  const Outcome outcome = run_room("--map corner.byre --frames 3: --save-online online.byre");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(run("validate online.byre").exit_code, 0);
+  const Outcome found = run("localise online.byre " + kRoom + " --frames 20:");
+  EXPECT_THAT(found.output, HasSubstr("found        4 of 4 frames"));
 }
 
 TEST_F(MissionProgram, FailsInAnotherRoomAndStillSaysWhatItSaw) {
