@@ -4,15 +4,14 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/output_file.h"
+#include "byre/cli/pace_option.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
 #include "byre/cli/stored_map.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
 
-#include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -44,23 +43,14 @@ go benchmark.md (the tables that are printed), benchmark.json, plots as SVG, the
 for "byre evaluate". Cases whose recordings are not there are skipped. Ctrl-C keeps what was measured until then, then
 the exit code is 130. docs/benchmark.md explains the protocol and the figures.)";
 
-void write_text(const std::string& text, const fs::path& path) {
-  write_whole(path, [&text](const fs::path& unfinished) {
-    std::ofstream file(unfinished);
-    file << text;
-    file.close();
-    if (!file) throw InputError(unfinished.string(), "cannot be written", "check that its folder has space");
-  });
-}
-
 // The plots of the cases, as Markdown that shows them.
 std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
   std::string markdown;
   for (const CaseResult& one : result.cases) {
     if (one.arms.empty()) continue;
     const std::string name = file_name_of(one.what.name);
-    write_text(to_svg(path_chart(one)), folder / (name + "_path.svg"));
-    write_text(to_svg(error_chart(one)), folder / (name + "_error.svg"));
+    write_whole(folder / (name + "_path.svg"), to_svg(path_chart(one)));
+    write_whole(folder / (name + "_error.svg"), to_svg(error_chart(one)));
     markdown += "\n![Path of " + one.what.name + "](" + name + "_path.svg)\n";
     markdown += "\n![Error of " + one.what.name + "](" + name + "_error.svg)\n";
   }
@@ -70,8 +60,8 @@ std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
 void write_results(const BenchmarkResult& result, const BenchmarkProtocol& protocol, const BenchmarkSetting& setting,
                    const fs::path& folder) {
   const std::string plots = write_plots(result, folder);
-  write_text(to_markdown(result, protocol, setting) + plots, folder / "benchmark.md");
-  write_text(to_json(result, protocol, setting), folder / "benchmark.json");
+  write_whole(folder / "benchmark.md", to_markdown(result, protocol, setting) + plots);
+  write_whole(folder / "benchmark.json", to_json(result, protocol, setting));
 }
 
 // Tells on the standard error stream what is run, and how far it is.
@@ -139,14 +129,6 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
   write_results(measured, protocol, setting, folder);
   result << to_markdown(measured, protocol, setting);
   return measured.stopped ? ExitCode::interrupted : ExitCode::done;
-}
-
-void declare_pace(CLI::App& command, Pace& pace) {
-  const std::map<std::string, Pace> paces = {
-      {"inline", Pace::same_thread}, {"paced", Pace::paced}, {"live", Pace::live}};
-  command.add_option("--pace", pace, "Where mapping runs and how fast frames are fed, see \"byre map --help\" (paced)")
-      ->type_name("inline|paced|live")
-      ->transform(CLI::CheckedTransformer(paces).description(""));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "byre/cli/benchmark_report.h"
+#include "byre/cli/report_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -121,7 +122,7 @@ std::string to_json(const BenchmarkResult& result, const BenchmarkProtocol& prot
   for (const SkippedCase& skipped : result.skipped) {
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 }  // namespace byre::cli

@@ -1,12 +1,10 @@
 #include "byre/cli/benchmark_judge.h"
 
 #include "byre/cli/map_statistics.h"
+#include "byre/cli/mission_errors.h"
+#include "byre/cli/mission_statistics.h"
 
-#include <algorithm>
 #include <chrono>
-#include <map>
-
-#include <Eigen/Cholesky>
 
 namespace byre::cli {
 namespace {
@@ -20,24 +18,14 @@ void note(const RelativePoseError& error, Figure& translation, Figure& rotation)
   rotation = error.rotation.rmse;
 }
 
-void note_map_errors(const Trajectory& estimate, const RunTruth& truth, TrajectoryMeasures& measures) {
-  if (!truth.map) return;
-  const ErrorStatistics errors = position_statistics(errors_in_map(estimate, truth.poses, *truth.map));
-  if (errors.count == 0) return;
-  measures.map_error = errors.rmse;
-  measures.map_error_median = errors.median;
-  measures.map_error_max = errors.max;
-}
-
-TrajectoryMeasures judge_trajectory(const Trajectory& estimate, std::size_t frames, const RunTruth& truth) {
+TrajectoryMeasures judge_trajectory(const Trajectory& estimate, std::size_t frames, const Trajectory& truth) {
   TrajectoryMeasures measures;
   if (frames > 0) measures.coverage = static_cast<double>(estimate.size()) / static_cast<double>(frames);
-  const std::vector<PosePair> pairs = associate(estimate, truth.poses, {});
+  const std::vector<PosePair> pairs = associate(estimate, truth, {});
   if (const auto ate = absolute_trajectory_error(pairs, Scale::fixed)) {
     measures.ate = ate->translation.rmse;
     measures.ate_max = ate->translation.max;
   }
-  note_map_errors(estimate, truth, measures);
   note(relative_pose_error_by_frame(pairs, kMetricScale), measures.rpe_frame, measures.rpe_frame_deg);
   note(relative_pose_error_by_time(pairs, std::chrono::seconds(1), kMetricScale), measures.rpe_second,
        measures.rpe_second_deg);
@@ -45,55 +33,38 @@ TrajectoryMeasures judge_trajectory(const Trajectory& estimate, std::size_t fram
   return measures;
 }
 
-// Of the position alone: some recordings' true rotation is worse than what is to be judged.
-bool is_within_bound(const PoseError& error, const Matrix6& covariance) {
-  constexpr double kChiSquared95 = 7.815;  // of three degrees of freedom
-  const Eigen::LLT<Eigen::Matrix3d> factors(covariance.topLeftCorner<3, 3>());
-  if (factors.info() != Eigen::Success) return false;
-  return factors.matrixL().solve(error.delta.head<3>()).squaredNorm() <= kChiSquared95;
+void note_map_errors(const std::vector<PoseError>& errors, TrajectoryMeasures& measures) {
+  const ErrorStatistics statistics = position_statistics(errors);
+  if (statistics.count == 0) return;
+  measures.map_error = statistics.rmse;
+  measures.map_error_median = statistics.median;
+  measures.map_error_max = statistics.max;
 }
 
-double share(int part, int whole) {
-  return static_cast<double>(part) / whole;
+void note_trust(const MissionErrors& errors, BehaviourMeasures& measures) {
+  measures.within_bound = errors.within_bound;
+  if (errors.causal.empty()) return;
+  measures.trusted_wrong = errors.wrongly_trusted;
+  measures.longest_wrong_trust = errors.longest_wrong_trust_s;
+  if (!errors.trusted.empty()) measures.trusted_map_error_max = position_statistics(errors.trusted).max;
 }
 
-// Compares what the reports claim with the errors in the map's frame.
-void note_trust(const std::map<Timestamp, const FrameReport*>& reports, const std::vector<PoseError>& errors,
-                BehaviourMeasures& measures) {
-  if (errors.empty()) return;
-  int within = 0, wrong = 0;
-  for (const PoseError& error : errors) {
-    const FrameReport& report = *reports.at(error.time);
-    within += is_within_bound(error, report.covariance) ? 1 : 0;
-    if (report.health.verdict != Verdict::trusted) continue;
-    wrong += error.position() > kWrongMetres ? 1 : 0;
-    measures.trusted_map_error_max = std::max(measures.trusted_map_error_max.value_or(0.0), error.position());
-  }
-  measures.within_bound = share(within, static_cast<int>(errors.size()));
-  measures.trusted_wrong = wrong;
+// Empty for places in which the robot never was.
+Figure keyframes_per_minute(const KeyframeRate& rate) {
+  if (rate.minutes <= 0.0) return std::nullopt;
+  return rate.per_minute();
 }
 
-Figure seconds_to_first_pose(const MapRun& run) {
-  if (run.causal.empty()) return std::nullopt;
-  return to_seconds(run.causal.front().time - run.frames.front().time);
-}
-
-BehaviourMeasures judge_behaviour(const MapRun& run, const RunTruth& truth) {
-  std::map<Timestamp, const FrameReport*> reports;
-  int losses = 0, trusted = 0;
-  for (const MappedFrame& frame : run.frames) {
-    if (!frame.report) continue;
-    reports[frame.time] = &*frame.report;
-    losses += frame.report->has(SessionEvent::pose_lost) ? 1 : 0;
-    trusted += frame.report->health.verdict == Verdict::trusted ? 1 : 0;
-  }
+BehaviourMeasures judge_behaviour(const MapRun& run, bool has_map) {
   BehaviourMeasures measures;
   if (run.frames.empty()) return measures;
-  measures.first_pose = seconds_to_first_pose(run);
-  measures.losses = losses;
-  measures.trusted_share = share(trusted, static_cast<int>(run.frames.size()));
+  const MissionStatistics mission = summarise_mission(run.frames, SessionOptions{}.mission.view.min_inliers);
+  measures.first_pose = mission.seconds_to_first_pose;
+  measures.losses = mission.losses;
+  measures.trusted_share = static_cast<double>(mission.trusted) / static_cast<double>(run.frames.size());
   measures.keyframes = count_frames(run.frames).keyframes;
-  if (truth.map) note_trust(reports, errors_in_map(run.causal, truth.poses, *truth.map), measures);
+  if (has_map) measures.keyframe_rate_known = keyframes_per_minute(mission.in_known_places);
+  measures.keyframe_rate_new = keyframes_per_minute(mission.in_changed_or_new);
   return measures;
 }
 
@@ -101,9 +72,15 @@ BehaviourMeasures judge_behaviour(const MapRun& run, const RunTruth& truth) {
 
 RunMeasures judge(const MapRun& run, const RunTruth& truth) {
   RunMeasures measures;
-  measures.final_poses = judge_trajectory(run.final, run.frames.size(), truth);
-  measures.causal_poses = judge_trajectory(run.causal, run.frames.size(), truth);
-  measures.behaviour = judge_behaviour(run, truth);
+  measures.final_poses = judge_trajectory(run.final, run.frames.size(), truth.poses);
+  measures.causal_poses = judge_trajectory(run.causal, run.frames.size(), truth.poses);
+  measures.behaviour = judge_behaviour(run, truth.map.has_value());
+  if (truth.map) {
+    const MissionErrors errors = mission_errors(run, *truth.map, truth.poses);
+    note_map_errors(errors.final, measures.final_poses);
+    note_map_errors(errors.causal, measures.causal_poses);
+    note_trust(errors, measures.behaviour);
+  }
   const TimeSummary times = summarise_stage(run.frames, &StageSeconds::total);
   if (times.count > 0) {
     measures.cost.frame_ms_mean = times.mean_ms;

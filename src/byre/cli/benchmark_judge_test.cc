@@ -119,7 +119,6 @@ TEST(Judge, MeasuresARunWithoutAnyPose) {
 TEST(Judge, ComparesErrorsWithTheirCovariance) {
   EXPECT_THAT(judge(run_with_poses(0, 99, 0.01), kOnMap).behaviour.within_bound, Optional(1.0));
   EXPECT_THAT(judge(run_with_poses(0, 99, 0.003), kOnMap).behaviour.within_bound, Optional(0.0));
-  EXPECT_THAT(judge(run_with_poses(0, 99, 0.0), kOnMap).behaviour.within_bound, Optional(0.0)) << "no covariance";
 }
 
 TEST(Judge, HoldsTrustAgainstErrors) {
@@ -130,6 +129,7 @@ TEST(Judge, HoldsTrustAgainstErrors) {
   EXPECT_THAT(behaviour.trusted_wrong, Optional(2.0));
   EXPECT_THAT(behaviour.trusted_map_error_max, Optional(DoubleNear(std::hypot(0.3, kOffset), 1e-9)));
   EXPECT_THAT(behaviour.trusted_share, Optional(DoubleNear(0.99, 1e-12)));
+  EXPECT_THAT(behaviour.longest_wrong_trust, Optional(DoubleNear(to_seconds(kInterval), 1e-9)));
 }
 
 TEST(Judge, CountsLossesAndKeyframesAndTimes) {
@@ -143,6 +143,16 @@ TEST(Judge, CountsLossesAndKeyframesAndTimes) {
   EXPECT_THAT(measures.behaviour.keyframes, Optional(3.0));
   EXPECT_THAT(measures.cost.frame_ms_mean, Optional(DoubleNear(11.0, 1e-9)));
   EXPECT_GT(*measures.cost.frame_ms_p99, 10.0);
+}
+
+TEST(Judge, TellsKeyframesInKnownPlacesFromOthers) {
+  MapRun run = run_with_poses(0, 99, 0.01);
+  for (int i = 1; i <= 60; ++i) run.frames[i].report->health.offline_inliers = 1000;
+  for (const int keyframe : {30, 70, 80}) run.frames[keyframe].report->keyframe_added = true;
+  const BehaviourMeasures on_map = judge(run, kOnMap).behaviour;
+  EXPECT_THAT(on_map.keyframe_rate_known, Optional(DoubleNear(60.0 / 3.0, 1e-9))) << "one in 3 s";
+  EXPECT_THAT(on_map.keyframe_rate_new, Optional(DoubleNear(2.0 * 60.0 / 1.95, 1e-9))) << "two in 39 intervals";
+  EXPECT_FALSE(judge(run, kWithoutMap).behaviour.keyframe_rate_known) << "nothing is known without a map";
 }
 
 TEST(Trace, IsInTheFrameOfTheTruth) {

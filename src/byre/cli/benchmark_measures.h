@@ -31,11 +31,13 @@ struct BehaviourMeasures {
   Figure losses;                 // how often tracking failed
   Figure trusted_share;          // of all frames
   Figure trusted_map_error_max;  // metres
-  Figure trusted_wrong;          // frames reported as trusted that are off by more than kWrongMetres
+  Figure trusted_wrong;          // frames reported as trusted that are off by more than kFarMetres
+  Figure longest_wrong_trust;    // seconds that such frames lasted without a break
   Figure within_bound;           // share of map-frame errors within the 95 % bound of the position's covariance
   Figure keyframes;              // made during the run
+  Figure keyframe_rate_known;    // a minute, while offline points held the pose
+  Figure keyframe_rate_new;      // a minute, during the rest of the frames with a pose
 };
-inline constexpr double kWrongMetres = 0.2;
 
 struct CostMeasures {
   Figure frame_ms_mean;   // of the frame thread, from images in memory to the report

@@ -2,10 +2,10 @@
 
 #include "byre/cli/benchmark_memory.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/output_file.h"
 #include "byre/cli/resources.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/input/input_error.h"
 
 #include <algorithm>
@@ -61,10 +61,7 @@ std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, con
 
 Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
   Source source{data / recording.folder, recording.range, {}};
-  if (!open_recording(source.folder, source.range)->calibration().right) {
-    throw InputError(source.folder.string(), "has no right camera: only stereo recordings can be run",
-                     "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
-  }
+  open_stereo_recording(source.folder, source.range);  // what is wrong with it is told now
   source.truth = load_truth(recording.truth ? data / *recording.truth : source.folder);
   for (StampedPose& sample : source.truth) sample.time += recording.truth_offset;
   return source;
@@ -143,7 +140,7 @@ class BenchmarkRunner {
       return skip({benchmark_case.name, "no map could be made of " + *benchmark_case.map + ": no frame got a pose"});
     }
     const Source& source = sources_.at(benchmark_case.recording);
-    const auto recording = open_recording(source.folder, source.range);
+    const auto recording = open_stereo_recording(source.folder, source.range);
     result_.cases.push_back({benchmark_case, {}, guess_format(source.folder), truth_during(source.truth, *recording)});
     for (const Arm arm : benchmark_case.arms)
       run_arm(benchmark_case, arm, *recording, arm == Arm::no_map ? nullptr : map);
@@ -193,7 +190,7 @@ class BenchmarkRunner {
 
   void make_map(const std::string& name) {
     const Source& source = sources_.at(name);
-    const auto recording = open_recording(source.folder, source.range);
+    const auto recording = open_stereo_recording(source.folder, source.range);
     hooks_.before_run("map of " + name, recording->size());
     MapRun run = run_map(*recording, options_for(Arm::no_map, 0), run_hooks());
     if (hooks_.should_stop()) return;
@@ -235,8 +232,8 @@ class BenchmarkRunner {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
     const std::string run_name = name + formatted(".%d", index + 1);
-    write_trajectory(run.final, folder / (run_name + ".final.txt"));
-    write_trajectory(run.causal, folder / (run_name + ".causal.txt"));
+    write_whole(folder / (run_name + ".final.txt"), run.final);
+    write_whole(folder / (run_name + ".causal.txt"), run.causal);
   }
 
   // Constant after construction; borrowed.

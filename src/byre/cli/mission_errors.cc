@@ -72,7 +72,10 @@ std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Tra
 
 MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajectory& map_truth,
                              const Trajectory& truth) {
-  const MapAlignment alignment = align_to_truth(offline, Scale::fixed, map_truth);
+  return mission_errors(run, align_to_truth(offline, Scale::fixed, map_truth), truth);
+}
+
+MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
   MissionErrors errors;
   errors.in_map_frame = true;
   errors.alignment_keyframes = alignment.keyframes;

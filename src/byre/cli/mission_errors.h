@@ -29,6 +29,9 @@ inline constexpr double kFarMetres = 0.2;
 MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajectory& map_truth,
                              const Trajectory& truth);
 
+// The same where that alignment is known.
+MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
+
 // Errors after alignment, of a run without an offline map.
 MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth);
 
