@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -53,24 +55,6 @@ double soft_step(double value, double width) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// How far a pixel lies from the middle of the hand, 1 on an outline with four bulges, the knuckles.
-cv::Mat1f distance_from_hand(cv::Size size, const HandPosition& position, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> any_phase(0.0, 2.0 * kPi);
-  const double phase = any_phase(random), bulge_phase = any_phase(random);
-  const double centre_x = 0.42 * size.width + position.right, centre_y = 0.62 * size.height + position.down;
-  cv::Mat1f distance(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const double dx = (x - centre_x) / size.width, dy = 1.2 * (y - centre_y) / size.height;
-      const double angle = std::atan2(dy, dx);
-      const double outline = 1.0 + 0.12 * std::cos(2.0 * angle + phase) + 0.07 * std::cos(5.0 * angle + bulge_phase);
-      distance(y, x) = static_cast<float>(std::hypot(dx, dy) / outline);
-    }
-  }
-  return distance;
-}
-
 float quantile_of(const cv::Mat1f& values, double share) {
   std::vector<float> sorted(values.begin(), values.end());
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
@@ -78,12 +62,56 @@ float quantile_of(const cv::Mat1f& values, double share) {
   return *at;
 }
 
-cv::Mat shifted(const cv::Mat& image, const HandPosition& position) {
-  const cv::Matx23d image_from_hand(1.0, 0.0, position.right, 0.0, 1.0, position.down);
-  cv::Mat result;
-  cv::warpAffine(image, result, image_from_hand, image.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT_101);
-  return result;
-}
+// Drawn on a canvas of twice the image's height and a little more than its width, so that it can come from below.
+class Hand {
+ public:
+  Hand(cv::Size image, double coverage)
+      : image_(image), at_rest_(image.width / 8, image.height, image.width, image.height) {
+    const cv::Size size(image.width * 5 / 4, 2 * image.height);
+    const cv::Mat1f distance = distance_from_middle(size);
+    const double outline = quantile_of(distance(at_rest_).clone(), coverage);
+    const cv::Mat1f skin = smooth_noise(size, 9.0, 60.0, 8) + smooth_noise(size, 3.0, 4.0, 9);
+    grey_.create(size);
+    opacity_.create(size);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const double depth = 1.0 - distance(y, x) / outline;  // 0 on the outline, 1 in the middle
+        opacity_(y, x) = static_cast<float>(soft_step(depth, 0.14));
+        grey_(y, x) = static_cast<float>(62.0 + 55.0 * std::exp(-4.0 * std::max(depth, 0.0))) + skin(y, x);
+      }
+    }
+  }
+
+  // So many pixels right of and below where it rests.
+  Image before(const Image& image, int right, int down) const {
+    const cv::Rect seen = at_rest_ - cv::Point(right, down);
+    cv::Mat scene;
+    as_matrix(image).convertTo(scene, CV_32F);
+    const cv::Mat1f opacity = opacity_(seen);
+    return to_image(scene.mul(1.0 - opacity) + grey_(seen).mul(opacity));
+  }
+
+ private:
+  // 1 on an outline with five bulges, the knuckles.
+  cv::Mat1f distance_from_middle(cv::Size size) const {
+    const double centre_x = at_rest_.x + 0.42 * image_.width, centre_y = at_rest_.y + 0.62 * image_.height;
+    cv::Mat1f distance(size);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const double dx = (x - centre_x) / image_.width, dy = 1.2 * (y - centre_y) / image_.height;
+        const double angle = std::atan2(dy, dx);
+        const double outline = 1.0 + 0.12 * std::cos(2.0 * angle + 0.4) + 0.07 * std::cos(5.0 * angle + 2.0);
+        distance(y, x) = static_cast<float>(std::hypot(dx, dy) / outline);
+      }
+    }
+    return distance;
+  }
+
+  cv::Size image_;
+  cv::Rect at_rest_;  // what the left image sees where the hand rests
+  cv::Mat1f grey_;
+  cv::Mat1f opacity_;
+};
 
 template <typename Change>
 ImageFrame change_each(const ImageFrame& images, Change change) {
@@ -158,26 +186,6 @@ Image blank_wall(const Image& image, std::uint64_t seed) {
   return to_image(wall + white_noise(wall.size(), 1.5, seed));
 }
 
-Image behind_hand(const Image& image, double coverage, const HandPosition& position, std::uint64_t seed) {
-  const cv::Size size(image.width, image.height);
-  const cv::Mat1f at_rest = distance_from_hand(size, {}, seed);
-  const double outline = quantile_of(at_rest, coverage);
-  const cv::Mat1f distance = distance_from_hand(size, position, seed);
-  const cv::Mat1f skin =
-      shifted(smooth_noise(size, 9.0, 60.0, seed + 1) + smooth_noise(size, 3.0, 4.0, seed + 2), position);
-  cv::Mat1f result(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const double depth = 1.0 - distance(y, x) / outline;  // 0 on the outline, 1 in the middle
-      const double open = soft_step(-depth, 0.14);
-      const double hand = 62.0 + 55.0 * std::exp(-4.0 * std::max(depth, 0.0)) + skin(y, x);
-      const double scene = image.pixels[static_cast<std::size_t>(y * size.width + x)];
-      result(y, x) = static_cast<float>(open * scene + (1.0 - open) * hand);
-    }
-  }
-  return to_image(result);
-}
-
 Degradation black_frames() {
   return [](const ImageFrame& images, int step) {
     return change_each(images,
@@ -186,12 +194,14 @@ Degradation black_frames() {
 }
 
 Degradation hand_over_the_lens(double coverage) {
-  return [coverage](const ImageFrame& images, int step) {
+  const auto drawn = std::make_shared<std::optional<Hand>>();  // once the size of the images is known
+  return [coverage, drawn](const ImageFrame& images, int step) {
     constexpr int kComing = 5;  // steps until it rests
-    const double far = std::max(0, kComing - 1 - step) / static_cast<double>(kComing);
+    if (!*drawn) drawn->emplace(cv::Size(images.left.width, images.left.height), coverage);
+    const int to_go = std::max(0, kComing - 1 - step);
+    const int down = images.left.height * to_go / (kComing + 1);
     return change_each(images, [&](const Image& image, int camera) {
-      const double beside = camera == 0 ? 0.0 : -0.06 * image.width;  // the right camera sees it further left
-      return behind_hand(image, coverage, {beside, far * 0.9 * image.height}, 7);
+      return (*drawn)->before(image, camera == 0 ? 0 : -image.width / 16, down);
     });
   };
 }

@@ -31,20 +31,15 @@ Image dirtied(const Image& image, int spots, std::uint64_t seed);
 // A bright wall without texture right before the camera: shading and faint noise. The noise differs between seeds.
 Image blank_wall(const Image& image, std::uint64_t seed);
 
-// A hand before the lens. It is still but for how far it has come: in pixels right and down of where it rests.
-struct HandPosition {
-  double right = 0.0;
-  double down = 0.0;
-};
-
-// Covers this share of the image where it rests, with a soft edge and a little of the skin's texture.
-Image behind_hand(const Image& image, double coverage, const HandPosition& position, std::uint64_t seed);
-
 // What happens to the images of a rig, step by step from the frame it begins with (step 0).
 using Degradation = std::function<ImageFrame(const ImageFrame& images, int step)>;
 
 Degradation black_frames();
-Degradation hand_over_the_lens(double coverage);                 // comes within a quarter of a second, and stays
+
+// A hand comes before both lenses within five steps, and rests there, covering this share of the left image: softly
+// edged, with a little of the skin's texture, and further left in the right image.
+Degradation hand_over_the_lens(double coverage);
+
 Degradation motion_blur(double pixels);                          // in ever another direction
 Degradation exposure_jumps(double factor, int steps_per_level);  // longer, as it was, shorter, as it was, ...
 Degradation blank_close_up();

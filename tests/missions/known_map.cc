@@ -69,7 +69,7 @@ StoredMap make_map(const MapRecipe& recipe) {
   const fs::path folder = folder_of(recipe.recording);
   const auto recording = open_recording(folder, recipe.range);
   StoredMap stored;
-  stored.map = offline_copy(recipe.from_true_poses ? map_by_true_poses(*recording, truth_of(folder))
+  stored.map = offline_copy(recipe.from_true_poses ? map_by_true_poses(*recording, truth_of(recipe.recording))
                                                    : map_by_session(*recording));
   stored.pose_source = recipe.from_true_poses ? PoseSource::given : PoseSource::slam;
   stored.recordings = {
@@ -131,6 +131,12 @@ std::string name_of(const MapRecipe& recipe) {
   return name;
 }
 
+Trajectory truth_of(const RecordingName& name) {
+  Trajectory truth = truth_of(folder_of(name));
+  for (StampedPose& pose : truth) pose.time += name.truth_offset;
+  return truth;
+}
+
 const Vocabulary& mission_vocabulary() {
   static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
   return loaded;
@@ -138,7 +144,7 @@ const Vocabulary& mission_vocabulary() {
 
 KnownMap make_known_map(const MapRecipe& recipe) {
   StoredMap stored = load_or_make(recipe);
-  const Similarity truth_from_map = align_to_truth(stored.map, truth_of(folder_of(recipe.recording)));
+  const Similarity truth_from_map = align_to_truth(stored.map, truth_of(recipe.recording));
   return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary()), truth_from_map};
 }
 

@@ -19,6 +19,7 @@ enum class Source : std::uint8_t { real, twin };
 struct RecordingName {
   Source source = Source::real;
   std::string name;
+  Timestamp truth_offset{0};  // added to the truth's time stamps, for truth with a known clock error
 };
 
 // Empty when it is not there, or not rendered to its end yet.
@@ -26,6 +27,9 @@ std::optional<std::filesystem::path> find(const RecordingName& name);
 
 // Why a mission without its recording is left out, and how to have it flown.
 std::string why_missing(const RecordingName& name);
+
+// world_from_body, its clock corrected. Throws InputError when the recording or its truth is missing or damaged.
+Trajectory truth_of(const RecordingName& name);
 
 // What an offline map is made of.
 struct MapRecipe {

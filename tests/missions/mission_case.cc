@@ -1,7 +1,5 @@
 #include "mission_case.h"
 
-#include "mapped_recording.h"
-
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 
@@ -55,14 +53,13 @@ KnownMap KnownMaps::get(const MapChoice& choice) {
 
 FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
   const KnownMap known = maps.get(mission_case.map);
-  const std::filesystem::path folder = find(mission_case.recording).value();
-  const auto recording = open_recording(folder, mission_case.range);
+  const auto recording = open_recording(find(mission_case.recording).value(), mission_case.range);
   MissionPlan plan = mission_case.plan(recording->times());
   if (mission_case.mapped_again_after) {
     plan.undisturbed_from = plan.steps.front().time + from_seconds(*mission_case.mapped_again_after);
   }
   FlownMission flown;
-  flown.frames = run(plan, *recording, truth_of(folder), known.map);
+  flown.frames = run(plan, *recording, truth_of(mission_case.recording), known.map);
   if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
   flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
   return flown;
