@@ -148,6 +148,26 @@ KnownMap make_known_map(const MapRecipe& recipe) {
   return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary()), truth_from_map};
 }
 
+KnownMap without_stretch(const KnownMap& known, Timestamp from, Timestamp to) {
+  Map map = known.map->map();
+  const std::vector<KeyframeId> keyframes = map.keyframe_ids();
+  const Timestamp begin = map.find_keyframe(keyframes.front())->frame.time;
+  const auto is_in_stretch = [&](KeyframeId id) {
+    const Timestamp time = map.find_keyframe(id)->frame.time - begin;
+    return from <= time && time < to;
+  };
+  for (const PointId id : map.point_ids()) {
+    const std::vector<Observation>& observations = map.observations(id);
+    const auto inside = std::ranges::count_if(
+        observations, [&](const Observation& observation) { return is_in_stretch(observation.keyframe); });
+    if (2 * inside > std::ssize(observations)) map.remove_point(id);
+  }
+  for (const KeyframeId id : keyframes) {
+    if (is_in_stretch(id)) map.remove_keyframe(id);
+  }
+  return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary()), known.truth_from_map};
+}
+
 KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed) {
   Map map = known.map->map();
   std::mt19937_64 random(seed);

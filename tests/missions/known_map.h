@@ -52,6 +52,10 @@ KnownMap make_known_map(const MapRecipe& recipe);
 // Without this share of its points, chosen by the seed.
 KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed);
 
+// Without what was mapped between two times, counted from the first keyframe: those keyframes, and points that mostly
+// they see.
+KnownMap without_stretch(const KnownMap& known, Timestamp from, Timestamp to);
+
 const Vocabulary& mission_vocabulary();
 
 }  // namespace byre

@@ -44,11 +44,12 @@ std::optional<RecordingName> missing_recording(const MissionCase& mission_case) 
 
 KnownMap KnownMaps::get(const MapChoice& choice) {
   constexpr std::uint64_t kSeed = 1;
-  const std::string name = name_of(choice.recipe) + formatted(" without %.2f", choice.share_deleted);
-  if (const auto known = maps_.find(name); known != maps_.end()) return known->second;
-  const KnownMap map = choice.share_deleted > 0.0 ? without_points(get({choice.recipe}), choice.share_deleted, kSeed)
-                                                  : make_known_map(choice.recipe);
-  return maps_.emplace(name, map).first->second;
+  const std::string name = name_of(choice.recipe);
+  if (!maps_.contains(name)) maps_.emplace(name, make_known_map(choice.recipe));
+  KnownMap known = maps_.at(name);
+  if (choice.share_deleted > 0.0) known = without_points(known, choice.share_deleted, kSeed);
+  if (choice.hole) known = without_stretch(known, from_seconds(choice.hole->start), from_seconds(choice.hole->end));
+  return known;
 }
 
 FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {

@@ -15,6 +15,7 @@ namespace byre {
 struct MapChoice {
   MapRecipe recipe;
   double share_deleted = 0.0;  // of its points
+  std::optional<Span> hole{};  // seconds of its recording of which it knows nothing
   bool is_of_another_place = false;
 };
 

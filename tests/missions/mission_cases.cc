@@ -71,8 +71,8 @@ const MapRecipe kRealRoom{real("euroc/V1_01_easy_sparse"), {}, true};
 const MapRecipe kTwinRoom{twin("V1_01_easy")};
 const MapRecipe kTwinShed{twin("cowshed_m1"), frames(0, 1320)};  // the way out, and the turn at its end
 
-MissionCase in_hall(const char* name, const Plan& plan) {
-  return {std::string("hall_") + name, kHall.recording, frames(150, 300), {kHall}, plan};
+MissionCase in_hall(const char* name, const FrameRange& range, const Plan& plan) {
+  return {std::string("hall_") + name, kHall.recording, range, {kHall}, plan};
 }
 
 MissionCase in_room(const char* name, const FrameRange& range, const Plan& plan) {
@@ -98,12 +98,10 @@ MissionCase of_recording(MissionCase mission_case, const RecordingName& recordin
   return mission_case;
 }
 
-MapChoice half_of(const MapRecipe& recipe) {
-  return {recipe, 0.5};
-}
-
 MapChoice wrong(const MapRecipe& recipe) {
-  return {recipe, 0.0, true};
+  MapChoice choice{recipe};
+  choice.is_of_another_place = true;
+  return choice;
 }
 
 constexpr Demand kHardlyDisturbed{true, 0.98};
@@ -111,49 +109,75 @@ constexpr Demand kHonestOnly{false, 0.0};
 
 }  // namespace
 
-// The second half of the flight on the map of the first, 7.5 s in which everything is mapped.
+// The second half of the flight on the map of the first, or as much of it as is needed. All of it is mapped.
 std::vector<MissionCase> real_mission_cases() {
-  std::vector<MissionCase> cases = {with_demand(in_hall("undisturbed", as_recorded), kHardlyDisturbed)};
-  for (const NamedPlan& disturbance : passing_disturbances({2.5, 4.5})) {
-    cases.push_back(in_hall(disturbance.name, disturbance.plan));
+  const FrameRange whole = frames(150, 300), six_seconds = frames(150, 270), four_seconds = frames(150, 230);
+  std::vector<MissionCase> cases = {with_demand(in_hall("undisturbed", whole, as_recorded), kHardlyDisturbed)};
+  for (const NamedPlan& disturbance : passing_disturbances({1.5, 3.5})) {
+    cases.push_back(in_hall(disturbance.name, six_seconds, disturbance.plan));
   }
-  cases.push_back(in_hall("kidnapped", kidnap({0.0, 2.5}, {4.5, 7.5}, 0.0)));
-  cases.push_back(in_hall("kidnapped_in_the_dark", kidnap({0.0, 3.0}, {4.5, 7.5}, 0.5)));
-  cases.push_back(in_hall("haze", degrade_all(haze(0.4))));
-  cases.push_back(in_hall("dirt", degrade_all(dirt(40))));
-  cases.push_back(in_hall("contrast_loss", degrade_all(contrast_loss(0.3))));
-  cases.push_back(with_map(in_hall("half_the_points", as_recorded), half_of(kHall)));
-  cases.push_back(with_demand(with_map(in_hall("wrong_map", as_recorded), wrong(kRealRoom)), kHonestOnly));
+  cases.push_back(in_hall("kidnapped", whole, kidnap({0.0, 2.5}, {4.5, 7.5}, 0.0)));
+  cases.push_back(in_hall("kidnapped_in_the_dark", whole, kidnap({0.0, 3.0}, {4.5, 7.5}, 0.5)));
+  cases.push_back(in_hall("haze", four_seconds, degrade_all(haze(0.4))));
+  cases.push_back(in_hall("dirt", four_seconds, degrade_all(dirt(40))));
+  cases.push_back(in_hall("contrast_loss", four_seconds, degrade_all(contrast_loss(0.3))));
+  cases.push_back(with_map(in_hall("half_the_points", whole, as_recorded), {kHall, 0.5}));
+  cases.push_back(with_demand(with_map(in_hall("wrong_map", six_seconds, as_recorded), wrong(kRealRoom)), kHonestOnly));
   return cases;
 }
 
-std::vector<MissionCase> twin_mission_cases() {
-  const FrameRange ten_seconds = seconds(10.0, 20.0);
-  std::vector<MissionCase> cases = {with_demand(in_room("undisturbed", ten_seconds, as_recorded), kHardlyDisturbed)};
-  for (const NamedPlan& disturbance : passing_disturbances({3.0, 5.0})) {
-    cases.push_back(in_room(disturbance.name, ten_seconds, disturbance.plan));
+namespace {
+
+std::vector<MissionCase> room_cases() {
+  const FrameRange eight_seconds = seconds(11.0, 19.0);
+  std::vector<MissionCase> cases = {with_demand(in_room("undisturbed", eight_seconds, as_recorded), kHardlyDisturbed)};
+  for (const NamedPlan& disturbance : passing_disturbances({2.0, 4.0})) {
+    cases.push_back(in_room(disturbance.name, eight_seconds, disturbance.plan));
   }
   // From one end of the room to the other.
-  cases.push_back(in_room("kidnapped", seconds(14.0, 52.0), kidnap({0.0, 5.0}, {33.0, 38.0}, 0.0)));
-  cases.push_back(in_room("kidnapped_in_the_dark", seconds(14.0, 52.0), kidnap({0.0, 5.0}, {33.0, 38.0}, 1.0)));
-  cases.push_back(with_map(in_room("half_the_points", ten_seconds, as_recorded), half_of(kTwinRoom)));
-  cases.push_back(with_demand(with_map(in_room("wrong_map", ten_seconds, as_recorded), wrong(kTwinShed)), kHonestOnly));
-  cases.push_back(with_demand(
-      of_recording(in_room("fast_flight", seconds(0.0, 40.0), as_recorded), twin("V1_03_difficult")), kHonestOnly));
-
-  cases.push_back(in_shed("black", seconds(20.0, 30.0), degrade({3.0, 5.0}, black_frames())));
-  // Along the fence, where one place looks like the next.
-  cases.push_back(in_shed("kidnapped", seconds(6.0, 40.0), kidnap({0.0, 5.0}, {28.0, 34.0}, 0.0)));
-  cases.push_back(in_shed("kidnapped_in_the_dark", seconds(6.0, 40.0), kidnap({0.0, 5.0}, {28.0, 34.0}, 1.0)));
+  const FrameRange both_ends = seconds(15.0, 51.0);
+  cases.push_back(in_room("kidnapped", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 0.0)));
+  cases.push_back(in_room("kidnapped_in_the_dark", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 1.0)));
+  cases.push_back(with_map(in_room("half_the_points", eight_seconds, as_recorded), {kTwinRoom, 0.5}));
   cases.push_back(
-      with_demand(with_map(in_shed("wrong_map", seconds(20.0, 30.0), as_recorded), wrong(kTwinRoom)), kHonestOnly));
-  MissionCase detour = in_shed("detour", seconds(46.0, 106.0), as_recorded);
-  detour.mapped_again_after = 50.0;
-  cases.push_back(detour);
+      with_demand(with_map(in_room("wrong_map", eight_seconds, as_recorded), wrong(kTwinShed)), kHonestOnly));
+  cases.push_back(with_demand(
+      of_recording(in_room("fast_flight", seconds(5.0, 30.0), as_recorded), twin("V1_03_difficult")), kHonestOnly));
+  return cases;
+}
+
+// Where the map has nothing: beyond the turn of mission 1; and where a stretch of the map was taken out.
+std::vector<MissionCase> detours() {
+  MissionCase beyond = in_shed("detour", seconds(50.0, 101.0), as_recorded);
+  beyond.mapped_again_after = 46.0;
+  MissionCase hole =
+      with_map(in_shed("hole_in_the_map", seconds(17.0, 52.0), as_recorded), {kTwinShed, 0.0, Span{22.0, 42.0}});
+  hole.mapped_again_after = 27.0;
+  return {beyond, hole};
+}
+
+std::vector<MissionCase> shed_cases() {
+  const FrameRange eight_seconds = seconds(21.0, 29.0);
+  std::vector<MissionCase> cases = {in_shed("black", eight_seconds, degrade({2.0, 4.0}, black_frames()))};
+  // Along the fence, where one place looks like the next.
+  const FrameRange along_fence = seconds(6.0, 40.0);
+  cases.push_back(in_shed("kidnapped", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 0.0)));
+  cases.push_back(in_shed("kidnapped_in_the_dark", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 1.0)));
+  cases.push_back(
+      with_demand(with_map(in_shed("wrong_map", eight_seconds, as_recorded), wrong(kTwinRoom)), kHonestOnly));
+  for (const MissionCase& detour : detours()) cases.push_back(detour);
   for (const char* condition : {"dirt", "haze", "flat"}) {
     const std::string recording = std::string("cowshed_m2_") + condition;
-    cases.push_back(of_recording(in_shed(condition, seconds(0.0, 20.0), as_recorded), twin(recording.c_str())));
+    cases.push_back(of_recording(in_shed(condition, seconds(0.0, 10.0), as_recorded), twin(recording.c_str())));
   }
+  return cases;
+}
+
+}  // namespace
+
+std::vector<MissionCase> twin_mission_cases() {
+  std::vector<MissionCase> cases = room_cases();
+  for (const MissionCase& in_shed : shed_cases()) cases.push_back(in_shed);
   return cases;
 }
 
