@@ -20,9 +20,9 @@ struct Chart {
   std::string subtitle;
   std::string x_label;  // with the unit
   std::string y_label;
-  bool equal_scales = false;        // a metre is as long on both axes
-  bool log_y = false;               // values that are not positive are left out
-  std::vector<ChartSeries> series;  // drawn in this order, so the last lies on top
+  bool equal_scales = false;             // a metre is as long on both axes
+  bool log_y = false;                    // values that are not positive are left out
+  std::vector<ChartSeries> series = {};  // drawn in this order, so the last lies on top
 };
 
 // A picture of its own, 860 pixels wide, on a light background; axes with ticks, and a legend.

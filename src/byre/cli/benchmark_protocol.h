@@ -24,9 +24,9 @@ std::string_view name_of(Arm arm);  // as in a protocol
 struct BenchmarkRecording {
   std::string name;
   std::filesystem::path folder;  // relative to the folder of data
-  FrameRange range;
-  std::optional<std::filesystem::path> truth;  // relative likewise; else that which comes with the recording
-  Timestamp truth_offset{0};                   // added to the truth's time stamps
+  FrameRange range = {};
+  std::optional<std::filesystem::path> truth = {};  // relative likewise; else that which comes with the recording
+  Timestamp truth_offset{0};                        // added to the truth's time stamps
 };
 
 // One recording, on the map of another or on none.

@@ -46,11 +46,10 @@ void Mission::note_found(Timestamp time) {
 }
 
 std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                                      double median_depth, bool is_jump) {
+                                      double median_depth) {
   const RegistrationOptions& options = options_.registration;
   hypothesis_ = confirm(hypothesis_, offline_from_online, camera_in_online, median_depth, options);
-  const int needed = is_jump ? options.confirmations_of_jump : options.confirmations;
-  if (!hypothesis_ || hypothesis_->confirmations < needed) return std::nullopt;
+  if (!hypothesis_ || hypothesis_->confirmations < options.confirmations) return std::nullopt;
   const Pose confirmed = hypothesis_->offline_from_online;
   hypothesis_.reset();
   return confirmed;

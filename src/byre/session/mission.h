@@ -18,7 +18,7 @@ struct MissionOptions {
   double search_distance = 4.0;   // metres about the pose within which offline keyframes are looked for
   double min_drift = 0.01;        // metres by which the online map may always lie off the offline one,
   double drift_share = 0.02;      // and of the path since both agreed
-  double min_turn = 0.005;         // radians that it may be turned,
+  double min_turn = 0.005;        // radians that it may be turned,
   double turn_per_metre = 0.002;  // and for each metre of that path
   int held_by = 60;               // offline inliers from which the online map around is taken to lie in its place
   double search_after = 0.3;      // metres without offline points: then places are looked for beside tracking
@@ -55,7 +55,7 @@ class Mission {
 
   // What a frame says of where the online map lies in the offline one: a correction, once enough frames agree.
   std::optional<Pose> consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                               double median_depth, bool is_jump);
+                               double median_depth);
   void forget_hypothesis() { hypothesis_.reset(); }
 
  private:

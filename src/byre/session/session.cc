@@ -55,6 +55,9 @@ FrameReport Session::process(const Frame& frame) {
   const Stopwatch mapping_after;
   ++frames_since_keyframe_;
   report.keyframe_added = located.is_new_segment;
+  if (located.is_new_segment) {
+    report.events.push_back(segments_.size() == 1 ? SessionEvent::initialised : SessionEvent::restarted);
+  }
   if (located.track) {
     remember(frame, *located.track, located.without_prediction, report);
     if (may_map(frame, *located.track)) {
@@ -102,6 +105,7 @@ bool Session::correct_online() {
   const WaitingCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   apply(correction_of(online_, correction.first_keyframe, correction.offline_from_online, correction.shape), online_);
   segments_[segment_].is_registered = true;
+  offset_from_online_.reset();
   if (last_keyframe_ && pending_.empty()) pending_.push_back(*last_keyframe_);
   return true;
 }

@@ -163,6 +163,8 @@ class Session {
   bool may_begin_segment(const Frame& frame) const;
   bool begin_segment(const Frame& frame);
 
+  std::optional<Pose> offset_from_online(const HybridTrack& track) const;
+  Pose without_change_of(const std::optional<Pose>& offset, const Pose& body) const;
   void remember(const Frame& frame, const HybridTrack& track, bool without_prediction, FrameReport& report);
   void remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report);
   void begin_confirmation(const Frame& frame, const TrackedFrame& tracked);
@@ -186,6 +188,7 @@ class Session {
   Pose camera_from_world(KeyframeId id) const;
   Pose last_camera_from_world() const;
   Pose body_pose(const Pose& camera_from_world) const { return inverse(rig_.body_from_camera * camera_from_world); }
+  Pose camera_pose(const Pose& body) const { return inverse(body * rig_.body_from_camera); }
   Pose predict(Timestamp time) const;
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_world) const;
 
@@ -210,7 +213,7 @@ class Session {
   bool has_pose_ = false;                    // the last frame had one
   int confirmations_left_ = 0;               // frames until a pose found from nothing is believed
   std::size_t confirmed_end_ = 0;            // of anchored_, those before are of believed poses
-  bool on_offline_basis_ = false;            // the last pose was that of offline points, the online map lying elsewhere
+  std::optional<Pose> offset_from_online_;   // of the last body pose, from where online points alone have it
   std::optional<Timestamp> last_confirmed_;  // time of the last believed pose in the reports' frame
   std::optional<Timestamp> first_frame_;
   bool navigation_error_told_ = false;

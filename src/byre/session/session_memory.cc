@@ -8,10 +8,9 @@
 namespace byre {
 namespace {
 
-// Where the robot would be had it stayed on the points that held the last pose.
-const Pose& on_same_basis(const HybridTrack& track, bool on_offline) {
-  const std::optional<Pose>& pose = on_offline ? track.from_offline : track.from_online;
-  return pose ? *pose : track.tracked.camera_from_world;
+bool is_drift(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online, const DriftBound& bound) {
+  return (offline_from_online * camera_in_online - camera_in_online).norm() <= bound.translation &&
+         rotation_log(offline_from_online.rotation).norm() <= bound.rotation;
 }
 
 // Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
@@ -38,32 +37,47 @@ ImageFault Session::image_fault(const Frame& frame) const {
   return frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
 }
 
+std::optional<Pose> Session::offset_from_online(const HybridTrack& track) const {
+  if (!mission_ || !track.from_online) return std::nullopt;
+  return inverse(body_pose(*track.from_online)) * body_pose(track.tracked.camera_from_world);
+}
+
+// What offline points do to a pose that online points hold as well is no motion: where that changes at once, the body
+// is where it would be had it not.
+Pose Session::without_change_of(const std::optional<Pose>& offset, const Pose& body) const {
+  constexpr double kMaxChange = 0.01;  // metres: less is noise
+  if (!offset || !offset_from_online_) return body;
+  const double change = (offset->translation - offset_from_online_->translation).norm();
+  return change > kMaxChange ? body * inverse(*offset) * *offset_from_online_ : body;
+}
+
 void Session::remember(const Frame& frame, const HybridTrack& track, bool without_prediction, FrameReport& report) {
-  const Pose& camera = track.tracked.camera_from_world;
-  const bool changes_basis = track.offline_is_right != on_offline_basis_;
-  const Pose smooth = changes_basis ? on_same_basis(track, on_offline_basis_) : camera;
+  const Pose body = body_pose(track.tracked.camera_from_world);
+  const std::optional<Pose> offset = offset_from_online(track);
   const bool is_first = anchored_.empty();
+  const Pose smooth = without_prediction || is_first ? body : without_change_of(offset, body);
   double step = 0.0;
   if (is_first) {
-    odometry_.start(body_pose(camera));
+    odometry_.start(body);
   } else if (without_prediction) {
-    odometry_.absorb(last_body_, body_pose(camera));
+    odometry_.absorb(last_body_, body);
   } else {
-    step = (last_body_.translation - body_pose(smooth).translation).norm();
-    odometry_.absorb(body_pose(smooth), body_pose(camera));
+    step = (last_body_.translation - smooth.translation).norm();
+    odometry_.absorb(smooth, body);
     odometry_.travel(step);
   }
-  velocity_ = without_prediction || is_first ? Vector6::Zero() : velocity_to(frame.time, smooth);
+  velocity_ = without_prediction || is_first ? Vector6::Zero() : velocity_to(frame.time, camera_pose(smooth));
+  offset_from_online_ = offset;
   if (without_prediction) begin_confirmation(frame, track.tracked);
-  on_offline_basis_ = track.offline_is_right;
   last_inliers_ = static_cast<int>(track.tracked.features.size());
   const KeyframeId reference =
       track.offline_is_right && track.offline_reference ? *track.offline_reference : track.tracked.reference;
   if (reference_ != reference) fresh_inliers_ = last_inliers_;
   reference_ = reference;
   if (track.online_reference) online_reference_ = track.online_reference;
-  anchored_.push_back({frame.time, reference, camera * inverse(camera_from_world(reference)), segment_});
-  last_body_ = body_pose(camera);
+  anchored_.push_back(
+      {frame.time, reference, track.tracked.camera_from_world * inverse(camera_from_world(reference)), segment_});
+  last_body_ = body;
   has_pose_ = true;
   if (mission_ && is_registered()) remember_mission(frame, track, step, report);
   if (!is_pose_confirmed()) return;
@@ -95,7 +109,7 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   if (!track.offline_is_right || waiting_correction_ || !is_pose_confirmed()) return;
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const auto correction = mission_->consider(offline_from_online, inverse(*track.from_online).translation,
-                                             median_depth(track.tracked, map()), false);
+                                             median_depth(track.tracked, map()));
   if (correction) waiting_correction_ = {last_held_keyframe_, *correction, CorrectionShape::spread};
 }
 
@@ -127,7 +141,7 @@ void Session::lose_pose(const Frame& frame, FrameReport& report) {
   has_pose_ = false;
   confirmations_left_ = 0;
   anchored_.resize(confirmed_end_);  // what was found and never confirmed
-  on_offline_basis_ = false;
+  offset_from_online_.reset();
   if (!mission_) return;
   mission_->forget_reference();
   mission_->forget_hypothesis();
@@ -153,11 +167,9 @@ void Session::consider_place(const FoundPlace& found) {
   const Pose camera_from_online = then.camera_from_keyframe * camera_from_world(then.keyframe);
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
   const Eigen::Vector3d camera_in_online = inverse(camera_from_online).translation;
-  const DriftBound drift = mission_->drift();
-  const bool is_jump =
-      is_registered() && ((offline_from_online * camera_in_online - camera_in_online).norm() > drift.translation ||
-                          rotation_log(offline_from_online.rotation).norm() > drift.rotation);
-  const auto correction = mission_->consider(offline_from_online, camera_in_online, found.median_depth, is_jump);
+  // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
+  if (is_registered() && !is_drift(offline_from_online, camera_in_online, mission_->drift())) return;
+  const auto correction = mission_->consider(offline_from_online, camera_in_online, found.median_depth);
   if (!correction) return;
   waiting_correction_ =
       is_registered() ? WaitingCorrection{last_held_keyframe_, *correction, CorrectionShape::spread}
@@ -187,10 +199,12 @@ void Session::conclude(const Frame& frame, const Located& located, FrameReport& 
   report.health = health_of(frame, located, report.covariance);
 }
 
-// Where offline points hold it, a pose is as exact as they are, in a frame as exact as the offline map.
+// In a mission the map's frame itself is only as exact as the offline map. Where offline points hold the pose, that and
+// the matches are all.
 Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
-  if (tracked.reference.origin == Origin::online || !mission_) return tracked.covariance;
-  return tracked.match_covariance + mission_->offline().frame_covariance();
+  if (!mission_) return tracked.covariance;
+  const bool is_online = tracked.reference.origin == Origin::online;
+  return (is_online ? tracked.covariance : tracked.match_covariance) + mission_->offline().frame_covariance();
 }
 
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {

@@ -158,13 +158,13 @@ TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
 }
 
 TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
-  SimulatedMission mission = circling(1.0, 2);
+  SimulatedMission mission = circling(0.6, 2);
   std::ranges::reverse(mission.truth);
   std::vector<Frame> frames;  // backwards: from what the map has not seen to where it begins
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     frames.push_back(at_time_of(mission.frames[mission.frames.size() - 1 - i], mission.frames[i]));
   }
-  Session session = session_on(mapped(0.3));
+  Session session = session_on(mapped(0.2));
   const auto reports = run(session, frames);
   session.finish();
   EXPECT_FALSE(reports.front().map_from_body);

@@ -161,6 +161,7 @@ bool Session::begin_segment(const Frame& frame) {
   }
   anchored_.push_back({frame.time, *last_keyframe_, Pose{}, segment_});
   last_body_ = body;
+  offset_from_online_.reset();
   velocity_ = Vector6::Zero();
   frames_since_keyframe_ = 0;
   reference_.reset();

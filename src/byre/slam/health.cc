@@ -17,9 +17,12 @@ Doubt reason_against(const Health& health, const HealthEvidence& evidence, const
 }
 
 bool misses_offline_points(const Health& health, const HealthOptions& options) {
-  return health.offline_expected >= options.expected_offline_points &&
-         health.offline_inliers < options.min_offline_points &&
-         health.distance_since_offline > options.max_changed_path;
+  if (health.offline_expected < options.expected_offline_points) return false;
+  const bool held_by_chance = health.offline_inliers >= options.min_offline_points &&
+                              health.offline_inliers < options.min_offline_share * health.offline_expected;
+  const bool not_held =
+      health.offline_inliers < options.min_offline_points && health.distance_since_offline > options.max_changed_path;
+  return held_by_chance || not_held;
 }
 
 // What asks for care; none when nothing does.

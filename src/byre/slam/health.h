@@ -68,6 +68,7 @@ struct HealthOptions {
   double max_disagreement = 0.05;    // metres between the poses from offline and from online points
   int min_offline_points = 15;       // inliers, where
   int expected_offline_points = 80;  // so many should be in view,
+  double min_offline_share = 0.04;   // of those expected: fewer agree by chance where a building repeats itself
   double max_changed_path = 5.0;     // unless for less than these metres
 };
 

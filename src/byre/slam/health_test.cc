@@ -106,6 +106,12 @@ INSTANTIATE_TEST_SUITE_P(
                   Doubt::blinded},
         Judgement{"points in a corner", with([](Health& h) { h.spread = 0.01; }), kPose, Verdict::degraded,
                   Doubt::clustered},
+        Judgement{"a place that only resembles another", with([](Health& h) {
+                    h.offline_expected = 1800;
+                    h.offline_inliers = 50;
+                    h.online_inliers = 300;
+                  }),
+                  kPose, Verdict::degraded, Doubt::few_offline_points},
         Judgement{"a changed place, passing", with([](Health& h) {
                     h.offline_inliers = 5;
                     h.online_inliers = 200;

@@ -92,23 +92,22 @@ ByMap<std::vector<ExpectedPoint>> project(const Query& query, const ByMap<std::v
           project_points(query.map, candidates.online, camera_from_world.online, query.rig)};
 }
 
-// A feature that shows a point of each map is left to the offline one.
 ByMap<std::vector<GuidedMatch>> match(const Query& query, const ByMap<std::vector<ExpectedPoint>>& expected) {
   const SearchOptions search{query.options.narrow_radius, 90, 0.9f};
-  ByMap<std::vector<GuidedMatch>> matches{match_expected(*query.frame.features, query.map, expected.offline, search),
-                                          match_expected(*query.frame.features, query.map, expected.online, search)};
-  std::erase_if(matches.online, [&](const GuidedMatch& online) {
-    return std::ranges::binary_search(matches.offline, online.feature, {}, &GuidedMatch::feature);
-  });
-  return matches;
+  return {match_expected(*query.frame.features, query.map, expected.offline, search),
+          match_expected(*query.frame.features, query.map, expected.online, search)};
 }
 
+// A feature that shows a point of each map is left to the offline one.
 MeasuredPoints join(const ByMap<MeasuredPoints>& measured, double offline_weight) {
   MeasuredPoints both = measured.offline;
   for (PoseObservation& observation : both.observations) observation.weight = offline_weight;
-  both.observations.insert(both.observations.end(), measured.online.observations.begin(),
-                           measured.online.observations.end());
-  both.features.insert(both.features.end(), measured.online.features.begin(), measured.online.features.end());
+  for (std::size_t i = 0; i < measured.online.features.size(); ++i) {
+    const int feature = measured.online.features[i].feature;
+    if (std::ranges::binary_search(measured.offline.features, feature, {}, &TrackedFeature::feature)) continue;
+    both.observations.push_back(measured.online.observations[i]);
+    both.features.push_back(measured.online.features[i]);
+  }
   return both;
 }
 

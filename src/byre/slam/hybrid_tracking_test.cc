@@ -95,11 +95,11 @@ TEST_F(TrackHybrid, FollowsTheOnlineMapWhereMoreThanDriftWouldBeNeeded) {
 
 TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
   const std::vector<PointId> all = offline_.point_ids();
-  std::vector<PointId> shelf;  // a fifth of the points, moved by 4 cm
+  std::vector<PointId> shelf;  // a fifth of the points, raised by 4 cm
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
   for (const PointId id : shelf) {
     MapPoint point = *offline_.find_point(id);
-    point.position_in_world = shift_by(0.04) * point.position_in_world;
+    point.position_in_world.z() += 0.04;
     offline_.update_point(id, point);
   }
   const auto track = track_frame({});
@@ -108,7 +108,8 @@ TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
   const auto count_shelf = [&](const std::vector<PointId>& points) {
     return std::ranges::count_if(points, [&](PointId id) { return std::ranges::binary_search(shelf, id); });
   };
-  EXPECT_GT(count_shelf(track->offline_moved), 4 * count_shelf(track->offline_agreed));
+  EXPECT_GT(count_shelf(track->offline_moved), 10);
+  EXPECT_GT(count_shelf(track->offline_moved), 0.8 * static_cast<double>(track->offline_moved.size()));
 }
 
 TEST_F(TrackHybrid, TracksOnOnlinePointsAloneOffTheMap) {

@@ -16,7 +16,8 @@ using ::testing::Not;
 
 constexpr KeyframeId kFirst{Origin::online, 0};
 constexpr KeyframeId kNewest{Origin::online, 19};
-constexpr WindowOptions kSmall{.movable = 5, .anchors = 4, .offline_anchors = 3};
+constexpr WindowOptions kSmall{
+    .movable = 5, .anchors = 4, .offline_anchors = 3, .sightings_in_place_of_anchors = 100000};
 
 const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservation& seen) {
   return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
@@ -51,6 +52,15 @@ class HybridWindow : public ::testing::Test {
 
   HybridScene scene_ = true_hybrid_scene({});
 };
+
+TEST_F(HybridWindow, NeedsNoOnlineAnchorsWhereEnoughOfflinePointsHoldIt) {
+  WindowOptions options = kSmall;
+  options.sightings_in_place_of_anchors = 50;
+  const MapWindow window = cut_window(scene_.view(), {kNewest}, options);
+  EXPECT_EQ(count(window, false, true), kSmall.movable);
+  EXPECT_EQ(count(window, false, false), 0);
+  EXPECT_EQ(count(window, true, false), kSmall.offline_anchors);
+}
 
 TEST_F(HybridWindow, HoldsAnchorsOfBothMaps) {
   const MapWindow window = cut(kNewest);
