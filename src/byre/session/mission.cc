@@ -28,21 +28,16 @@ const std::vector<PointId>& Mission::candidates(const Pose& predicted_camera_fro
 }
 
 void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
-  const bool contradicted = track.maps_disagree && !track.offline_is_right;
   view_ = view_of_offline(evidence, options_.view);
-  const bool held = view_ == OfflineView::held && !contradicted;
-  if (!track.maps_disagree || !track.offline_is_right) suspension_.note(track.offline_agreed, track.offline_moved);
+  const bool held = view_ == OfflineView::held && (!track.maps_disagree || track.offline_is_right);
+  if (!track.offline_is_right) suspension_.note(track.offline_agreed, track.offline_moved);
   reference_ = held ? track.offline_reference : std::nullopt;
   if (held && !track.maps_disagree) {
-    note_found(time);
+    distance_since_offline_ = 0.0;
+    last_offline_time_ = time;
   } else {
     distance_since_offline_ += step;
   }
-}
-
-void Mission::note_found(Timestamp time) {
-  distance_since_offline_ = 0.0;
-  last_offline_time_ = time;
 }
 
 std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,

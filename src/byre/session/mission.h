@@ -46,12 +46,10 @@ class Mission {
   // frame, or around the one nearest to the pose.
   const std::vector<PointId>& candidates(const Pose& predicted_camera_from_world);
 
-  // A frame was tracked over a step of so many metres; features: in its image.
+  // A frame was tracked, so many metres from the one before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
-  // The pose was found in the offline map itself.
-  void note_found(Timestamp time);
 
   // What a frame says of where the online map lies in the offline one: a correction, once enough frames agree.
   std::optional<Pose> consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,

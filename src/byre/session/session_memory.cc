@@ -8,11 +8,6 @@
 namespace byre {
 namespace {
 
-bool is_drift(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online, const DriftBound& bound) {
-  return (offline_from_online * camera_in_online - camera_in_online).norm() <= bound.translation &&
-         rotation_log(offline_from_online.rotation).norm() <= bound.rotation;
-}
-
 // Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
 constexpr double kNeglectedCorrelation = 1.1;
 
@@ -24,11 +19,6 @@ Matrix6 odometry_covariance(const Matrix6& match_covariance, double travelled) {
   covariance.topLeftCorner<3, 3>().diagonal().array() += std::pow(kDriftShare * travelled, 2);
   covariance.bottomRightCorner<3, 3>().diagonal().array() += std::pow(kTurnPerMetre * travelled, 2);
   return covariance;
-}
-
-Agreement agreement_of(const Pose& from_offline, const Pose& from_online) {
-  const Pose motion = inverse(from_offline) * from_online;
-  return {motion.translation.norm(), rotation_log(motion.rotation).norm()};
 }
 
 }  // namespace
@@ -168,7 +158,8 @@ void Session::consider_place(const FoundPlace& found) {
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
   const Eigen::Vector3d camera_in_online = inverse(camera_from_online).translation;
   // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
-  if (is_registered() && !is_drift(offline_from_online, camera_in_online, mission_->drift())) return;
+  const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
+  if (is_registered() && !is_within(agreement, mission_->drift())) return;
   const auto correction = mission_->consider(offline_from_online, camera_in_online, found.median_depth);
   if (!correction) return;
   waiting_correction_ =

@@ -133,11 +133,6 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
   return Solution{*refined, std::move(both)};
 }
 
-bool is_within(const Pose& one, const Pose& other, const DriftBound& drift) {
-  const Pose motion = inverse(one) * other;
-  return motion.translation.norm() <= drift.translation && rotation_log(motion.rotation).norm() <= drift.rotation;
-}
-
 void sort_by_feature(std::vector<TrackedFeature>& features) {
   std::ranges::sort(features, {}, &TrackedFeature::feature);
 }
@@ -159,6 +154,14 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
 }
 
 }  // namespace
+
+Agreement agreement_of(const Pose& one, const Pose& other) {
+  return {(inverse(one).translation - inverse(other).translation).norm(), angle_between(one.rotation, other.rotation)};
+}
+
+bool is_within(const Agreement& agreement, const DriftBound& drift) {
+  return agreement.translation <= drift.translation && agreement.rotation <= drift.rotation;
+}
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
@@ -187,7 +190,8 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
     result.maps_disagree =
         disagree(*offline, *online, median_depth(query, expected.offline, *result.from_offline), rig);
   }
-  result.offline_is_right = result.maps_disagree && is_within(*result.from_offline, *result.from_online, drift);
+  result.offline_is_right =
+      result.maps_disagree && is_within(agreement_of(*result.from_offline, *result.from_online), drift);
 
   std::optional<Solution> solution;
   if (!result.maps_disagree) solution = solve_together(query, offline ? guesses->offline : guesses->online, measured);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/slam/health.h"
 #include "byre/slam/tracking.h"
 
 #include <optional>
@@ -12,6 +13,11 @@ struct DriftBound {
   double translation = 0.05;  // metres
   double rotation = 0.02;     // radians
 };
+
+// How far apart two poses camera_from_world put the camera.
+Agreement agreement_of(const Pose& one, const Pose& other);
+
+bool is_within(const Agreement& agreement, const DriftBound& drift);
 
 // A frame tracked on the points of an offline and an online map.
 struct HybridTrack {

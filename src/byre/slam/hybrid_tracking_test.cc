@@ -57,6 +57,16 @@ class TrackHybrid : public ::testing::Test {
   Map online_ = true_map(earlier_, 4, Origin::online);
 };
 
+TEST(AgreementOf, ComparesWhereTheCameraIsNotWhereTheWorldBegins) {
+  const Pose camera_from_world = inverse({Eigen::Quaterniond::Identity(), {50.0, 10.0, 0.0}});
+  const Pose turned_on_the_spot = Pose{rotation_exp({0.0, 0.01, 0.0}), Eigen::Vector3d::Zero()} * camera_from_world;
+  const Agreement agreement = agreement_of(camera_from_world, turned_on_the_spot);
+  EXPECT_NEAR(agreement.translation, 0.0, 1e-9);
+  EXPECT_NEAR(agreement.rotation, 0.01, 1e-9);
+  EXPECT_TRUE(is_within(agreement, {.translation = 0.01, .rotation = 0.02}));
+  EXPECT_FALSE(is_within(agreement, {.translation = 0.01, .rotation = 0.005}));
+}
+
 TEST_F(TrackHybrid, UsesThePointsOfBothMapsWhereTheyAgree) {
   for (const OfflinePolicy policy : {OfflinePolicy::first, OfflinePolicy::together}) {
     const auto track = track_frame({}, policy);

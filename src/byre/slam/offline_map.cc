@@ -44,8 +44,9 @@ std::vector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world
   std::vector<std::pair<double, KeyframeId>> near;
   for (const View& view : views_) {
     const double distance = (view.camera_in_world - world_from_camera.translation).norm();
+    if (distance > max_distance) continue;
     const double angle = std::acos(std::clamp(view.viewing_direction.dot(direction), -1.0, 1.0));
-    if (distance <= max_distance && angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
+    if (angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
   }
   std::ranges::sort(near);
   std::vector<KeyframeId> nearest;
