@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <fstream>
 #include <system_error>
 
@@ -47,7 +48,8 @@ std::optional<Image> read_image(const std::filesystem::path& path) {
   if (bytes.empty() || is_cut_jpeg(bytes)) return std::nullopt;
   const cv::Mat grey = decode(bytes);
   if (grey.empty()) return std::nullopt;
-  return Image{grey.cols, grey.rows, Bytes(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>())};
+  assert(grey.isContinuous());
+  return Image{grey.cols, grey.rows, Bytes(grey.data, grey.data + grey.total())};
 }
 
 }  // namespace byre

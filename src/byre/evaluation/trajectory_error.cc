@@ -1,5 +1,7 @@
 #include "byre/evaluation/trajectory_error.h"
 
+#include "byre/geometry/median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -72,9 +74,7 @@ Timestamp median_interval(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     intervals.push_back(trajectory[i].time - trajectory[i - 1].time);
   }
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return median(std::move(intervals));
 }
 
 }  // namespace

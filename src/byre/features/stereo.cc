@@ -1,6 +1,7 @@
 #include "byre/features/stereo.h"
 
 #include "byre/features/align_window.h"
+#include "byre/features/block_differences.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,22 +10,10 @@
 namespace byre {
 namespace {
 
-// The block that is compared: kColumns wide, so that a row is one vector register.
-constexpr int kColumns = 16;
-constexpr int kRows = 11;
-constexpr int kLeftReach = kColumns / 2;       // columns left of the middle
-constexpr int kRightReach = kColumns / 2 - 1;  // and right of it
-constexpr int kRowReach = kRows / 2;
+constexpr int kLeftReach = kBlockColumns / 2;   // columns left of a block's middle
+constexpr int kRightReach = kBlockColumns / 2;  // and right of it: one more than is compared, see block_differences
+constexpr int kRowReach = kBlockRows / 2;
 constexpr int kAlignSize = 10;
-
-int absolute_differences(const std::uint8_t* a, std::ptrdiff_t stride_a, const std::uint8_t* b,
-                         std::ptrdiff_t stride_b) {
-  int sum = 0;
-  for (int row = 0; row < kRows; ++row, a += stride_a, b += stride_b) {
-    for (int column = 0; column < kColumns; ++column) sum += std::abs(int(a[column]) - int(b[column]));
-  }
-  return sum;
-}
 
 const std::uint8_t* block(const cv::Mat& level, int x, int y) {
   return level.ptr<std::uint8_t>(y - kRowReach) + x - kLeftReach;
@@ -36,7 +25,8 @@ struct RowMatch {
   int second_cost = std::numeric_limits<int>::max();  // the best that is more than one pixel away
 
   bool is_unique(float max_ratio) const {
-    constexpr int kAllowance = kColumns * kRows;  // a grey value per pixel: too little to tell candidates apart
+    // A grey value per pixel: too little to tell candidates apart.
+    constexpr int kAllowance = kBlockColumns * kBlockRows;
     return static_cast<float>(cost + kAllowance) < max_ratio * static_cast<float>(second_cost);
   }
 };
@@ -48,16 +38,27 @@ int cost_between_columns(const std::vector<int>& costs, std::size_t i) {
   return std::max(0, costs[i] - std::abs(costs[i - 1] - costs[i + 1]) / 2);
 }
 
+// Of the block of `from` at (x, y) to those of `to` on columns [first, last] of the same row.
+void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last,
+                      std::vector<int>& costs) {
+  costs.clear();
+  const auto stride = [](const cv::Mat& image) { return static_cast<std::ptrdiff_t>(image.step); };
+  for (int candidate = first; candidate <= last; candidate += kBlockCandidates) {
+    // The last ones overlap with those before, so as to stay inside the image.
+    const int begin = std::max(kLeftReach, std::min(candidate, last + 1 - kBlockCandidates));
+    const auto sums = block_differences(block(from, x, y), stride(from), block(to, begin, y), stride(to));
+    const int end = std::min(last + 1, begin + kBlockCandidates);
+    for (int i = candidate; i < end; ++i) costs.push_back(sums[static_cast<std::size_t>(i - begin)]);
+  }
+}
+
 // The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
 RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
   thread_local std::vector<int> costs;
-  costs.clear();
-  const std::uint8_t* const wanted = block(from, x, y);
+  compare_with_row(from, x, y, to, first, last, costs);
   RowMatch match;
   for (int candidate = first; candidate <= last; ++candidate) {
-    const int cost = absolute_differences(wanted, static_cast<std::ptrdiff_t>(from.step), block(to, candidate, y),
-                                          static_cast<std::ptrdiff_t>(to.step));
-    costs.push_back(cost);
+    const int cost = costs[static_cast<std::size_t>(candidate - first)];
     if (cost < match.cost) {
       match.cost = cost;
       match.x = candidate;
@@ -119,6 +120,7 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
   const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
   const int x = static_cast<int>(std::lround(centre.x()));
   const int y = static_cast<int>(std::lround(centre.y()));
+  if (left.cols < kBlockColumns + kBlockCandidates) return std::nullopt;
   if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
   const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
   if (!right_x) return std::nullopt;

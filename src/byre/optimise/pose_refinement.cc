@@ -1,11 +1,13 @@
 #include "byre/optimise/pose_refinement.h"
 
+#include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -102,10 +104,7 @@ double variance_factor(const std::vector<Sighting>& sightings) {
     if (!std::isfinite(sighting.squared_error)) continue;
     ratios.push_back(sighting.squared_error / (sighting.stereo ? kMedianStereo : kMedianMono));
   }
-  if (ratios.empty()) return 1.0;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::ranges::nth_element(ratios, middle);
-  return std::max(*middle, 1.0);
+  return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
 void choose_inliers(std::vector<Sighting>& sightings, const PoseRefinementOptions& options, double factor) {

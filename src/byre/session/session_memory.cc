@@ -201,7 +201,9 @@ Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {
   Health health;
   health.image = frame.condition;
-  const HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed(), image_fault(frame)};
+  HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed()};
+  evidence.maps_disagree = located.track && located.track->maps_disagree;
+  evidence.image_fault = image_fault(frame);
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
   if (mission_) {

@@ -27,7 +27,9 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
 
 // What asks for care; none when nothing does.
 Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
-  if (health.agreement && health.agreement->translation > options.max_disagreement) return Doubt::maps_disagree;
+  if (evidence.maps_disagree && health.agreement && health.agreement->translation > options.max_disagreement) {
+    return Doubt::maps_disagree;
+  }
   if (health.offline_inliers + health.online_inliers < options.min_points) {
     return evidence.image_fault == ImageFault::none ? Doubt::few_points : Doubt::blinded;
   }

@@ -75,8 +75,9 @@ struct HealthOptions {
 // What is known of a frame beside its measures.
 struct HealthEvidence {
   bool pose_found = false;
-  bool registered = true;  // the pose is in the offline map's frame
-  bool confirmed = true;   // over several frames, since it was found
+  bool registered = true;      // the pose is in the offline map's frame
+  bool confirmed = true;       // over several frames, since it was found
+  bool maps_disagree = false;  // beyond what the uncertainties of both explain
   ImageFault image_fault = ImageFault::none;
 };
 

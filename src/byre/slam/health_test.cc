@@ -87,10 +87,17 @@ INSTANTIATE_TEST_SUITE_P(
                   Doubt::uncertain},
         Judgement{"uncertain rotation", with([](Health& h) { h.rotation_sigma = 0.05; }), kPose, Verdict::degraded,
                   Doubt::uncertain},
-        Judgement{"things that moved", with([](Health& h) {
+        Judgement{"things that moved",
+                  with([](Health& h) {
                     h.agreement = Agreement{0.3, 0.01};
                   }),
-                  kPose, Verdict::degraded, Doubt::maps_disagree},
+                  {.pose_found = true, .maps_disagree = true},
+                  Verdict::degraded,
+                  Doubt::maps_disagree},
+        Judgement{"few far online points that tell no position", with([](Health& h) {
+                    h.agreement = Agreement{0.3, 0.01};
+                  }),
+                  kPose, Verdict::trusted, Doubt::none},
         Judgement{"hardly any points", with([](Health& h) {
                     h.offline_inliers = 20;
                     h.online_inliers = 10;

@@ -1,5 +1,6 @@
 #include "byre/slam/hybrid_tracking.h"
 
+#include "byre/geometry/median.h"
 #include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
@@ -39,10 +40,7 @@ double median_depth(const Query& query, const std::vector<ExpectedPoint>& points
   for (const ExpectedPoint& point : points) {
     depths.push_back((camera_from_world * query.map.find_point(point.id)->position_in_world).z());
   }
-  if (depths.empty()) return 1.0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return std::max(1e-3, *middle);
+  return depths.empty() ? 1.0 : std::max(1e-3, median(std::move(depths)));
 }
 
 // Pixels by which two poses see a point at this depth apart.

@@ -1,8 +1,10 @@
 #include "byre/slam/keyframes.h"
 
+#include "byre/geometry/median.h"
 #include "byre/slam/measurement.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -44,10 +46,7 @@ double median_depth(const TrackedFrame& tracked, const MapView& map) {
     const MapPoint* const point = map.find_point(feature.point);
     if (point != nullptr) depths.push_back((tracked.camera_from_world * point->position_in_world).z());
   }
-  if (depths.empty()) return 0.0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return depths.empty() ? 0.0 : median(std::move(depths));
 }
 
 Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig) {

@@ -1,17 +1,13 @@
 #include "byre/slam/offline_map.h"
 
+#include "byre/geometry/median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace byre {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Matrix6 median_covariance(const Map& map) {
   std::vector<double> position_variances, rotation_variances;

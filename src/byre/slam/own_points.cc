@@ -1,10 +1,12 @@
 #include "byre/slam/own_points.h"
 
+#include "byre/geometry/median.h"
 #include "byre/slam/model_sightings.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -16,9 +18,7 @@ double median_depth(const Map& map) {
     const MapPoint& point = *map.find_point(id);
     depths.push_back((map.camera_from_world(point.reference.keyframe) * point.position_in_world).z());
   }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  return median(std::move(depths));
 }
 
 std::optional<PointId> point_at(const Map& map, const Observation& seen) {

@@ -1,0 +1,103 @@
+#include "byre/session/session.h"
+#include "byre/simulation/simulated_mission.h"
+
+#include <map>
+#include <memory>
+#include <utility>
+
+#include <benchmark/benchmark.h>
+
+namespace byre {
+namespace {
+
+constexpr int kKeyframesOfHall = 100;
+constexpr int kHalls = 20;
+constexpr double kFrameRateHz = 10.0;
+
+// A lap through one of several halls, which have nothing in common.
+SimulatedMission lap(int hall, std::uint64_t noise_seed) {
+  SimulationOptions options;
+  options.landmarks = 12000;
+  options.seed = static_cast<std::uint64_t>(hall) + 1;
+  options.noise_seed = noise_seed;
+  return simulate_mission(simulated_rig(), circling_trajectory(kKeyframesOfHall, kFrameRateHz, 2.0, 1.0), options);
+}
+
+// Appends a lap as if its hall stood beside the others.
+void append(const SimulatedMission& lap, int hall, SimulatedMission& building) {
+  const Eigen::Vector3d offset(20.0 * hall, 0.0, 0.0);
+  const Timestamp time_offset = hall * (lap.frames.back().time - lap.frames.front().time + std::chrono::seconds(1));
+  const int first_landmark = static_cast<int>(building.landmarks_in_world.size());
+  for (std::size_t i = 0; i < lap.frames.size(); ++i) {
+    const Pose& pose = lap.truth[i].world_from_body;
+    building.truth.push_back({lap.truth[i].time + time_offset, {pose.rotation, pose.translation + offset}});
+    building.frames.push_back({lap.frames[i].time + time_offset, lap.frames[i].features});
+    std::vector<int> landmarks = lap.landmark_of_feature[i];
+    for (int& landmark : landmarks) landmark += landmark < 0 ? 0 : first_landmark;
+    building.landmark_of_feature.push_back(std::move(landmarks));
+  }
+  for (const Eigen::Vector3d& landmark : lap.landmarks_in_world) {
+    building.landmarks_in_world.push_back(landmark + offset);
+  }
+}
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary trained = [] {
+    std::vector<std::vector<Descriptor>> images;
+    for (const Frame& frame : lap(0, 1).frames) images.push_back(frame.features->descriptors());
+    return Vocabulary::train(images, {.branching = 10, .depth = 4, .rounds = 3, .seed = 1});
+  }();
+  return trained;
+}
+
+// Of the first so many halls, each frame of a lap through them a keyframe.
+std::shared_ptr<const OfflineMap> map_of(int keyframes) {
+  static std::map<int, std::shared_ptr<const OfflineMap>> made;
+  if (made.contains(keyframes)) return made[keyframes];
+  SimulatedMission building;
+  building.rig = simulated_rig();
+  for (int hall = 0; hall < keyframes / kKeyframesOfHall; ++hall) append(lap(hall, 1), hall, building);
+  Map map = true_map(building, 1, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  return made[keyframes] = std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+}
+
+Session session_on(const std::shared_ptr<const OfflineMap>& offline) {
+  return {simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), offline};
+}
+
+// Another lap through the first hall, found and tracked; the argument is the number of keyframes of the offline map.
+void track_mission(benchmark::State& state) {
+  const auto offline = map_of(static_cast<int>(state.range(0)));
+  const SimulatedMission mission = lap(0, 2);
+  Session session = session_on(offline);
+  session.process(mission.frames[0]);
+  std::size_t next = 1;
+  int tracked = 0;
+  for (auto _ : state) {
+    if (next == mission.frames.size()) {
+      state.PauseTiming();
+      session = session_on(offline);
+      session.process(mission.frames[0]);
+      next = 1;
+      state.ResumeTiming();
+    }
+    tracked += session.process(mission.frames[next++]).map_from_body ? 1 : 0;
+  }
+  state.counters["offline_points"] = offline->map().point_count();
+  state.counters["tracked_share"] = static_cast<double>(tracked) / static_cast<double>(state.iterations());
+}
+BENCHMARK(track_mission)->Arg(kKeyframesOfHall)->Arg(kHalls* kKeyframesOfHall)->Unit(benchmark::kMillisecond);
+
+// A frame found from nothing.
+void find_itself_in_the_map(benchmark::State& state) {
+  const auto offline = map_of(static_cast<int>(state.range(0)));
+  const SimulatedMission mission = lap(0, 2);
+  for (auto _ : state) benchmark::DoNotOptimize(localise_in(*offline, mission.frames[50], simulated_rig(), {}));
+}
+BENCHMARK(find_itself_in_the_map)->Arg(kKeyframesOfHall)->Arg(kHalls* kKeyframesOfHall)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+namespace byre {
+
+// The middle value, of an even number the upper of the two; there must be one.
+template <typename Value>
+Value median(std::vector<Value> values) {
+  assert(!values.empty());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace byre
