@@ -131,8 +131,9 @@ void Session::start_job() {
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
-// found there too.
+// found there too. While offline points hold the pose there is no drift that a loop could tell of.
 bool Session::look_for_loop(const Frame& frame, bool keyframe_added) {
+  if (mission_ && is_registered() && mission_->view() == OfflineView::held) return false;
   if (!places_ || !last_keyframe_ || !global_.idle() || ++frames_since_loop_ < options_.loops.min_frames_between) {
     return false;
   }
