@@ -142,7 +142,7 @@ TEST_F(TrackHybrid, TracksOnOfflinePointsAloneBeforeThereIsAnOnlineMap) {
 }
 
 TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
-  move(online_, shift_by(0.008));  // less than is told apart
+  move(online_, shift_by(0.005));  // less than is told apart
   std::vector<PointId> candidates = offline_.point_ids();
   const std::vector<PointId> online = online_.point_ids();
   candidates.insert(candidates.end(), online.begin(), online.end());
