@@ -68,6 +68,38 @@ Roles choose_roles(const BundleProblem& problem) {
   return roles;
 }
 
+Eigen::Vector3d camera_in_world(const BundlePose& pose) {
+  return inverse(pose.camera_from_world).translation;
+}
+
+// The held pose, where the scale depends on it alone: no disparity, no second pose and no fixed point tells it.
+std::optional<int> only_anchor(const BundleProblem& problem, const Roles& roles) {
+  std::optional<int> anchor;
+  for (const int i : roles.observations) {
+    const BundleObservation& observation = problem.observations[i];
+    if (observation.is_stereo() || !roles.point_moves[observation.point]) return std::nullopt;
+    if (roles.pose_moves[observation.pose] || anchor == observation.pose) continue;
+    if (anchor) return std::nullopt;
+    anchor = observation.pose;
+  }
+  return anchor;
+}
+
+// What must be held for the scale to be determined; nothing where it is.
+std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const Roles& roles) {
+  const auto anchor = only_anchor(problem, roles);
+  if (!anchor) return std::nullopt;
+  HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (!roles.pose_moves[i]) continue;
+    const double distance = (camera_in_world(problem.poses[i]) - held.place_in_world).norm();
+    if (distance <= held.distance) continue;
+    held.distance = distance;
+    held.pose = static_cast<int>(i);
+  }
+  return held.pose < 0 ? std::nullopt : std::optional(held);
+}
+
 // Ends the solution when asked to; Ceres asks after each iteration.
 class StopWhenAsked final : public ceres::IterationCallback {
  public:
@@ -84,7 +116,8 @@ class StopWhenAsked final : public ceres::IterationCallback {
 // Ceres' view of a problem: blocks of parameters and the costs between them. Lives for one call.
 class CeresBundle {
  public:
-  CeresBundle(const BundleProblem& problem, const Roles& roles, double huber_width)
+  CeresBundle(const BundleProblem& problem, const Roles& roles, const std::optional<HeldDistance>& scale,
+              double huber_width)
       : roles_(roles), loss_(huber_width), ceres_(borrowing_problem()) {
     for (const BundlePose& pose : problem.poses) poses_.push_back(pose.camera_from_world);
     for (const BundlePoint& point : problem.points) points_.push_back(point.position_in_world);
@@ -95,6 +128,7 @@ class CeresBundle {
       const BundleObservation& observation = problem.observations[i];
       add(observation, problem.rigs[problem.poses[observation.pose].rig]);
     }
+    if (scale) hold(*scale);
   }
 
   ceres::Solver::Summary solve(const BundleOptions& options) {
@@ -141,6 +175,12 @@ class CeresBundle {
     }
   }
 
+  void hold(const HeldDistance& scale) {
+    const auto pose = static_cast<std::size_t>(scale.pose);
+    distance_cost_.emplace(scale.place_in_world, scale.distance, scale.sigma());
+    ceres_.AddResidualBlock(&*distance_cost_, nullptr, rotation(pose), translation(pose));
+  }
+
   ceres::LossFunction* loss_of(const BundleObservation& observation) {
     if (observation.weight == 1.0) return &loss_;
     return &weighted_losses_.emplace_back(&loss_, observation.weight, ceres::DO_NOT_TAKE_OWNERSHIP);
@@ -178,6 +218,7 @@ class CeresBundle {
   std::deque<PoseAndPointCost> pose_and_point_costs_;
   std::deque<PoseCost> pose_costs_;
   std::deque<PointCost> point_costs_;
+  std::optional<DistanceCost> distance_cost_;
   ceres::Problem ceres_;  // last: refers to all of the above
 };
 
@@ -189,10 +230,11 @@ BundleResult unmoved(const BundleProblem& problem) {
   return result;
 }
 
-BundleResult solve(const BundleProblem& problem, const Roles& roles, const BundleOptions& options) {
+BundleResult solve(const BundleProblem& problem, const Roles& roles, const std::optional<HeldDistance>& scale,
+                   const BundleOptions& options) {
   BundleResult result = unmoved(problem);
   if (roles.observations.empty()) return result;
-  CeresBundle bundle(problem, roles, options.huber_width);
+  CeresBundle bundle(problem, roles, scale, options.huber_width);
   const ceres::Solver::Summary summary = bundle.solve(options);
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
   result.usable = summary.IsSolutionUsable();
@@ -241,11 +283,12 @@ std::vector<double> squared_errors(const BundleProblem& problem, const BundleRes
 
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options) {
   const Roles roles = choose_roles(problem);
-  BundleResult result = solve(problem, roles, options);
+  const std::optional<HeldDistance> scale = choose_scale(problem, roles);
+  BundleResult result = solve(problem, roles, scale, options);
   result.squared_errors = squared_errors(problem, result);
   if (options.covariance_of_pose >= 0 && result.usable) {
     result.pose_covariance =
-        marginal_covariance(moved(problem, result, roles), options.covariance_of_pose, options.huber_width);
+        marginal_covariance(moved(problem, result, roles), scale, options.covariance_of_pose, options.huber_width);
   }
   return result;
 }

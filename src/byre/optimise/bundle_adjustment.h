@@ -63,7 +63,8 @@ struct BundleResult {
 
 // Minimises the robust reprojection error over poses and points (Triggs 2000) with Ceres' Schur complement.
 // Observations that start at or behind the camera have no say. Poses or points without any other stay where they are.
-// With nothing fixed the first observed pose is held.
+// With nothing fixed the first observed pose is held. Where nothing tells the scale (one camera, one pose held), the
+// distance between the held camera and the one that starts farthest from it is.
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options);
 
 }  // namespace byre

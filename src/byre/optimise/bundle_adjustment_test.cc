@@ -67,6 +67,37 @@ TEST(BundleAdjust, RecoversCleanMonoBetweenTwoAnchors) {
   expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-5);
 }
 
+// How far the first camera is from the one that starts farthest from it; that one's index.
+std::pair<int, double> farthest(const BundleProblem& problem) {
+  std::pair<int, double> result{0, 0.0};
+  for (int i = 0; i < static_cast<int>(problem.poses.size()); ++i) {
+    const double distance =
+        (problem.poses[0].camera_from_world * inverse(problem.poses[i].camera_from_world)).translation.norm();
+    if (distance > result.second) result = {i, distance};
+  }
+  return result;
+}
+
+TEST(BundleAdjust, HoldsTheScaleThatOneCameraCannotTell) {
+  BundleScene scene =
+      make_scene(2, {.fixed_poses = 1, .mono_fraction = 1.0, .start_position = 0.01, .start_rotation = 0.005});
+  const auto [held, distance] = farthest(scene.problem);
+  BundleOptions options = patient();
+  options.covariance_of_pose = 2;
+  const BundleResult result = bundle_adjust(scene.problem, options);
+  const auto from_first = [&](const std::vector<BundlePose>& poses, int i) -> Eigen::Vector3d {
+    return inverse(poses[i].camera_from_world).translation - inverse(poses[0].camera_from_world).translation;
+  };
+  BundleProblem solved = scene.problem;
+  for (std::size_t i = 0; i < solved.poses.size(); ++i) solved.poses[i].camera_from_world = result.camera_from_world[i];
+  EXPECT_NEAR(from_first(solved.poses, held).norm(), distance, 1e-3 * distance);
+  const double scale = from_first(solved.poses, held).norm() / from_first(scene.truth.poses, held).norm();
+  for (int i = 1; i < static_cast<int>(solved.poses.size()); ++i) {
+    EXPECT_THAT(from_first(solved.poses, i), PointNear(scale * from_first(scene.truth.poses, i), 1e-5)) << "pose " << i;
+  }
+  EXPECT_TRUE(result.pose_covariance);
+}
+
 TEST(BundleAdjust, RecoversMorePosesThanTheDenseSolverTakes) {
   const BundleScene scene = make_scene(3, {.moving_poses = 70, .points = 400});
   expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-6);

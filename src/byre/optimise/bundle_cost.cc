@@ -47,6 +47,21 @@ bool PoseCost::Evaluate(const double* const* parameters, double* residual, doubl
   return true;
 }
 
+bool DistanceCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  const Eigen::Vector3d rotated_place = Eigen::Quaterniond(parameters[0]) * place_in_world_;
+  const Eigen::Vector3d place_in_camera = rotated_place + Eigen::Vector3d(parameters[1]);
+  *residual = (place_in_camera.norm() - distance_) / sigma_;
+  if (!jacobians) return true;
+  const Eigen::RowVector3d by_camera = place_in_camera.normalized().transpose() / sigma_;
+  if (jacobians[0]) {
+    Eigen::Map<Eigen::RowVector4d> by_rotation(jacobians[0]);
+    by_rotation.head<3>() = -by_camera * skew(rotated_place);
+    by_rotation.w() = 0.0;
+  }
+  if (jacobians[1]) Eigen::Map<Eigen::RowVector3d>{jacobians[1]} = by_camera;
+  return true;
+}
+
 bool PointCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   const Eigen::Vector3d point_in_camera = camera_from_world_ * Eigen::Vector3d(parameters[0]);
   write(reprojection_.residual(point_in_camera), residual);

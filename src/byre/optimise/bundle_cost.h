@@ -34,6 +34,19 @@ class PoseCost final : public ceres::SizedCostFunction<3, 4, 3> {
   Eigen::Vector3d point_in_world_;  // constant after construction
 };
 
+// The camera stays at a distance from a place, sigma metres more or less. Parameters: rotation, translation.
+class DistanceCost final : public ceres::SizedCostFunction<1, 4, 3> {
+ public:
+  DistanceCost(const Eigen::Vector3d& place_in_world, double distance, double sigma)
+      : place_in_world_(place_in_world), distance_(distance), sigma_(sigma) {}
+  bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override;
+
+ private:
+  Eigen::Vector3d place_in_world_;  // constant after construction
+  double distance_;                 // metres, constant after construction
+  double sigma_;                    // metres, constant after construction
+};
+
 // The point moves, the pose is an anchor. Parameter: point.
 class PointCost final : public ceres::SizedCostFunction<3, 3> {
  public:

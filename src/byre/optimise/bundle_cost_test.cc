@@ -40,7 +40,7 @@ std::vector<const double*> blocks_of(const Parameters& parameters, Takes takes) 
 }
 
 Eigen::Vector3d residual_at(const ceres::CostFunction& cost, const Parameters& parameters, Takes takes) {
-  Eigen::Vector3d residual;
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // a cost may have fewer rows
   EXPECT_TRUE(cost.Evaluate(blocks_of(parameters, takes).data(), residual.data(), nullptr));
   return residual;
 }
@@ -64,7 +64,7 @@ Jacobian9 analytic_jacobian(const ceres::CostFunction& cost, const Parameters& a
   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> by_point = decltype(by_point)::Zero();
   std::vector<double*> jacobians{by_rotation.data(), by_translation.data(), by_point.data()};
   if (takes == Takes::point) jacobians = {by_point.data()};
-  Eigen::Vector3d residual;
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // a cost may have fewer rows
   EXPECT_TRUE(cost.Evaluate(blocks_of(at, takes).data(), residual.data(), jacobians.data()));
   EXPECT_THAT(by_rotation.col(3), PointNear(Eigen::Vector3d::Zero(), 0.0));
   Jacobian9 jacobian;
@@ -110,6 +110,14 @@ TEST_P(ReprojectionCostTest, HasTheNumericJacobianByPoseAlone) {
 TEST_P(ReprojectionCostTest, HasTheNumericJacobianByPointAlone) {
   const PointCost cost(reprojection_, pose_);
   expect_near(analytic_jacobian(cost, parameters(), Takes::point), numeric_jacobian(cost, parameters(), Takes::point));
+}
+
+TEST(DistanceCost, HasTheNumericJacobian) {
+  Draw draw(7);
+  const Pose pose = exp_pose(draw.motion(1.0, 0.5));
+  const Parameters parameters{pose.rotation, pose.translation, Eigen::Vector3d::Zero()};
+  const DistanceCost cost({0.4, -0.7, 2.0}, 1.5, 0.1);
+  expect_near(analytic_jacobian(cost, parameters, Takes::pose), numeric_jacobian(cost, parameters, Takes::pose));
 }
 
 TEST_P(ReprojectionCostTest, IsTheSameForAllThree) {

@@ -101,6 +101,8 @@ class ReducedMatrix {
     }
   }
 
+  void add(int slot, const Matrix6& information) { at(slot, slot) += information; }
+
   // Subtracts what finding the point's position has used up.
   void eliminate(const std::vector<Block>& blocks, const Eigen::Matrix3d& point_covariance) {
     for (const Block& row : blocks) {
@@ -128,6 +130,15 @@ void add_point(ReducedMatrix& reduced, const std::vector<Block>& blocks, bool fi
   if (!covariance) return;
   reduced.add(blocks);
   reduced.eliminate(blocks, *covariance);
+}
+
+// What holding a distance tells of the pose.
+Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_world) {
+  const Eigen::Vector3d place_in_camera = camera_from_world * scale.place_in_world;
+  const Eigen::RowVector3d by_camera = place_in_camera.normalized().transpose() / scale.sigma();
+  Eigen::Matrix<double, 1, 6> by_pose;
+  by_pose << by_camera, -by_camera * skew(place_in_camera);
+  return by_pose.transpose() * by_pose;
 }
 
 ReducedMatrix reduce_to_poses(const BundleProblem& solved, const std::vector<int>& observations,
@@ -158,12 +169,17 @@ std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
 
 }  // namespace
 
-std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, int pose, double huber_width) {
+std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
+                                           int pose, double huber_width) {
   assert(pose >= 0 && pose < static_cast<int>(solved.poses.size()));
   const std::vector<int> observations = by_point(solved);
   const std::vector<int> slots = pose_slots(solved, observations, pose);
   if (slots[pose] < 0) return std::nullopt;
-  return last_marginal(reduce_to_poses(solved, observations, slots, slots[pose] + 1, huber_width).lower_triangle());
+  ReducedMatrix reduced = reduce_to_poses(solved, observations, slots, slots[pose] + 1, huber_width);
+  if (scale && slots[scale->pose] >= 0) {
+    reduced.add(slots[scale->pose], scale_information(*scale, solved.poses[scale->pose].camera_from_world));
+  }
+  return last_marginal(reduced.lower_triangle());
 }
 
 }  // namespace byre

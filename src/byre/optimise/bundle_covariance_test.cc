@@ -60,7 +60,7 @@ TEST(MarginalCovariance, IsTheBlockOfTheFullInverse) {
       make_scene(1, {.fixed_poses = 1, .moving_poses = 3, .points = 30, .fixed_points = 5}).truth;
   const Eigen::MatrixXd full = full_covariance(problem);
   for (int i = 0; i < 3; ++i) {
-    const auto marginal = marginal_covariance(problem, i + 1, kHuberWidth);
+    const auto marginal = marginal_covariance(problem, {}, i + 1, kHuberWidth);
     ASSERT_TRUE(marginal);
     const Matrix6 expected = full.block<6, 6>(6 * i, 6 * i);
     EXPECT_LT((*marginal - expected).norm(), 1e-5 * expected.norm()) << "pose " << i + 1;
@@ -68,7 +68,7 @@ TEST(MarginalCovariance, IsTheBlockOfTheFullInverse) {
 }
 
 TEST(MarginalCovariance, IsSymmetricAndPositive) {
-  const auto covariance = marginal_covariance(make_scene(2, {.noise = 1.0}).truth, 4, kHuberWidth);
+  const auto covariance = marginal_covariance(make_scene(2, {.noise = 1.0}).truth, {}, 4, kHuberWidth);
   ASSERT_TRUE(covariance);
   EXPECT_LT((*covariance - covariance->transpose()).norm(), 1e-12 * covariance->norm());
   EXPECT_GT(covariance->determinant(), 0.0);
@@ -76,22 +76,22 @@ TEST(MarginalCovariance, IsSymmetricAndPositive) {
 
 TEST(MarginalCovariance, GrowsWhenOutliersLoseTheirInfluence) {
   BundleProblem problem = make_scene(3, {}).truth;
-  const auto clean = marginal_covariance(problem, 4, kHuberWidth);
+  const auto clean = marginal_covariance(problem, {}, 4, kHuberWidth);
   for (std::size_t i = 0; i < problem.observations.size(); i += 4) problem.observations[i].measured.x() += 50.0;
-  const auto with_outliers = marginal_covariance(problem, 4, kHuberWidth);
+  const auto with_outliers = marginal_covariance(problem, {}, 4, kHuberWidth);
   ASSERT_TRUE(clean && with_outliers);
   EXPECT_GT(with_outliers->trace(), 1.1 * clean->trace());
 }
 
 TEST(MarginalCovariance, LearnsNothingFromAPointSeenOnceWithoutDisparity) {
   BundleProblem problem = make_scene(4, {}).truth;
-  const auto before = marginal_covariance(problem, 4, kHuberWidth);
+  const auto before = marginal_covariance(problem, {}, 4, kHuberWidth);
   const Eigen::Vector3d point_in_camera(0.1, 0.2, 2.0);
   problem.points.push_back({inverse(problem.poses[4].camera_from_world) * point_in_camera, false});
   problem.observations.push_back({.pose = 4,
                                   .point = static_cast<int>(problem.points.size()) - 1,
                                   .measured = problem.rigs[0].project(point_in_camera)});
-  const auto after = marginal_covariance(problem, 4, kHuberWidth);
+  const auto after = marginal_covariance(problem, {}, 4, kHuberWidth);
   ASSERT_TRUE(before && after);
   EXPECT_LT((*after - *before).norm(), 1e-6 * before->norm());
 }
@@ -99,13 +99,13 @@ TEST(MarginalCovariance, LearnsNothingFromAPointSeenOnceWithoutDisparity) {
 TEST(MarginalCovariance, IsEmptyForAFixedOrUnobservedPose) {
   BundleProblem problem = make_scene(5, {}).truth;
   problem.poses.push_back({Pose{}, 0, false});
-  EXPECT_FALSE(marginal_covariance(problem, 0, kHuberWidth));
-  EXPECT_FALSE(marginal_covariance(problem, static_cast<int>(problem.poses.size()) - 1, kHuberWidth));
+  EXPECT_FALSE(marginal_covariance(problem, {}, 0, kHuberWidth));
+  EXPECT_FALSE(marginal_covariance(problem, {}, static_cast<int>(problem.poses.size()) - 1, kHuberWidth));
 }
 
 TEST(MarginalCovariance, IsEmptyWhenTheScaleIsFree) {
   const BundleProblem problem = make_scene(6, {.fixed_poses = 1, .mono_fraction = 1.0}).truth;
-  EXPECT_FALSE(marginal_covariance(problem, 2, kHuberWidth));
+  EXPECT_FALSE(marginal_covariance(problem, {}, 2, kHuberWidth));
 }
 
 TEST(MarginalCovariance, IsEmptyForTooFewObservations) {
@@ -113,7 +113,7 @@ TEST(MarginalCovariance, IsEmptyForTooFewObservations) {
   std::erase_if(problem.observations, [](const BundleObservation& observation) { return observation.pose == 5; });
   problem.observations.push_back({.pose = 5, .point = 0, .measured = {300.0, 200.0, 0.0}});
   problem.points[0].position_in_world = inverse(problem.poses[5].camera_from_world) * Eigen::Vector3d(0.0, 0.0, 3.0);
-  EXPECT_FALSE(marginal_covariance(problem, 5, kHuberWidth));
+  EXPECT_FALSE(marginal_covariance(problem, {}, 5, kHuberWidth));
 }
 
 TEST(BundleAdjust, GivesNoCovarianceUnlessAsked) {

@@ -1,0 +1,156 @@
+#include "byre/geometry/two_view.h"
+
+#include "byre/geometry/essential.h"
+#include "byre/geometry/homography.h"
+#include "byre/geometry/triangulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace byre {
+namespace {
+
+using Matches = std::span<const TwoViewMatch>;
+
+struct Models {
+  TwoViewModel<Eigen::Quaterniond> rotation;
+  TwoViewModel<Eigen::Matrix3d> homography;
+  TwoViewModel<Pose> essential;
+};
+
+Models search_models(Matches matches, const TwoViewSearch& search) {
+  return {search_rotation(matches, search), search_homography(matches, search), search_essential(matches, search)};
+}
+
+// Mur-Artal et al. 2015, eq. 3. Errors are counted in sigmas of both views, which makes it 0.45 for an exact plane.
+bool is_planar(const Models& models, const TwoViewOptions& options) {
+  return models.homography.score > options.min_planar_share * (models.homography.score + models.essential.score);
+}
+
+// Of both models, for what one of them has missed is a rival of what the other has found. A plane's motions are refined
+// by what lies beside the plane too, which tells them apart.
+std::vector<Pose> motions_of(const Models& models, Matches matches) {
+  std::vector<Pose> motions = motions_from_homography(models.homography.second_from_first);
+  std::ranges::copy(motions_from_essential(essential_of(models.essential.second_from_first)),
+                    std::back_inserter(motions));
+  for (Pose& motion : motions) motion = refine_motion(motion, matches);
+  return motions;
+}
+
+double parallax(const Pose& second_from_first, const TwoViewMatch& match) {
+  const Eigen::Vector3d turned = second_from_first.rotation * match.ray_in_first;
+  return std::atan2(turned.cross(match.ray_in_second).norm(), turned.dot(match.ray_in_second));
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// A motion and what speaks for it: the same kind of score as a model's, of the lines, and of them only those of matches
+// that lie in front of both cameras.
+struct Candidate {
+  TwoViewMotion motion;
+  double score = 0.0;
+};
+
+// Rays so nearly parallel may well meet behind the cameras by noise alone.
+bool is_far(double match_parallax, const TwoViewMatch& match) {
+  return match_parallax < 4.0 * match.sigma;
+}
+
+Candidate weigh(const Pose& second_from_first, Matches matches) {
+  const Eigen::Matrix3d essential = essential_of(second_from_first);
+  Candidate candidate{{.second_from_first = second_from_first, .points_in_first = {}}, 0.0};
+  std::vector<double> parallaxes;
+  for (const TwoViewMatch& match : matches) {
+    auto& point = candidate.motion.points_in_first.emplace_back();
+    const double error = epipolar_error(essential, match);
+    if (!(error < kMaxEpipolarError)) continue;
+    point = triangulate(match.ray_in_first, match.ray_in_second, second_from_first, 0.0);
+    const double match_parallax = parallax(second_from_first, match);
+    if (!point && !is_far(match_parallax, match)) continue;
+    candidate.motion.point_count += point.has_value();
+    candidate.score += kMaxEpipolarError - error;
+    parallaxes.push_back(match_parallax);
+  }
+  candidate.motion.median_parallax = median(std::move(parallaxes));
+  return candidate;
+}
+
+// Motions of a plane that the rest of the scene has brought to the same place are one.
+bool is_same_motion(const Pose& first, const Pose& second) {
+  constexpr double kMaxTurn = 0.005;  // radians
+  constexpr double kMaxShift = 0.05;  // of the unit length
+  return angle_between(first.rotation, second.rotation) < kMaxTurn &&
+         (first.translation - second.translation).norm() < kMaxShift;
+}
+
+bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates, double rival_share) {
+  return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
+    return candidate.score > rival_share * best.score &&
+           !is_same_motion(candidate.motion.second_from_first, best.motion.second_from_first);
+  });
+}
+
+TwoViewFailure reason_to_doubt(const Models& models, bool planar, const TwoViewOptions& options) {
+  const int inliers = planar ? models.homography.inliers : models.essential.inliers;
+  if (inliers < options.min_points) return TwoViewFailure::no_common_motion;
+  const bool turned = models.rotation.score > options.rotation_share * models.homography.score;
+  return planar && turned ? TwoViewFailure::rotation_only : TwoViewFailure::none;
+}
+
+TwoViewFailure reason_to_doubt(const Candidate& best, const std::vector<Candidate>& candidates,
+                               const TwoViewOptions& options) {
+  if (best.motion.median_parallax < options.min_parallax) return TwoViewFailure::small_parallax;
+  if (has_rival(best, candidates, options.rival_share)) return TwoViewFailure::planar_ambiguity;
+  return best.motion.point_count < options.min_points ? TwoViewFailure::too_few_points : TwoViewFailure::none;
+}
+
+TwoViewEstimate failed(TwoViewFailure failure) {
+  return {std::nullopt, failure};
+}
+
+}  // namespace
+
+std::string_view to_string(TwoViewFailure failure) {
+  switch (failure) {
+    case TwoViewFailure::none:
+      return "none";
+    case TwoViewFailure::too_few_matches:
+      return "too few matches";
+    case TwoViewFailure::no_common_motion:
+      return "no common motion";
+    case TwoViewFailure::rotation_only:
+      return "rotation only";
+    case TwoViewFailure::small_parallax:
+      return "small parallax";
+    case TwoViewFailure::planar_ambiguity:
+      return "planar ambiguity";
+    case TwoViewFailure::too_few_points:
+      return "too few points";
+    case TwoViewFailure::uncertain:
+      return "motion is uncertain";
+  }
+  return "";
+}
+
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, const TwoViewOptions& options) {
+  if (static_cast<int>(matches.size()) < options.min_matches) return failed(TwoViewFailure::too_few_matches);
+  const Models models = search_models(matches, options.search);
+  const bool planar = is_planar(models, options);
+  const TwoViewFailure doubt = reason_to_doubt(models, planar, options);
+  if (doubt != TwoViewFailure::none) return failed(doubt);
+  std::vector<Candidate> candidates;
+  for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
+  Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
+  const TwoViewFailure failure = reason_to_doubt(best, candidates, options);
+  if (failure != TwoViewFailure::none) return failed(failure);
+  best.motion.is_planar = planar;
+  return {std::move(best.motion), TwoViewFailure::none};
+}
+
+}  // namespace byre

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "byre/geometry/two_view_models.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// Why two views do not tell how the camera moved; ordered by how far the attempt came.
+enum class TwoViewFailure : std::uint8_t {
+  none,
+  too_few_matches,   // between the views
+  no_common_motion,  // too few of them agree on any motion
+  rotation_only,     // a turn on the spot explains them as well
+  small_parallax,    // the camera has hardly moved
+  planar_ambiguity,  // two motions explain the matches alike, as a plane allows
+  too_few_points,    // with a depth that is known
+  uncertain          // they leave the direction of the motion open by more than is useful
+};
+
+std::string_view to_string(TwoViewFailure failure);
+
+struct TwoViewOptions {
+  int min_matches = 100;
+  int min_points = 80;             // matches that agree on a motion, and their points in front of both cameras
+  double min_parallax = 0.0175;    // radians, median over the matches that agree: a degree
+  double min_planar_share = 0.40;  // of the scores of homography and essential matrix: above it is a plane's
+  double rotation_share = 0.9;     // of the homography's score: from there on a rotation explains the matches as well
+  double rival_share = 0.9;        // of the best motion's score for another motion: it could be either
+  TwoViewSearch search;
+};
+
+struct TwoViewMotion {
+  Pose second_from_first;  // translation of unit length
+  // One per match: where the rays of a match that agrees with the motion meet in front of both cameras, in the first.
+  std::vector<std::optional<Eigen::Vector3d>> points_in_first;
+  int point_count = 0;
+  double median_parallax = 0.0;  // radians, of all matches that agree with the motion
+  bool is_planar = false;        // a homography explains the matches
+};
+
+struct TwoViewEstimate {
+  std::optional<TwoViewMotion> motion;  // empty when there is a failure
+  TwoViewFailure failure = TwoViewFailure::none;
+};
+
+// The motion between two views of an unknown scene. Homography and essential matrix are fitted side by side and their
+// scores compared (Mur-Artal et al. 2015, eq. 2 and 3), which tells a turn on the spot. Of the motions that both stand
+// for the one is chosen that explains most matches in front of both cameras. Believed only when the parallax is enough
+// and no other motion explains the matches nearly as well.
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, const TwoViewOptions& options);
+
+}  // namespace byre

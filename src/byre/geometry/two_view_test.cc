@@ -1,0 +1,195 @@
+#include "byre/geometry/two_view.h"
+
+#include "byre/geometry/essential.h"
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/geometry/two_view_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+TwoViewFailure failure_of(const std::vector<TwoViewMatch>& matches) {
+  return estimate_two_view_motion(matches, {}).failure;
+}
+
+TEST(EstimateTwoViewMotion, IsExactOnCleanMatches) {
+  const Pose truth = sideways_motion(0.4);
+  const auto matches = matches_of(truth, room_depth, {});
+  const auto found = estimate_two_view_motion(matches, {}).motion;
+  ASSERT_TRUE(found);
+  EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1e-6);
+  EXPECT_LT(angle_between(found->second_from_first.rotation, truth.rotation), 1e-6);
+  EXPECT_NEAR(found->second_from_first.translation.norm(), 1.0, 1e-12);
+  EXPECT_EQ(found->point_count, 300);
+  EXPECT_FALSE(found->is_planar);
+}
+
+TEST(EstimateTwoViewMotion, PutsPointsAtTheirDepthsInUnitsOfTheTranslation) {
+  const auto constant = [](const Eigen::Vector3d&, double random) { return random < 0.5 ? 3.0 : 6.0; };
+  const auto matches = matches_of(sideways_motion(0.4), constant, {});
+  const auto found = estimate_two_view_motion(matches, {}).motion;
+  ASSERT_TRUE(found);
+  for (const auto& point : found->points_in_first) {
+    ASSERT_TRUE(point);
+    const double depth = 0.4 * point->z();
+    EXPECT_LT(std::min(std::abs(depth - 3.0), std::abs(depth - 6.0)), 1e-4);
+  }
+}
+
+TEST(EstimateTwoViewMotion, WithstandsNoiseAndOutliers) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose truth = sideways_motion(0.5);
+    const auto matches =
+        matches_of(truth, room_depth, {.count = 300, .pixel_sigma = 0.5, .outlier_ratio = 0.3, .seed = seed});
+    const auto found = estimate_two_view_motion(matches, {}).motion;
+    ASSERT_TRUE(found) << "seed " << seed;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.5 * kDegree) << "seed " << seed;
+    EXPECT_LT(angle_between(found->second_from_first.rotation, truth.rotation), 0.2 * kDegree) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, FollowsAForwardMotion) {
+  const Pose truth{rotation_exp({0.01, 0.02, 0.0}), {0.05, 0.0, -1.0}};
+  const auto matches = matches_of(truth, room_depth, {.count = 400, .pixel_sigma = 0.5, .outlier_ratio = 0.2});
+  const auto found = estimate_two_view_motion(matches, {}).motion;
+  ASSERT_TRUE(found);
+  EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.0 * kDegree);
+}
+
+TEST(EstimateTwoViewMotion, RefusesATurnOnTheSpotAsSuch) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose turn{rotation_exp({0.02, 0.2, -0.05}), Eigen::Vector3d::Zero()};
+    const TwoViewSceneOptions scene{.count = 300, .pixel_sigma = 0.7, .outlier_ratio = 0.3, .seed = seed};
+    EXPECT_EQ(failure_of(matches_of(turn, room_depth, scene)), TwoViewFailure::rotation_only) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, RefusesAStandingCameraAsATurn) {
+  EXPECT_EQ(failure_of(matches_of({}, room_depth, {.pixel_sigma = 0.5})), TwoViewFailure::rotation_only);
+}
+
+TEST(EstimateTwoViewMotion, RefusesAMotionTooSmallForDepths) {
+  for (const double metres : {0.01, 0.03, 0.05}) {
+    const auto failure = failure_of(matches_of(sideways_motion(metres), room_depth, {.pixel_sigma = 0.3}));
+    EXPECT_THAT(failure, testing::AnyOf(TwoViewFailure::rotation_only, TwoViewFailure::small_parallax)) << metres;
+  }
+}
+
+TEST(EstimateTwoViewMotion, SaysThatTheParallaxIsTooSmall) {
+  EXPECT_EQ(failure_of(matches_of(sideways_motion(0.05), room_depth, {})), TwoViewFailure::small_parallax);
+}
+
+// The other motion that would give the same homography has half of the wall behind the cameras.
+TEST(EstimateTwoViewMotion, TellsAMotionAlongAWall) {
+  const auto wall_in_front = [](const Eigen::Vector3d&, double) { return 4.0; };
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {0.6, 0.0, 0.0}};
+    const auto matches = matches_of(truth, wall_in_front, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
+    const auto found = estimate_two_view_motion(matches, {}).motion;
+    ASSERT_TRUE(found) << "seed " << seed;
+    EXPECT_TRUE(found->is_planar);
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 2.0 * kDegree) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, SaysThatAMotionTowardsAPlaneIsAmbiguous) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {-0.4, 0.0, -0.4}};
+    const TwoViewSceneOptions scene{.count = 300, .pixel_sigma = 0.5, .seed = seed};
+    EXPECT_EQ(failure_of(matches_of(truth, wall_depth, scene)), TwoViewFailure::planar_ambiguity) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, TellsAMotionTowardsAPlaneByWhatStandsInFrontOfIt) {
+  const auto furnished = [](const Eigen::Vector3d& ray, double random) {
+    return wall_depth(ray, random) * (random < 0.25 ? 0.5 + random : 1.0);
+  };
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {-0.4, 0.0, -0.4}};
+    const auto matches = matches_of(truth, furnished, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
+    const auto found = estimate_two_view_motion(matches, {}).motion;
+    ASSERT_TRUE(found) << "seed " << seed;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 2.0 * kDegree) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, RefusesTooFewMatches) {
+  const auto matches = matches_of(sideways_motion(0.4), room_depth, {.count = 99});
+  EXPECT_EQ(failure_of(matches), TwoViewFailure::too_few_matches);
+  EXPECT_EQ(failure_of({}), TwoViewFailure::too_few_matches);
+}
+
+TEST(EstimateTwoViewMotion, RefusesMatchesThatHaveNoMotionInCommon) {
+  const auto matches = matches_of(sideways_motion(0.4), room_depth, {.count = 150, .outlier_ratio = 1.0});
+  EXPECT_EQ(failure_of(matches), TwoViewFailure::no_common_motion);
+}
+
+TEST(EstimateTwoViewMotion, GivesTheSameAnswerForTheSameSeed) {
+  const auto matches = matches_of(sideways_motion(0.4), room_depth, {.pixel_sigma = 0.5, .outlier_ratio = 0.3});
+  const auto first = estimate_two_view_motion(matches, {}).motion;
+  const auto second = estimate_two_view_motion(matches, {}).motion;
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->second_from_first.rotation.coeffs(), second->second_from_first.rotation.coeffs());
+  EXPECT_EQ(first->second_from_first.translation, second->second_from_first.translation);
+  EXPECT_EQ(first->points_in_first, second->points_in_first);
+}
+
+TEST(RefineMotion, FindsTheLeastOfTheErrors) {
+  const auto matches = matches_of(sideways_motion(0.4), room_depth, {.pixel_sigma = 0.5});
+  const auto cost_of = [&](const Pose& motion) {
+    double cost = 0.0;
+    for (const TwoViewMatch& match : matches) {
+      cost += std::min(epipolar_error(essential_of(motion), match), kMaxEpipolarError);
+    }
+    return cost;
+  };
+  Pose start = sideways_motion(1.0);
+  start.rotation = rotation_exp({0.001, -0.001, 0.001}) * start.rotation;
+  const Pose refined = refine_motion(start, matches);
+  EXPECT_LT(cost_of(refined), cost_of(start));
+  EXPECT_LT(angle_between_translations(refined, sideways_motion(1.0)), 1.0 * kDegree);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double step : {-2e-3, 2e-3}) {
+      Pose turned = refined;
+      turned.rotation = rotation_exp(step * Eigen::Vector3d::Unit(axis)) * turned.rotation;
+      EXPECT_GT(cost_of(turned), cost_of(refined));
+    }
+  }
+}
+
+TEST(DirectionSigma, TellsHowFarTheDirectionIsOff) {
+  double squared_sum = 0.0;
+  constexpr int kTrials = 30;
+  for (std::uint32_t seed = 1; seed <= kTrials; ++seed) {
+    const Pose truth = sideways_motion(0.4);
+    const auto matches = matches_of(truth, room_depth, {.pixel_sigma = 0.5, .seed = seed});
+    const Pose refined = refine_motion(truth, matches);
+    squared_sum += std::pow(angle_between_translations(refined, truth) / direction_sigma(refined, matches), 2);
+  }
+  EXPECT_GT(squared_sum / kTrials, 0.5);  // of two directions, the least known one makes up one
+  EXPECT_LT(squared_sum / kTrials, 2.0);
+}
+
+TEST(DirectionSigma, IsLargerWhereTheCameraHasMovedLess) {
+  const auto sigma_after = [](double metres) {
+    const Pose motion = sideways_motion(metres);
+    return direction_sigma(motion, matches_of(motion, room_depth, {.pixel_sigma = 0.5}));
+  };
+  EXPECT_GT(sigma_after(0.1), 2.0 * sigma_after(0.4));
+}
+
+TEST(DirectionSigma, IsInfiniteWhereNothingTellsTheDirection) {
+  const Pose motion = sideways_motion(0.4);
+  EXPECT_FALSE(std::isfinite(direction_sigma(motion, {})));
+  EXPECT_FALSE(std::isfinite(direction_sigma(motion, matches_of(motion, room_depth, {.count = 4}))));
+}
+
+}  // namespace
+}  // namespace byre

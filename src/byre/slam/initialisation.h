@@ -1,0 +1,66 @@
+#pragma once
+
+#include "byre/features/match.h"
+#include "byre/geometry/two_view.h"
+#include "byre/map/map.h"
+#include "byre/slam/mapping.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct MonocularStartOptions {
+  TwoViewOptions two_view;
+  MappingOptions mapping;
+  float search_radius = 50.0f;         // pixels at octave 0, about where a feature is expected
+  int max_distance = 50;               // bits
+  float max_ratio = 0.85f;             // best over second best
+  int min_points = 80;                 // of the first map, with a depth known to mapping.max_relative_depth_sigma
+  int max_points_per_cell = 16;        // of the 4x4 cells of the image: more in one cell count as so many
+  double max_direction_sigma = 0.015;  // radians, of the translation between the two keyframes
+  double median_depth = 1.0;           // metres, about, of the points from the first camera: one camera knows no scale
+};
+
+// A first map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe.
+// The unit of length is an arbitrary one, so an arm of body_from_camera that was measured in metres means nothing in
+// it.
+struct MonocularStart {
+  Map map;
+  KeyframeId first;
+  KeyframeId second;             // of the frame that was tried
+  double median_parallax = 0.0;  // radians, of the points
+  double direction_sigma = 0.0;  // radians, of the translation between the two, where it is known least
+};
+
+struct MonocularAttempt {
+  std::optional<MonocularStart> start;  // empty when there is a failure
+  TwoViewFailure failure = TwoViewFailure::none;
+  int matches = 0;  // with the reference frame; zero when there was none yet
+};
+
+// Waits for a first map of one camera: matches frame after frame with a reference frame, until the two tell how the
+// camera moved. A frame that shares too little with the reference becomes the reference of those that follow.
+class MonocularInitialiser {
+ public:
+  // Precondition: the rig has no baseline.
+  MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options);
+
+  // Frames in the order of time. After a start the next frame is a new reference.
+  MonocularAttempt try_start(const Frame& frame);
+
+ private:
+  void begin_with(const Frame& frame);
+  std::vector<Match> match_with_reference(const Features& features) const;
+  void follow(const std::vector<Match>& matches, const Features& features);
+
+  // Constant after construction.
+  Rig rig_;
+  MonocularStartOptions options_;
+
+  // Owned by the calling thread.
+  std::optional<Frame> reference_;
+  std::vector<Eigen::Vector2f> expected_;  // pixels, one per feature of the reference: where the next frame may show it
+};
+
+}  // namespace byre
