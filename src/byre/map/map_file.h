@@ -49,6 +49,11 @@ struct StoredMap {
 // stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
+// The same map with all lengths so many times as long: one camera alone tells them but for such a factor, which is
+// positive. Rigs stay as they are. Precondition: the rigs have no baselines and, as their poses are those of the
+// cameras, no arms to a body.
+Map scaled_copy(const Map& map, double factor);
+
 // All faults of find_faults(Map), and what a stored map must hold beyond them.
 std::vector<std::string> find_faults(const StoredMap& stored);
 

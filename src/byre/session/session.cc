@@ -24,6 +24,7 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       executor_(std::move(lanes.local)),
       global_(offline ? make_inline_executor() : std::move(lanes.global), options.global) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
+  if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
   mission_.emplace(offline, options.mission);
   search_.emplace(std::move(lanes.global), offline, options.relocalise);
@@ -32,6 +33,7 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
 void Session::continue_map(Map online) {
   assert(places_ && !mission_ && anchored_.empty() && online.keyframe_count() > 0);
   online_ = std::move(online);
+  initialiser_.reset();
   for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
   last_keyframe_ = online_.keyframe_ids().back();
   segments_ = {{0, true}};
@@ -55,6 +57,7 @@ FrameReport Session::process(const Frame& frame) {
   const Stopwatch mapping_after;
   ++frames_since_keyframe_;
   report.keyframe_added = located.is_new_segment;
+  report.start_failure = located.start_failure;
   if (located.is_new_segment) {
     report.events.push_back(segments_.size() == 1 ? SessionEvent::initialised : SessionEvent::restarted);
   }
@@ -208,6 +211,13 @@ void Session::finish() {
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
   assert(places_);
   return byre::finish_map(online_, *places_, options, hooks);
+}
+
+void Session::finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
+  assert(mission_);
+  if (online_.keyframe_count() == 0) return;
+  const MapWindow whole = whole_map(map());
+  apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_);
 }
 
 Trajectory Session::final_trajectory() const {

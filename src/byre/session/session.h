@@ -10,6 +10,7 @@
 #include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/health.h"
+#include "byre/slam/initialisation.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/loop_closing.h"
@@ -27,10 +28,11 @@
 namespace byre {
 
 struct SessionOptions {
-  int recording = 0;             // which one the keyframes made are of, see Keyframe::recording
-  int min_initial_points = 100;  // stereo points of the first keyframe
-  int local_keyframes = 15;      // whose points are looked for in a frame
-  double min_kept_share = 0.5;   // of the last frame's inliers; fewer, and the pose is sought without prediction too
+  int recording = 0;                      // which one the keyframes made are of, see Keyframe::recording
+  int min_initial_points = 100;           // stereo points of the first keyframe
+  MonocularStartOptions monocular_start;  // of a rig without a baseline
+  int local_keyframes = 15;               // whose points are looked for in a frame
+  double min_kept_share = 0.5;  // of the last frame's inliers; fewer, and the pose is sought without prediction too
   TrackOptions track;
   KeyframeOptions keyframes;
   MappingOptions mapping;
@@ -74,9 +76,10 @@ struct FrameReport {
   int matches = 0;
   int inliers = 0;
   bool keyframe_added = false;
-  std::vector<SessionEvent> events;   // what happened in this frame, in order
-  double track_seconds = 0.0;         // wall time on the calling thread
-  double map_seconds = 0.0;           // of it for mapping: windows, deltas, new points, inline jobs
+  TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
+  std::vector<SessionEvent> events;                     // what happened in this frame, in order
+  double track_seconds = 0.0;                           // wall time on the calling thread
+  double map_seconds = 0.0;                             // of it for mapping: windows, deltas, new points, inline jobs
   std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
 
   bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }
@@ -105,6 +108,9 @@ class Session {
 
   // The last search for loops and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
+
+  // Adjusts all that was mapped beside the offline map at once, around that. Call it after finish().
+  void finish_mission(const FinishOptions& options, const FinishHooks& hooks);
 
   MapView map() const { return {mission_ ? &mission_->offline().map() : nullptr, online_}; }
 
@@ -141,6 +147,7 @@ class Session {
     std::optional<HybridTrack> track;
     bool without_prediction = false;  // found from nothing
     bool is_new_segment = false;      // a first keyframe was made of it
+    TwoViewFailure start_failure = TwoViewFailure::none;
   };
 
   void take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report);
@@ -161,7 +168,9 @@ class Session {
   std::optional<HybridTrack> relocalise_offline(const Frame& frame);
   std::optional<HybridTrack> relocalise_online(const Frame& frame);
   bool may_begin_segment(const Frame& frame) const;
-  bool begin_segment(const Frame& frame);
+  void begin_stereo(const Frame& frame, Located& located);
+  void begin_monocular(const Frame& frame, Located& located);
+  void begin_segment(const Frame& frame);
 
   std::optional<Pose> offset_from_online(const HybridTrack& track) const;
   Pose without_change_of(const std::optional<Pose>& offset, const Pose& body) const;
@@ -203,10 +212,11 @@ class Session {
   std::optional<PlaceSearch> search_;  // in that map
   std::optional<WaitingCorrection> waiting_correction_;
   Map online_{Origin::online};
-  std::optional<PlaceIndex> places_;    // of the online keyframes
-  std::optional<LoopHypothesis> loop_;  // not confirmed yet
-  int frames_since_loop_ = 0;           // frames since one was confirmed
-  std::vector<LoopEdge> loops_;         // confirmed
+  std::optional<MonocularInitialiser> initialiser_;  // of a rig without a baseline, until there is a map
+  std::optional<PlaceIndex> places_;                 // of the online keyframes
+  std::optional<LoopHypothesis> loop_;               // not confirmed yet
+  int frames_since_loop_ = 0;                        // frames since one was confirmed
+  std::vector<LoopEdge> loops_;                      // confirmed
   State state_ = State::initialising;
   std::vector<Segment> segments_;
   std::size_t segment_ = 0;                  // the present one

@@ -107,6 +107,23 @@ TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
+TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session session = session_on(mapped(0.4));
+  run(session, mission.frames);
+  session.finish();
+  const Trajectory before = session.final_trajectory();
+  session.finish_mission({}, {});
+  const Trajectory after = session.final_trajectory();
+  ASSERT_EQ(after.size(), mission.truth.size());
+  int moved = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_THAT(after[i].world_from_body, PoseNear(mission.truth[i].world_from_body, 0.03, 0.3 * kDegree)) << i;
+    moved += (after[i].world_from_body.translation - before[i].world_from_body.translation).norm() > 1e-6 ? 1 : 0;
+  }
+  EXPECT_GT(moved, kLap / 4);
+}
+
 TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session on_map = session_on(mapped(1.0));

@@ -61,7 +61,9 @@ Session::Located Session::locate(const Frame& frame) {
     located.track = relocalise(frame);
     located.without_prediction = located.track.has_value();
   }
-  if (!located.track && may_begin_segment(frame)) located.is_new_segment = begin_segment(frame);
+  if (!located.track && may_begin_segment(frame)) {
+    rig_.is_stereo() ? begin_stereo(frame, located) : begin_monocular(frame, located);
+  }
   return located;
 }
 
@@ -129,17 +131,18 @@ void Session::enter_registered_segment() {
 
 bool Session::may_begin_segment(const Frame& frame) const {
   if (!options_.map_online) return false;
+  // One camera knows no scale: it begins one map, and beside another it would not know how large what it sees is.
+  if (!rig_.is_stereo()) return initialiser_.has_value();
   if (anchored_.empty()) return online_.keyframe_count() == 0 || mission_;
   if (!mission_ || image_fault(frame) != ImageFault::none) return false;
   return to_seconds(frame.time - anchored_.back().time) >= options_.mission.restart_after;
 }
 
 // In a mission its place in the offline map is not known yet.
-bool Session::begin_segment(const Frame& frame) {
+void Session::begin_stereo(const Frame& frame, Located& located) {
   auto first = initialise_stereo(frame, rig_, options_.min_initial_points);
-  if (!first) return false;
+  if (!first) return;
   segments_.push_back({next_keyframe_number(), !mission_});
-  segment_ = segments_.size() - 1;
   if (online_.keyframe_count() == 0) {
     online_ = std::move(*first);
     last_keyframe_ = online_.keyframe_ids().front();
@@ -152,6 +155,31 @@ bool Session::begin_segment(const Frame& frame) {
     add_stereo_points(online_, *last_keyframe_);
   }
   index_place(*last_keyframe_);
+  begin_segment(frame);
+  located.is_new_segment = true;
+}
+
+void Session::begin_monocular(const Frame& frame, Located& located) {
+  MonocularAttempt attempt = initialiser_->try_start(frame);
+  located.start_failure = attempt.failure;
+  if (!attempt.start) return;
+  initialiser_.reset();
+  online_ = std::move(attempt.start->map);
+  segments_.push_back({0, true});
+  last_keyframe_ = attempt.start->second;
+  const KeyframeId reference = attempt.start->first;
+  index_place(reference);
+  index_place(*last_keyframe_);
+  begin_segment(frame);
+  anchored_.insert(anchored_.begin(), {online_.find_keyframe(reference)->frame.time, reference, Pose{}, segment_});
+  confirmed_end_ = anchored_.size();
+  pending_.push_back(*last_keyframe_);
+  located.is_new_segment = true;
+}
+
+// The newest keyframe is that of the frame.
+void Session::begin_segment(const Frame& frame) {
+  segment_ = segments_.size() - 1;
   online_reference_ = last_keyframe_;
   const Pose body = body_pose(online_.camera_from_world(*last_keyframe_));
   if (anchored_.empty()) {
@@ -169,7 +197,6 @@ bool Session::begin_segment(const Frame& frame) {
   confirmations_left_ = 0;
   confirmed_end_ = anchored_.size();
   if (mission_) mission_->forget_reference();
-  return true;
 }
 
 }  // namespace byre

@@ -4,6 +4,7 @@
 #include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -54,6 +55,12 @@ bool disagree(const PoseRefinement& one, const PoseRefinement& other, double dep
   const Vector6 deviation = log_pose(one.camera_from_world * inverse(other.camera_from_world));
   const Matrix6 covariance = one.covariance + other.covariance;
   return deviation.dot(covariance.ldlt().solve(deviation)) > kMaxSquaredDeviation;
+}
+
+// A pose that few points hold may be less certain than what is known of the drift: then it cannot correct that.
+bool is_sharper_than(const DriftBound& drift, const PoseRefinement& refined) {
+  constexpr double kSigmas = 3.0;
+  return kSigmas * std::sqrt(refined.covariance.topLeftCorner<3, 3>().trace()) <= drift.translation;
 }
 
 std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points,
@@ -188,8 +195,8 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
     result.maps_disagree =
         disagree(*offline, *online, median_depth(query, expected.offline, *result.from_offline), rig);
   }
-  result.offline_is_right =
-      result.maps_disagree && is_within(agreement_of(*result.from_offline, *result.from_online), drift);
+  result.offline_is_right = result.maps_disagree && is_sharper_than(drift, *offline) &&
+                            is_within(agreement_of(*result.from_offline, *result.from_online), drift);
 
   std::optional<Solution> solution;
   if (!result.maps_disagree) solution = solve_together(query, offline ? guesses->offline : guesses->online, measured);

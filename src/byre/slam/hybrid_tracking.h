@@ -27,10 +27,11 @@ struct HybridTrack {
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
-  std::optional<Pose> from_offline;     // camera_from_world, as offline points alone have it
-  std::optional<Pose> from_online;      // as online points alone have it
-  bool maps_disagree = false;           // those two are farther apart than noise explains,
-  bool offline_is_right = false;        // by no more than drift explains: then the pose is that of offline points
+  std::optional<Pose> from_offline;  // camera_from_world, as offline points alone have it
+  std::optional<Pose> from_online;   // as online points alone have it
+  bool maps_disagree = false;        // those two are farther apart than noise explains,
+  // By no more than drift explains, and the offline pose is certain enough to tell: then the pose is that one.
+  bool offline_is_right = false;
   std::vector<PointId> offline_agreed;  // inliers, and
   std::vector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
 

@@ -1,0 +1,128 @@
+// One camera: a map from its motion alone, and missions on a map that a stereo camera has made.
+
+#include "byre/evaluation/trajectory_error.h"
+#include "byre/session/session.h"
+#include "byre/slam/mission_scene.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::Each;
+
+constexpr int kLap = 120;  // frames, at 10 Hz
+
+Rig one_camera() {
+  Rig rig = simulated_rig();
+  rig.baseline = 0.0;
+  return rig;
+}
+
+SimulationOptions visit(std::uint64_t noise_seed) {
+  SimulationOptions options;
+  options.landmarks = 8000;
+  options.noise_seed = noise_seed;
+  return options;
+}
+
+SimulatedMission circling(const Rig& rig, double laps, std::uint64_t noise_seed) {
+  const int frames = static_cast<int>(kLap * laps);
+  return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), visit(noise_seed));
+}
+
+SimulatedMission turning_in_place(const Rig& rig) {
+  return simulate_mission(rig, turning_in_place_trajectory(100, 10.0, 1.0), visit(2));
+}
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary trained = [] {
+    std::vector<std::vector<Descriptor>> images;
+    for (const Frame& frame : circling(simulated_rig(), 1.0, 1).frames) {
+      images.push_back(frame.features->descriptors());
+    }
+    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
+  }();
+  return trained;
+}
+
+// Made by a stereo camera on visits before.
+std::shared_ptr<const OfflineMap> map_of(const SimulatedMission& mission) {
+  Map map = true_map(mission, 4, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+}
+
+Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), std::move(offline)};
+}
+
+std::vector<FrameReport> run(Session& session, const SimulatedMission& mission) {
+  std::vector<FrameReport> reports;
+  for (const Frame& frame : mission.frames) reports.push_back(session.process(frame));
+  return reports;
+}
+
+std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
+  std::vector<bool> result;
+  for (const FrameReport& report : reports) result.push_back(report.map_from_body.has_value());
+  return result;
+}
+
+TEST(Monocular, BeginsAMapOnceTheCameraHasMovedAndTracksOnUpToScale) {
+  const SimulatedMission mission = circling(one_camera(), 1.0, 2);
+  Session session = session_of(one_camera());
+  const auto reports = run(session, mission);
+  const auto first = std::ranges::find_if(reports, [](const FrameReport& r) { return r.map_from_body.has_value(); });
+  ASSERT_NE(first, reports.end());
+  EXPECT_TRUE(first->has(SessionEvent::initialised));
+  EXPECT_LT(first - reports.begin(), 30);
+  EXPECT_EQ(std::ranges::count(has_pose(reports), false), first - reports.begin());
+  session.finish();
+  const auto error = absolute_trajectory_error(associate(session.final_trajectory(), mission.truth, {}), Scale::free);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->translation.rmse, 0.02);
+}
+
+TEST(Monocular, RefusesToBeginWhileItTurnsOnTheSpotAndSaysWhy) {
+  Session session = session_of(one_camera());
+  const auto reports = run(session, turning_in_place(one_camera()));
+  EXPECT_THAT(has_pose(reports), Each(false));
+  EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), 20);
+}
+
+TEST(Monocular, TurnsOnTheSpotInAMapWithoutLosingItself) {
+  SimulatedMission mapping = turning_in_place(simulated_rig());
+  Session session = session_of(one_camera(), map_of(mapping));
+  SimulationOptions options = visit(3);
+  const SimulatedMission mission = simulate_mission(one_camera(), turning_in_place_trajectory(100, 10.0, 1.0), options);
+  EXPECT_THAT(has_pose(run(session, mission)), Each(true));
+}
+
+TEST(Monocular, HasTheScaleOfTheMapItIsOn) {
+  Session session = session_of(one_camera(), map_of(circling(simulated_rig(), 1.0, 1)));
+  const SimulatedMission mission = circling(one_camera(), 1.0, 2);
+  const auto reports = run(session, mission);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    ASSERT_TRUE(reports[i].map_from_body) << "frame " << i;
+    EXPECT_LT((reports[i].map_from_body->translation - mission.truth[i].world_from_body.translation).norm(), 0.03)
+        << "frame " << i;
+  }
+}
+
+TEST(Monocular, WaitsForItsPlaceInAMapRatherThanBeginAnother) {
+  SimulationOptions another_room = visit(2);
+  another_room.seed = 99;
+  Session session = session_of(one_camera(), map_of(circling(simulated_rig(), 1.0, 1)));
+  const auto reports =
+      run(session, simulate_mission(one_camera(), circling_trajectory(40, 10.0, 2.0, 0.33), another_room));
+  EXPECT_THAT(has_pose(reports), Each(false));
+  EXPECT_EQ(session.map().online().keyframe_count(), 0);
+}
+
+}  // namespace
+}  // namespace byre
