@@ -73,6 +73,7 @@ Json published_json(const std::string& case_name, const BenchmarkProtocol& proto
 Json case_json(const CaseResult& result, const BenchmarkProtocol& protocol) {
   Json json = {{"name", result.what.name},
                {"recording", result.what.recording},
+               {"camera", to_string(result.camera)},
                {"map", result.what.map ? Json(*result.what.map) : Json()}};
   json["arms"] = Json::array();
   for (const ArmResult& arm : result.arms) json["arms"].push_back(arm_json(arm));

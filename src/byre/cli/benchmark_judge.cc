@@ -9,8 +9,6 @@
 namespace byre::cli {
 namespace {
 
-constexpr double kMetricScale = 1.0;
-
 // Either is empty when no two poses are that far apart.
 void note(const RelativePoseError& error, Figure& translation, Figure& rotation) {
   if (error.translation.count == 0) return;
@@ -18,18 +16,20 @@ void note(const RelativePoseError& error, Figure& translation, Figure& rotation)
   rotation = error.rotation.rmse;
 }
 
-TrajectoryMeasures judge_trajectory(const Trajectory& estimate, std::size_t frames, const Trajectory& truth) {
+TrajectoryMeasures judge_trajectory(const Trajectory& estimate, std::size_t frames, const RunTruth& truth) {
   TrajectoryMeasures measures;
   if (frames > 0) measures.coverage = static_cast<double>(estimate.size()) / static_cast<double>(frames);
-  const std::vector<PosePair> pairs = associate(estimate, truth, {});
-  if (const auto ate = absolute_trajectory_error(pairs, Scale::fixed)) {
+  const std::vector<PosePair> pairs = associate(estimate, truth.poses, {});
+  double scale = 1.0;
+  if (const auto ate = absolute_trajectory_error(pairs, truth.scale)) {
     measures.ate = ate->translation.rmse;
     measures.ate_max = ate->translation.max;
+    scale = ate->truth_from_estimate.scale;
   }
-  note(relative_pose_error_by_frame(pairs, kMetricScale), measures.rpe_frame, measures.rpe_frame_deg);
-  note(relative_pose_error_by_time(pairs, std::chrono::seconds(1), kMetricScale), measures.rpe_second,
+  note(relative_pose_error_by_frame(pairs, scale), measures.rpe_frame, measures.rpe_frame_deg);
+  note(relative_pose_error_by_time(pairs, std::chrono::seconds(1), scale), measures.rpe_second,
        measures.rpe_second_deg);
-  note(relative_pose_error_by_distance(pairs, 1.0, kMetricScale), measures.rpe_metre, measures.rpe_metre_deg);
+  note(relative_pose_error_by_distance(pairs, 1.0, scale), measures.rpe_metre, measures.rpe_metre_deg);
   return measures;
 }
 
@@ -72,8 +72,8 @@ BehaviourMeasures judge_behaviour(const MapRun& run, bool has_map) {
 
 RunMeasures judge(const MapRun& run, const RunTruth& truth) {
   RunMeasures measures;
-  measures.final_poses = judge_trajectory(run.final, run.frames.size(), truth.poses);
-  measures.causal_poses = judge_trajectory(run.causal, run.frames.size(), truth.poses);
+  measures.final_poses = judge_trajectory(run.final, run.frames.size(), truth);
+  measures.causal_poses = judge_trajectory(run.causal, run.frames.size(), truth);
   measures.behaviour = judge_behaviour(run, truth.map.has_value());
   if (truth.map) {
     const MissionErrors errors = mission_errors(run, *truth.map, truth.poses);
@@ -95,7 +95,7 @@ std::vector<TracePoint> trace_of(const Trajectory& estimate, const RunTruth& tru
   if (truth.map) {
     truth_from_estimate = truth.map->truth_from_map;
   } else {
-    const auto aligned_run = absolute_trajectory_error(pairs, Scale::fixed);
+    const auto aligned_run = absolute_trajectory_error(pairs, truth.scale);
     if (!aligned_run) return {};
     truth_from_estimate = aligned_run->truth_from_estimate;
   }

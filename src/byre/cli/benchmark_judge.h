@@ -13,6 +13,7 @@ namespace byre::cli {
 struct RunTruth {
   const Trajectory& poses;          // at the times of the recording
   std::optional<MapAlignment> map;  // of the offline map of the run; empty for a run without one
+  Scale scale = Scale::fixed;       // free for one camera without a map
 };
 
 // All but memory and CPU time, which the run itself does not tell.
@@ -25,7 +26,7 @@ struct TracePoint {
   double error = 0.0;  // metres
 };
 
-// In the map's frame where there is a map, else after SE(3) alignment. Empty where that is impossible.
+// In the map's frame where there is a map, else after alignment. Empty where that is impossible.
 std::vector<TracePoint> trace_of(const Trajectory& estimate, const RunTruth& truth);
 
 }  // namespace byre::cli

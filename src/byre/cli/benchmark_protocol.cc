@@ -2,6 +2,7 @@
 
 #include "byre/cli/benchmark_yaml.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/open_options.h"
 #include "byre/input/data_file.h"
 #include "byre/input/input_error.h"
 
@@ -38,12 +39,29 @@ FrameRange read_frames(const YamlValue& value) {
   return *range;
 }
 
+CameraChoice read_camera(const YamlValue& value) {
+  const std::optional<CameraChoice> camera = parse_camera(value.text());
+  if (!camera) value.fail("\"" + value.text() + "\" is no choice of cameras", "use stereo, left or right");
+  return *camera;
+}
+
+OpenOptions read_open_options(const YamlValue& recording) {
+  OpenOptions options;
+  if (const auto camera = recording.find("camera")) options.camera = read_camera(*camera);
+  if (const auto calibration = recording.find("calibration")) options.calibration = calibration->text();
+  if (const auto rate = recording.find("fps")) {
+    options.frame_rate_hz = rate->number(kLowestFrameRate, kHighestFrameRate);
+  }
+  return options;
+}
+
 BenchmarkRecording read_recording(const YamlValue& value) {
-  value.require_fields({"name", "folder", "frames", "truth", "truth_offset_s"});
+  value.require_fields({"name", "folder", "frames", "camera", "calibration", "fps", "truth", "truth_offset_s"});
   BenchmarkRecording recording;
   recording.name = value["name"].text();
   recording.folder = value["folder"].text();
   if (const auto frames = value.find("frames")) recording.range = read_frames(*frames);
+  recording.open = read_open_options(value);
   if (const auto truth = value.find("truth")) recording.truth = truth->text();
   if (const auto offset = value.find("truth_offset_s")) {
     recording.truth_offset = from_seconds(offset->number(-kLargestOffset, kLargestOffset));

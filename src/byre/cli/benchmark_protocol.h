@@ -25,6 +25,7 @@ struct BenchmarkRecording {
   std::string name;
   std::filesystem::path folder;  // relative to the folder of data
   FrameRange range = {};
+  OpenOptions open = {};                            // a calibration is relative to the folder of data
   std::optional<std::filesystem::path> truth = {};  // relative likewise; else that which comes with the recording
   Timestamp truth_offset{0};                        // added to the truth's time stamps
 };

@@ -40,6 +40,18 @@ class Protocols : public testing::Test {
   fs::path path_ = fs::path(testing::TempDir()) / ("byre_protocol." + std::to_string(getpid()) + ".yaml");
 };
 
+TEST_F(Protocols, SayHowToTakeARecording) {
+  const std::string cases = "cases:\n  - {name: a, recording: a}\n";
+  const std::string recording = "recordings:\n  - {name: a, folder: monday, ";
+  const BenchmarkProtocol protocol = read(recording + "camera: right, calibration: cameras.yaml, fps: 12.5}\n" + cases);
+  EXPECT_EQ(protocol.recording("a").open.camera, CameraChoice::right);
+  EXPECT_EQ(protocol.recording("a").open.calibration, "cameras.yaml");
+  EXPECT_EQ(protocol.recording("a").open.frame_rate_hz, 12.5);
+  EXPECT_THAT(fault_of(recording + "camera: middle}\n" + cases),
+              HasSubstr("\"middle\" is no choice of cameras | use stereo, left or right"));
+  EXPECT_THAT(fault_of(recording + "fps: 0}\n" + cases), HasSubstr("is no number from 0.01"));
+}
+
 constexpr const char* kComplete = R"(title: Barns
 about: Two visits.
 runs: 3

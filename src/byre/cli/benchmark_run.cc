@@ -4,6 +4,7 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/resources.h"
+#include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/input/input_error.h"
@@ -23,7 +24,10 @@ namespace fs = std::filesystem;
 struct Source {
   fs::path folder;
   FrameRange range;
+  OpenOptions open;
   Trajectory truth;
+
+  ScaledRecording open_frames(bool has_map) const { return open_scaled(folder, range, open, has_map); }
 };
 
 using Sources = std::map<std::string, Source>;  // by the recording's name
@@ -54,17 +58,25 @@ std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, con
                                         const fs::path& data) {
   for (const std::string& name : recordings_of(benchmark_case)) {
     const fs::path folder = data / protocol.recording(name).folder;
-    if (!fs::is_directory(folder)) return SkippedCase{benchmark_case.name, folder.string() + " is not there"};
+    if (!fs::exists(folder)) return SkippedCase{benchmark_case.name, folder.string() + " is not there"};
   }
   return std::nullopt;
 }
 
 Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
-  Source source{data / recording.folder, recording.range, {}};
-  open_stereo_recording(source.folder, source.range);  // what is wrong with it is told now
+  Source source{data / recording.folder, recording.range, recording.open, {}};
+  if (recording.open.calibration) source.open.calibration = data / *recording.open.calibration;
+  source.open_frames(false);  // what is wrong with it is told now
   source.truth = load_truth(recording.truth ? data / *recording.truth : source.folder);
   for (StampedPose& sample : source.truth) sample.time += recording.truth_offset;
   return source;
+}
+
+// A mission needs metres.
+void require_metric(const Source& source) {
+  if (source.open_frames(false).is_metric) return;
+  throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
+                   "make the map of a stereo recording, by both cameras");
 }
 
 Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkProtocol& protocol, const fs::path& data) {
@@ -73,6 +85,7 @@ Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkPro
     for (const std::string& name : recordings_of(benchmark_case)) {
       if (!sources.contains(name)) sources.emplace(name, open_source(protocol.recording(name), data));
     }
+    if (benchmark_case.map) require_metric(sources.at(*benchmark_case.map));
   }
   return sources;
 }
@@ -140,14 +153,21 @@ class BenchmarkRunner {
       return skip({benchmark_case.name, "no map could be made of " + *benchmark_case.map + ": no frame got a pose"});
     }
     const Source& source = sources_.at(benchmark_case.recording);
-    const auto recording = open_stereo_recording(source.folder, source.range);
-    result_.cases.push_back({benchmark_case, {}, guess_format(source.folder), truth_during(source.truth, *recording)});
-    for (const Arm arm : benchmark_case.arms)
-      run_arm(benchmark_case, arm, *recording, arm == Arm::no_map ? nullptr : map);
+    const auto recording = source.open_frames(map != nullptr).recording;
+    result_.cases.push_back({benchmark_case,
+                             {},
+                             guess_format(source.folder),
+                             truth_during(source.truth, *recording),
+                             camera_of(*recording, source.open)});
+    for (const Arm arm : benchmark_case.arms) run_arm(benchmark_case, arm, arm == Arm::no_map ? nullptr : map);
   }
 
-  void run_arm(const BenchmarkCase& benchmark_case, Arm arm, Recording& recording, const MadeMap* map) {
-    RunTruth truth{sources_.at(benchmark_case.recording).truth, {}};
+  void run_arm(const BenchmarkCase& benchmark_case, Arm arm, const MadeMap* map) {
+    const Source& source = sources_.at(benchmark_case.recording);
+    const ScaledRecording opened = source.open_frames(map != nullptr);
+    Recording& recording = *opened.recording;
+    const Trajectory true_path = opened.path_of(source.truth);
+    RunTruth truth{true_path, {}, opened.is_metric ? Scale::fixed : Scale::free};
     if (map != nullptr) truth.map = map->alignment;
     const std::string what = benchmark_case.name + " " + std::string(name_of(arm));
     ArmResult result;
@@ -190,7 +210,7 @@ class BenchmarkRunner {
 
   void make_map(const std::string& name) {
     const Source& source = sources_.at(name);
-    const auto recording = open_stereo_recording(source.folder, source.range);
+    const auto recording = source.open_frames(false).recording;
     hooks_.before_run("map of " + name, recording->size());
     MapRun run = run_map(*recording, options_for(Arm::no_map, 0), run_hooks());
     if (hooks_.should_stop()) return;

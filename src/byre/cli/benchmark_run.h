@@ -51,6 +51,7 @@ struct CaseResult {
   std::vector<ArmResult> arms;  // those begun
   RecordingFormat format = RecordingFormat::euroc;
   Trajectory truth;  // while the recording lasts
+  CameraChoice camera = CameraChoice::stereo;
 };
 
 struct SkippedCase {

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/evaluation_report.h"
+#include "byre/cli/open_options.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
@@ -23,24 +24,38 @@ struct EvaluateOptions {
   fs::path truth;
   std::optional<fs::path> times;
   std::optional<fs::path> frames_of;
+  OpenOptions open;
   std::optional<fs::path> aligned;
   Protocol protocol;
   double time_offset_s = 0.0;
   double max_gap_s = to_seconds(AssociationOptions{}.max_gap);
   bool json = false;
+  bool is_of_camera = false;
 };
 
 constexpr const char* kFooter = R"(Examples:
   byre evaluate --estimate out.txt --truth MH_01_easy --frames-of MH_01_easy --label final
   byre evaluate --estimate out.txt --truth MH_01_easy --time-offset -0.0075
   byre evaluate --estimate out.txt --truth kitti/poses/00.txt --times kitti/sequences/00/times.txt
-  byre evaluate --estimate mono.txt --truth truth.txt --alignment sim3 --json
+  byre evaluate --estimate mono.txt --truth MH_01_easy --frames-of MH_01_easy --camera left --estimate-of camera --alignment sim3
 
-Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera.)";
+Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera. What byre maps with one
+camera alone is the path of that camera, in units of its own: --estimate-of camera takes the truth there, by the calibration of
+--frames-of, and --alignment sim3 finds the unit.)";
+
+// Of what the estimate is of.
+Trajectory true_path(const EvaluateOptions& options) {
+  Trajectory truth = load_truth(options.truth, options.times);
+  if (!options.is_of_camera) return truth;
+  const Pose body_from_camera = open_recording(*options.frames_of, {}, options.open)->calibration().body_from_left;
+  for (StampedPose& sample : truth) sample.world_from_body = sample.world_from_body * body_from_camera;
+  return truth;
+}
 
 std::optional<ExpectedFrames> expected_frames(const EvaluateOptions& options) {
   if (options.frames_of) {
-    return ExpectedFrames{open_recording(*options.frames_of, {})->times(), "frames of " + options.frames_of->string()};
+    const std::unique_ptr<Recording> recording = open_recording(*options.frames_of, {}, options.open);
+    return ExpectedFrames{recording->times(), "frames of " + options.frames_of->string()};
   }
   if (options.times) return ExpectedFrames{read_times(*options.times), "times in " + options.times->string()};
   return std::nullopt;
@@ -62,7 +77,7 @@ Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport
 
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
   const Trajectory estimate = load_trajectory(options.estimate, options.times);
-  const Trajectory truth = load_truth(options.truth, options.times);
+  const Trajectory truth = true_path(options);
   Protocol protocol = options.protocol;
   protocol.association.time_offset = from_seconds(options.time_offset_s);
   protocol.association.max_gap = from_seconds(options.max_gap_s);
@@ -86,8 +101,16 @@ void declare_inputs(CLI::App& command, EvaluateOptions& options) {
       ->required();
   command.add_option("--times", options.times, "Times of KITTI poses, and the frames that should have a pose")
       ->type_name("FILE");
-  command.add_option("--frames-of", options.frames_of, "Recording whose frames should have a pose, for the coverage")
-      ->type_name("FOLDER");
+  CLI::Option* const frames_of =
+      command
+          .add_option("--frames-of", options.frames_of, "Recording whose frames should have a pose, for the coverage")
+          ->type_name("FOLDER|VIDEO");
+  const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
+  command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
+      ->type_name("body|camera")
+      ->transform(CLI::CheckedTransformer(movers).description(""))
+      ->needs(frames_of);
+  declare_open_options(command, options.open);
 }
 
 void declare_protocol(CLI::App& command, EvaluateOptions& options) {

@@ -1,6 +1,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/export_colmap_run.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/open_options.h"
 #include "byre/input/input_error.h"
 
 #include <memory>
@@ -18,6 +19,7 @@ struct ExportCommandOptions {
   fs::path map;
   fs::path model;
   std::vector<fs::path> recordings;
+  OpenOptions open;  // how to take those
   bool text = false;
   bool binary = false;  // the default, said
 };
@@ -39,7 +41,7 @@ void make_folder(const fs::path& folder) {
 ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   const StoredMap stored = load_map(options.map);
   ImageNames names;
-  for (const fs::path& recording : options.recordings) names.merge(names_of_left_images(recording));
+  for (const fs::path& recording : options.recordings) names.merge(names_of_images(recording, options.open));
   const ColmapModel model = colmap_model_of(stored, names);
   make_folder(options.model);
   write_colmap_model(model, options.model, options.text ? ColmapFormat::text : ColmapFormat::binary);
@@ -64,6 +66,7 @@ Action declare_export_colmap(CLI::App& command) {
       .add_option("--images-of", options->recordings,
                   "Recordings whose files name the images (else they are called <nanoseconds>.png)")
       ->type_name("FOLDER...");
+  declare_open_options(command, options->open);
   auto* const text = command.add_flag("--text", options->text, "Write the text format");
   command.add_flag("--binary", options->binary, "Write the binary format (the default)")->excludes(text);
   command.footer(kFooter);

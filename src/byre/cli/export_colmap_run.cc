@@ -1,6 +1,7 @@
 #include "byre/cli/export_colmap_run.h"
 
 #include "byre/dataset/colmap_camera.h"
+#include "byre/dataset/frame_selection.h"
 #include "byre/dataset/recording.h"
 #include "byre/dataset/recording_index.h"
 
@@ -125,9 +126,10 @@ ColmapModel colmap_model_of(const StoredMap& stored, const ImageNames& names) {
   return model;
 }
 
-ImageNames names_of_left_images(const std::filesystem::path& recording) {
-  const RecordingIndex index =
-      guess_format(recording) == RecordingFormat::euroc ? index_euroc(recording) : index_kitti(recording);
+ImageNames names_of_images(const std::filesystem::path& recording, const OpenOptions& options) {
+  RecordingIndex index = index_recording(recording, options);
+  const bool is_pair = has_pairs(index);
+  index = choose_camera(std::move(index), is_pair, options.camera, recording);
   ImageNames names;
   for (const FrameFiles& frame : index.frames) names[frame.time] = frame.left.filename().string();
   return names;

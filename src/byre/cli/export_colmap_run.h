@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/dataset/colmap_model.h"
+#include "byre/dataset/recording.h"
 #include "byre/map/map_file.h"
 
 #include <filesystem>
@@ -9,7 +10,7 @@
 
 namespace byre::cli {
 
-using ImageNames = std::map<Timestamp, std::string>;  // of the left images, by time
+using ImageNames = std::map<Timestamp, std::string>;  // by time
 
 // The map as a model of the recordings' own left images, before rectification: cameras with their lenses, poses of
 // these cameras, key points moved to where those images show them. Positions are those of the map. Point n has the id n
@@ -17,7 +18,8 @@ using ImageNames = std::map<Timestamp, std::string>;  // of the left images, by 
 // programs rely on two views. Images without a name among these are called "<time in nanoseconds>.png".
 ColmapModel colmap_model_of(const StoredMap& stored, const ImageNames& names);
 
-// How a recording names its left images. Throws InputError as open_recording does.
-ImageNames names_of_left_images(const std::filesystem::path& recording);
+// How a recording names its images, of the left camera or of the right one if that is taken alone. Throws InputError as
+// open_recording does, and for a video, which has no image files.
+ImageNames names_of_images(const std::filesystem::path& recording, const OpenOptions& options = {});
 
 }  // namespace byre::cli

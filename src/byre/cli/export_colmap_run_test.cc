@@ -42,7 +42,10 @@ TEST_F(ExportedModel, NamesImagesByTheirTimesUnlessToldOtherwise) {
   const Timestamp time = RenderedFixture::shared().truth().front().time;
   EXPECT_EQ(model_.images.at(1).name, std::to_string(time.count()) + ".png");
   EXPECT_EQ(colmap_model_of(stored_, {{time, "first.jpg"}}).images.at(1).name, "first.jpg");
-  EXPECT_EQ(names_of_left_images(RenderedFixture::shared().folder()).at(time), model_.images.at(1).name);
+  EXPECT_EQ(names_of_images(RenderedFixture::shared().folder()).at(time), model_.images.at(1).name);
+  const OpenOptions right{.camera = CameraChoice::right};
+  EXPECT_EQ(names_of_images(RenderedFixture::shared().folder(), right).size(),
+            RenderedFixture::shared().truth().size());
 }
 
 TEST_F(ExportedModel, HasThePointsOfTwoViewsWhereTheMapHasThem) {

@@ -2,6 +2,7 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/import_colmap_run.h"
 #include "byre/cli/interrupt.h"
+#include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
@@ -26,6 +27,7 @@ struct ImportCommandOptions {
   fs::path map;
   std::optional<double> scale;
   std::optional<fs::path> body_of;
+  OpenOptions open;  // how to take that recording
   std::optional<fs::path> vocabulary;
   std::string site;
   bool model_points_only = false;
@@ -51,7 +53,7 @@ ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOpti
   import_options.metres_per_unit = options.scale;
   import_options.map.add_own_points = !options.model_points_only;
   if (options.body_of)
-    import_options.body_from_camera = open_recording(*options.body_of, {})->calibration().body_from_left;
+    import_options.body_from_camera = open_recording(*options.body_of, {}, options.open)->calibration().body_from_left;
   const std::string name = fs::weakly_canonical(options.model).string();
   ColmapImport imported = import_colmap(model, name, options.images, import_options, hooks);
   progress.close();
@@ -98,6 +100,7 @@ Action declare_import_colmap(CLI::App& command) {
                   "Recording whose calibration says where the camera sits in the body (body and camera are one)")
       ->type_name("FOLDER")
       ->needs(scale);
+  declare_open_options(command, options->open);
   command.add_flag("--model-points-only", options->model_points_only,
                    "Add no points for corners that are none of the model's points");
   command.add_option("--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");

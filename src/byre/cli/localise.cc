@@ -3,12 +3,15 @@
 #include "byre/cli/interrupt.h"
 #include "byre/cli/localise_report.h"
 #include "byre/cli/localise_run.h"
+#include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
+#include "byre/dataset/calibration_file.h"
+#include "byre/dataset/frame_selection.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
 #include "byre/place/map_words.h"
@@ -28,6 +31,7 @@ struct LocaliseCommandOptions {
   fs::path map;
   std::vector<fs::path> inputs;
   FrameRange range;
+  OpenOptions open;
   std::optional<fs::path> truth;
   std::optional<fs::path> map_truth;
   std::optional<fs::path> trajectory;
@@ -39,21 +43,32 @@ struct LocaliseCommandOptions {
 constexpr const char* kFooter = R"(Examples:
   byre localise barn.byre evening_round --truth evening_round
   byre localise barn.byre MH_01_easy --frames 150:300 --trajectory found.txt
+  byre localise barn.byre evening_round --camera right
+  byre localise barn.byre walk.mp4 --calibration phone.yaml --stride 30
   byre localise barn.byre photo1.png photo2.png --json
 
 Each frame is looked for in the whole map, without tracking and without a guess. Images are taken for the left camera's
-of the map's first recording. With truth, errors are those in the map's frame: the map, not the frames, is aligned to
-the truth by its keyframes where the truth covers them; for a map of another recording name that one's truth too
-(--map-truth). Exit code 0 also when no frame is found.)";
+of the map's first recording, unless --camera or --calibration say otherwise. With truth, errors are those in the map's
+frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
+another recording name that one's truth too (--map-truth). Exit code 0 also when no frame is found.)";
 
 bool is_recording(const std::vector<fs::path>& inputs) {
-  return inputs.size() == 1 && fs::is_directory(inputs.front());
+  return inputs.size() == 1 && (fs::is_directory(inputs.front()) || is_video_file(inputs.front()));
 }
 
-const Calibration& camera_of(const StoredMap& stored, const fs::path& path) {
+Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
   if (!stored.recordings.empty()) return stored.recordings.front().calibration;
   throw InputError(path.string(), "does not say with which camera it was made, so images cannot be localised in it",
-                   "localise a recording instead");
+                   "name the calibration of their camera (--calibration FILE)");
+}
+
+// The camera that took single images: that of the calibration named, or one like the map's.
+Calibration camera_of_images(const LocaliseCommandOptions& options, const StoredMap& stored) {
+  const fs::path source = options.open.calibration.value_or(options.map);
+  const Calibration calibration =
+      options.open.calibration ? read_calibration(source) : calibration_of_map(stored, options.map);
+  return choose_calibration({calibration, source.string(), source.string()}, false, options.open.camera, source)
+      .cameras;
 }
 
 struct Work {
@@ -65,7 +80,10 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
                   const InterruptCatcher& interrupt) {
   const SearchableMap map(stored, vocabulary);
   std::unique_ptr<Recording> recording;
-  if (is_recording(options.inputs)) recording = open_recording(options.inputs.front(), options.range);
+  if (is_recording(options.inputs)) {
+    recording = open_recording(options.inputs.front(), options.range, options.open);
+    if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  }
   const int frames = recording ? recording->size() : static_cast<int>(options.inputs.size());
   Progress progress(std::cerr, progress_style(options.quiet), frames);
   const Stopwatch watch;
@@ -75,7 +93,7 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
     progress.update(done, watch.seconds(), frame.world_from_body ? "found" : to_string(frame.localisation.failure));
   };
   LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
-                              : localise_images(map, options.inputs, camera_of(stored, options.map), hooks);
+                              : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);
   progress.close();
   return {std::move(run), {options.map.string(), recording ? options.inputs.front().string() : "images", frames}};
 }
@@ -113,9 +131,12 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
 
 void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
   command.add_option("MAP", options.map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command.add_option("INPUT", options.inputs, "Folder of a recording, or image files")
+  command
+      .add_option("INPUT", options.inputs,
+                  "A recording (EuRoC, KITTI odometry, TUM RGB-D, images, a video), or image files")
       ->type_name("RECORDING|IMAGES...")
       ->required();
+  declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   command.add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
       ->type_name("FILE|FOLDER");

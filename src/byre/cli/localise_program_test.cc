@@ -5,6 +5,8 @@
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +49,57 @@ TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
   EXPECT_EQ(report.at("per_frame").at(0).at("position_in_map_m").size(), 3);
   EXPECT_LT(report.at("errors").at("position_m").at("max"), 0.05);
   EXPECT_THAT(outcome.errors, IsEmpty());
+}
+
+TEST_F(LocaliseProgram, FindsTheBodyByEitherCameraAlone) {
+  for (const char* const camera : {"left", "right"}) {
+    const Outcome outcome = localise(kRoom + " --frames 1: --stride 4 --json --camera " + camera + " --truth " + kRoom);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const json report = json::parse(outcome.output);
+    EXPECT_EQ(report.at("frames_found"), 6) << camera;
+    EXPECT_LT(report.at("errors").at("position_m").at("max"), 0.05) << camera;
+  }
+}
+
+TEST_F(LocaliseProgram, FindsImagesOfAFolderByTheTimesOfTheirNames) {
+  const std::filesystem::path camera = RenderedFixture::shared().folder() / "mav0/cam1";
+  const std::string images = quoted(camera / "data"), calibration = " --calibration " + quoted(camera / "sensor.yaml");
+  const Outcome outcome = localise(images + calibration + " --stride 6 --json --truth " + kRoom);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const json report = json::parse(outcome.output);
+  EXPECT_EQ(report.at("frames_found"), 4);
+  EXPECT_LT(report.at("errors").at("position_m").at("max"), 0.05);
+  EXPECT_THAT(localise(images).errors, HasSubstr("holds no calibration of the camera"));
+  EXPECT_THAT(localise(images + calibration + " --fps 20 --camera stereo").errors,
+              HasSubstr("has images of one camera only"));
+}
+
+TEST_F(LocaliseProgram, WarnsOfAnAssumedFrameRate) {
+  const std::filesystem::path folder = folder_ / "frames";
+  std::filesystem::create_directory(folder);
+  for (const std::size_t i : {0, 1}) {
+    std::filesystem::copy(RenderedFixture::shared().image("cam0", i), folder / formatted("frame%zu.png", i));
+  }
+  const std::string sensor = quoted(RenderedFixture::shared().folder() / "mav0/cam0/sensor.yaml");
+  EXPECT_THAT(localise("frames --calibration " + sensor).errors, HasSubstr("30 frames a second are assumed"));
+  const Outcome quiet = localise("frames --fps 20 --quiet --calibration " + sensor);
+  EXPECT_THAT(quiet.errors, IsEmpty());
+  EXPECT_THAT(quiet.output, HasSubstr("found        2 of 2 frames"));
+}
+
+TEST_F(LocaliseProgram, TakesImagesForTheCameraThatIsNamed) {
+  const std::string image = quoted(RenderedFixture::shared().image("cam1", 4));
+  const auto position_by = [&](const std::string& options) {
+    const json report = json::parse(localise(image + " --json" + options).output);
+    return report.at("per_frame").at(0).at("position_in_map_m").get<std::vector<double>>();
+  };
+  const std::vector<double> of_right = position_by(" --camera right");
+  const std::vector<double> of_calibration =
+      position_by(" --calibration " + quoted(RenderedFixture::shared().folder() / "mav0/cam1/sensor.yaml"));
+  const std::vector<double> of_left = position_by("");
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(of_right[axis], of_calibration[axis], 1e-6);
+  const double apart = std::hypot(of_left[0] - of_right[0], of_left[1] - of_right[1], of_left[2] - of_right[2]);
+  EXPECT_NEAR(apart, 0.11, 0.03) << "taken for the left camera's, the body is off by the baseline";
 }
 
 TEST_F(LocaliseProgram, TakesImagesForTheMapsCamera) {

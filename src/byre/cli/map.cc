@@ -7,6 +7,7 @@
 #include "byre/cli/output_options.h"
 #include "byre/cli/posed_map.h"
 #include "byre/cli/run_with_progress.h"
+#include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
@@ -79,6 +80,7 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   MapProtocol protocol;
   protocol.recording = options.recording.string();
   protocol.format = guess_format(options.recording);
+  protocol.camera = camera_of(recording, options.open);
   protocol.range = options.range;
   protocol.frames_in_range = recording.size();
   protocol.options.pace = options.pace;
@@ -90,23 +92,18 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   return protocol;
 }
 
-void require_poses(const MapRun& run, const MapOptions& options) {
-  if (!run.causal.empty()) return;
-  if (options.extended) {
-    throw std::runtime_error("no frame was found in " + options.extended->string() +
-                             ": the recording may be of another place, or too different in light or viewpoint");
-  }
-  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
-}
-
 ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
   MapRecord record = record_of(options);
-  const std::unique_ptr<Recording> recording = open_stereo_recording(options.recording, options.range);
+  const auto [recording, is_metric, body_from_camera] =
+      open_scaled(options.recording, options.range, options.open, options.extended.has_value());
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   std::optional<Map> extended = take_extended(options, record);
   record.about.recordings.push_back(describe_source(options.recording, *recording));
-  const MapProtocol protocol = protocol_of(options, record, *recording);
+  record.about.scale = is_metric ? MapScale::metric : MapScale::unknown;
+  MapProtocol protocol = protocol_of(options, record, *recording);
+  protocol.is_metric = is_metric;
 
   limit_image_threads(1);
   const InterruptCatcher interrupt(options.outputs());
@@ -118,7 +115,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   write_results(options, run, protocol, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;
-  require_poses(run, options);
+  require_poses(run, protocol);
   return ExitCode::done;
 }
 

@@ -47,7 +47,9 @@ Json protocol_json(const MapProtocol& protocol) {
   Json json = {{"program", protocol.program},
                {"version", BYRE_VERSION},
                {"recording", protocol.recording},
-               {"format", protocol.format == RecordingFormat::euroc ? "euroc" : "kitti"},
+               {"format", to_string(protocol.format)},
+               {"camera", to_string(protocol.camera)},
+               {"scale", protocol.is_metric ? "metric" : "unknown"},
                {"range",
                 {{"start_s", or_null(range.start_s)},
                  {"end_s", or_null(range.end_s)},
@@ -72,6 +74,12 @@ Json protocol_json(const MapProtocol& protocol) {
   return json;
 }
 
+Json refused_starts_json(const FrameCounts& counts) {
+  Json json = Json::object();
+  for (const auto& [failure, frames] : counts.refused_starts) json[std::string(to_string(failure))] = frames;
+  return json;
+}
+
 Json counts_json(const MapRun& run) {
   const FrameCounts counts = count_frames(run.frames);
   return {{"frames", counts.frames},
@@ -82,6 +90,8 @@ Json counts_json(const MapRun& run) {
           {"keyframes_made", counts.keyframes},
           {"keyframes_left", run.map.keyframe_count()},
           {"points", run.map.point_count()},
+          {"frames_before_the_first_pose", or_null(counts.frames_to_first)},
+          {"refused_starts", refused_starts_json(counts)},
           {"lost_episodes", counts.lost_episodes},
           {"frames_lost", counts.lost},
           {"resets", counts.resets},

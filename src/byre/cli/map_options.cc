@@ -1,6 +1,7 @@
 #include "byre/cli/map_options.h"
 
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/open_options.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
 
@@ -22,6 +23,7 @@ constexpr const char* kFooter = R"(Examples:
   byre map MH_01_easy -o barn.byre --pace live --autosave 60
   byre map MH_01_easy --trajectory out.txt --start 10 --end 25.5 --stride 2
   byre map MH_01_easy --trajectory out.txt --pace live --quiet
+  byre map images --calibration camchain.yaml --fps 20 -o barn.byre
 
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
@@ -30,10 +32,7 @@ points and redundant keyframes are removed. Ctrl-C stops after the current frame
 files, then the exit code is 130; "byre refine" makes up for it. A second Ctrl-C ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
-  command
-      .add_option("RECORDING", options.recording, "Folder of a stereo recording, as EuRoC or KITTI odometry has them")
-      ->type_name("FOLDER")
-      ->required();
+  command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
   command.add_option("-o,--output", options.map, "The map, for \"byre localise\", \"byre inspect\" and later missions")
       ->type_name("MAP");
   command.add_option("--trajectory", options.trajectory, "Final poses: as recomputed after the last frame. TUM format")
@@ -117,6 +116,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_files(command, options);
   declare_map_content(command, options);
   declare_building(command, options);
+  declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
   std::map<std::string, Refinement> refinements;

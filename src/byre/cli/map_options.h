@@ -24,6 +24,7 @@ struct MapOptions {
   std::optional<double> autosave_s;
   std::string site;
   FrameRange range;
+  OpenOptions open;  // how to take the recording
   Pace pace = Pace::paced;
   Refinement refinement = Refinement::all;
   bool no_loops = false;

@@ -90,6 +90,16 @@ TEST_F(MapProgram, TakesPosesThatAreGivenAndSaysSo) {
   EXPECT_EQ(stored.map.keyframe_count(), 6);
 }
 
+TEST_F(MapProgram, TakesOneCameraOfAPair) {
+  const Outcome outcome =
+      map("-o right.byre --camera right --stride 4 --quiet --poses " + quoted(RenderedFixture::shared().folder()));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const StoredMap stored = load_map(folder_ / "right.byre");
+  ASSERT_THAT(stored.recordings, SizeIs(1));
+  EXPECT_FALSE(stored.recordings.front().calibration.right);
+  EXPECT_GT(stored.map.point_count(), 100);
+}
+
 TEST_F(MapProgram, SaysNothingOnTheWayWhenQuiet) {
   const Outcome outcome = map("--trajectory final.txt --frames 0:3 --quiet");
   EXPECT_EQ(outcome.exit_code, 0);
@@ -120,14 +130,26 @@ TEST_F(MapProgram, MapsThePartAskedFor) {
 }
 
 TEST_F(MapProgram, RefusesWrongUsage) {
-  for (const char* const arguments :
-       {"", "--poses truth.txt --trajectory out.txt", "-o map.byre --poses truth.txt --trajectory out.txt",
-        "--trajectory", "--trajectory out.txt --frames 5", "--trajectory out.txt --frames 9:3",
-        "--trajectory out.txt --start 2 --end 2", "--trajectory out.txt --start -1", "--trajectory out.txt --stride 0",
-        "--trajectory out.txt --pace fast", "--trajectory out.txt --stats ./out.txt",
-        "--trajectory out.txt another_recording", "--trajectory out.txt --autosave 10", "-o map.byre --autosave soon",
-        "--trajectory out.txt --extend old.byre", "-o map.byre --extend ./map.byre",
-        "-o map.byre --extend old.byre --no-loops", "-o map.byre --extend old.byre --poses truth.txt"}) {
+  for (const char* const arguments : {"",
+                                      "--poses truth.txt --trajectory out.txt",
+                                      "-o map.byre --poses truth.txt --trajectory out.txt",
+                                      "--trajectory",
+                                      "--trajectory out.txt --frames 5",
+                                      "--trajectory out.txt --frames 9:3",
+                                      "--trajectory out.txt --start 2 --end 2",
+                                      "--trajectory out.txt --start -1",
+                                      "--trajectory out.txt --stride 0",
+                                      "--trajectory out.txt --pace fast",
+                                      "--trajectory out.txt --camera middle",
+                                      "--trajectory out.txt --fps 0",
+                                      "--trajectory out.txt --stats ./out.txt",
+                                      "--trajectory out.txt another_recording",
+                                      "--trajectory out.txt --autosave 10",
+                                      "-o map.byre --autosave soon",
+                                      "--trajectory out.txt --extend old.byre",
+                                      "-o map.byre --extend ./map.byre",
+                                      "-o map.byre --extend old.byre --no-loops",
+                                      "-o map.byre --extend old.byre --poses truth.txt"}) {
     const Outcome outcome = map(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.errors, StartsWith("byre: error: ")) << arguments;

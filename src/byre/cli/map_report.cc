@@ -5,6 +5,10 @@
 #include "byre/cli/stored_map.h"
 #include "byre/evaluation/trajectory_error.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
 namespace byre::cli {
 namespace {
 
@@ -19,6 +23,31 @@ std::string describe_map(const MapRun& run, const MapProtocol& protocol, const F
   return formatted(protocol.extended.empty() ? "%d keyframes, of %d made; %d points"
                                              : "%d keyframes, of those before and %d made; %d points",
                    run.map.keyframe_count(), counts.keyframes, run.map.point_count());
+}
+
+// The most frequent reason first; empty where there is none.
+std::string describe_refusals(const FrameCounts& counts) {
+  std::vector<std::pair<int, TwoViewFailure>> ranked;
+  for (const auto& [failure, frames] : counts.refused_starts) ranked.emplace_back(-frames, failure);
+  std::ranges::sort(ranked);
+  std::string text;
+  for (const auto& [frames, failure] : ranked) {
+    text += (text.empty() ? "" : ", ") + std::string(to_string(failure)) + formatted(" %d", -frames);
+  }
+  return text.empty() ? text : text + " frames";
+}
+
+// How one camera came to a map of its own; empty for other runs.
+std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  if (protocol.is_metric) return "";
+  std::string begun = "never";
+  if (!run.causal.empty()) {
+    const double seconds = to_seconds(run.causal.front().time - run.frames.front().time);
+    begun = formatted("%.2f s after the first frame, at frame %d", seconds, counts.frames_to_first.value_or(0));
+  }
+  const std::string refusals = describe_refusals(counts);
+  if (!refusals.empty()) begun += "; refused before: " + refusals;
+  return row("begun", begun) + row("scale", "of the map's own; \"byre scale\" makes it metres");
 }
 
 std::string describe_loops(const FrameCounts& counts) {
@@ -43,6 +72,8 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
 
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
   std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
+  if (protocol.camera != CameraChoice::stereo)
+    text += formatted(" of the %s camera", to_string(protocol.camera).data());
   const auto frames = static_cast<int>(run.frames.size());
   if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
   return text;
@@ -127,6 +158,7 @@ std::string describe_offline(const MapProtocol& protocol) {
 std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
   std::string text = row("poses", describe_poses(counts));
+  text += scale_rows(run, protocol, counts);
   text += row("map", describe_map(run, protocol, counts));
   text += extension_rows(run, protocol, counts);
   if (protocol.options.vocabulary) text += row("loops", describe_loops(counts));
@@ -148,6 +180,12 @@ std::string describe_online(const MapRun& run, const FrameCounts& counts) {
                    run.frames.back().points);
 }
 
+std::string describe_mission_finishing(const MapRun& run) {
+  if (!run.mission_finishing_seconds) return "left out";
+  return formatted("%.1f s: the online map adjusted as a whole, around the offline one",
+                   *run.mission_finishing_seconds);
+}
+
 // What "byre run" is about, with an offline map or without.
 std::string mission_rows(const Mission& mission, const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
@@ -155,12 +193,14 @@ std::string mission_rows(const Mission& mission, const MapRun& run, const MapPro
   std::string text;
   if (has_map) text += row("offline map", describe_offline(protocol));
   text += row("poses", describe_coverage(run, mission.statistics));
+  text += scale_rows(run, protocol, counts);
   text += to_text(mission.statistics);
   if (protocol.options.session.map_online) {
     text += has_map ? row("online map", describe_online(run, counts)) : row("map", describe_map(run, protocol, counts));
     text += row("loops", describe_loops(counts));
   }
   if (!has_map) text += finishing_rows(run, protocol);
+  if (has_map && protocol.options.session.map_online) text += row("finishing", describe_mission_finishing(run));
   if (mission.errors) text += to_text(*mission.errors);
   return text;
 }
@@ -171,10 +211,24 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
                     const std::vector<std::string>& files, const std::optional<Mission>& mission) {
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
-  text += row("path", formatted("%.2f m", path_length(run.final)));
+  text += row("path", formatted("%.2f %s", path_length(run.final), protocol.is_metric ? "m" : "units"));
   text += cost_rows(run, protocol.options.pace, resources);
   text += closing_rows(run, files);
   return text;
+}
+
+void require_poses(const MapRun& run, const MapProtocol& protocol) {
+  if (!run.causal.empty()) return;
+  const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;
+  if (!before.empty()) {
+    throw std::runtime_error("no frame was found in " + before +
+                             ": the recording may be of another place, or too different in light or viewpoint");
+  }
+  const std::string refusals = describe_refusals(count_frames(run.frames));
+  if (!refusals.empty()) {
+    throw std::runtime_error("no frame got a pose, for one camera begins a map by moving sideways: " + refusals);
+  }
+  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
 }
 
 }  // namespace byre::cli

@@ -14,6 +14,7 @@ namespace byre::cli {
 struct MapProtocol {
   std::string recording;
   RecordingFormat format = RecordingFormat::euroc;
+  CameraChoice camera = CameraChoice::stereo;
   FrameRange range;
   int frames_in_range = 0;
   MapRunOptions options;
@@ -21,6 +22,7 @@ struct MapProtocol {
   std::vector<std::string> recordings;  // of the whole map
   std::string offline;                  // the map of a mission; empty for none
   std::string program = "byre map";
+  bool is_metric = true;  // false for one camera that maps from nothing: lengths are in units of the map's own
 };
 
 // Everything known about the run: protocol, figures, and an array with an object for each frame, one a line. With a
@@ -31,5 +33,8 @@ std::string to_json(const MapRun& run, const MapProtocol& protocol, const Resour
 // A page for people, about the map, or with a mission about that. The files are those that were written.
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files, const std::optional<Mission>& mission = {});
+
+// Throws std::runtime_error, which says why, when no frame got a pose.
+void require_poses(const MapRun& run, const MapProtocol& protocol);
 
 }  // namespace byre::cli

@@ -57,6 +57,12 @@ class FrameThread {
     return finishing;
   }
 
+  double finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
+    const Stopwatch watch;
+    session_.finish_mission(options, hooks);
+    return watch.seconds();
+  }
+
   const Map& online() const { return session_.map().online(); }
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
@@ -129,13 +135,6 @@ std::string_view name_of(OfflinePolicy policy) {
   return "";
 }
 
-std::unique_ptr<Recording> open_stereo_recording(const std::filesystem::path& folder, const FrameRange& range) {
-  std::unique_ptr<Recording> recording = open_recording(folder, range);
-  if (recording->calibration().right) return recording;
-  throw InputError(folder.string(), "has no right camera: only stereo recordings can be mapped",
-                   "looked for mav0/cam1 (EuRoC) and image_1 (KITTI odometry)");
-}
-
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
   const Stopwatch watch;
@@ -158,8 +157,13 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
   }
   if (hooks.should_stop()) thread.hurry();
   thread.finish();
-  if (options.vocabulary && !options.offline && is_begun && !hooks.should_stop()) {
-    run.finishing = thread.finish_map(options.finish, {hooks.should_stop, hooks.before_finishing_step});
+  const FinishHooks finish_hooks{hooks.should_stop, hooks.before_finishing_step};
+  if (is_begun && !hooks.should_stop()) {
+    if (options.offline) {
+      run.mission_finishing_seconds = thread.finish_mission(options.finish, finish_hooks);
+    } else if (options.vocabulary) {
+      run.finishing = thread.finish_map(options.finish, finish_hooks);
+    }
   }
   take_over_result(thread, run);
   run.wall_seconds = watch.seconds();

@@ -69,6 +69,7 @@ struct MapRun {
   Trajectory odometry;                 // the smooth poses as published, in a frame of their own
   Map map{Origin::offline};            // as it is kept; of the keyframes made, others were found redundant
   std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
+  std::optional<double> mission_finishing_seconds;  // of a mission, of adjusting its online map as a whole
   std::vector<double> job_seconds;     // wall time of each mapping job
   std::vector<std::string> warnings;   // of the recording
   std::vector<double> lateness;        // live: seconds by which frames were fed too late, of those that were
@@ -82,10 +83,7 @@ struct MapRunHooks {
   std::function<void(const char* step)> before_finishing_step;
 };
 
-// A recording that run_map takes. Throws InputError when it cannot be opened or has no right camera.
-std::unique_ptr<Recording> open_stereo_recording(const std::filesystem::path& folder, const FrameRange& range);
-
-// Maps a stereo recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
+// Maps a recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
 // are left out. Goes on with the map before, an online copy, if there is one: it needs the vocabulary's words, and
 // options a vocabulary. Throws InputError when the calibration cannot be rectified.
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,

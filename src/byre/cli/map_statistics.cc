@@ -61,6 +61,7 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
     if (!frame.report) continue;
     counts.without_right_image += frame.has_right ? 0 : 1;
     count_events(*frame.report, counts);
+    if (frame.report->start_failure != TwoViewFailure::none) ++counts.refused_starts[frame.report->start_failure];
     const State before = std::exchange(state, frame.report->state);
     counts.with_pose += frame.report->map_from_body ? 1 : 0;
     counts.keyframes += frame.report->keyframe_added ? 1 : 0;

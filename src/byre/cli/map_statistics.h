@@ -2,6 +2,7 @@
 
 #include "byre/cli/map_run.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -34,9 +35,10 @@ struct FrameCounts {
   int lost = 0;    // frames in these episodes
   int resets = 0;  // how often a map was given up for a new one
   int relocalisations = 0;
-  int loops = 0;                       // found on the way
-  int corrections = 0;                 // of the whole map, taken over on the way
-  std::optional<int> frames_to_first;  // processed before the first with a pose; empty when none had one
+  int loops = 0;                                 // found on the way
+  int corrections = 0;                           // of the whole map, taken over on the way
+  std::optional<int> frames_to_first;            // processed before the first with a pose; empty when none had one
+  std::map<TwoViewFailure, int> refused_starts;  // frames with which one camera could not begin a map, by the reason
 
   double coverage() const { return frames > 0 ? static_cast<double>(with_pose) / frames : 0.0; }
 };

@@ -62,8 +62,8 @@ void judge_trust(const MapRun& run, MissionErrors& errors) {
   errors.longest_wrong_trust_s = longest_wrong_trust(run, errors.trusted);
 }
 
-std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Trajectory& truth) {
-  const auto error = absolute_trajectory_error(associate(estimate, truth, {}), Scale::fixed);
+std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Trajectory& truth, Scale scale) {
+  const auto error = absolute_trajectory_error(associate(estimate, truth, {}), scale);
   if (!error) return {};
   return errors_in_map(estimate, truth, {error->truth_from_estimate, 0});
 }
@@ -86,10 +86,10 @@ MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, c
   return errors;
 }
 
-MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth) {
+MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale) {
   MissionErrors errors;
-  errors.causal = errors_when_aligned(run.causal, truth);
-  errors.final = errors_when_aligned(run.final, truth);
+  errors.causal = errors_when_aligned(run.causal, truth, scale);
+  errors.final = errors_when_aligned(run.final, truth, scale);
   judge_trust(run, errors);
   return errors;
 }

@@ -32,7 +32,7 @@ MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajec
 // The same where that alignment is known.
 MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
 
-// Errors after alignment, of a run without an offline map.
-MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth);
+// Errors after alignment, of a run without an offline map; of one camera alone with its scale.
+MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale);
 
 }  // namespace byre::cli

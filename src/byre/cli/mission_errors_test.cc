@@ -53,7 +53,8 @@ MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Ve
 }
 
 TEST(MissionErrors, AreThoseInTheFrameOfTheMapWhateverTheMission) {
-  const MissionErrors errors = mission_errors(run_with_errors({0.1, 0.1, 0.1, 0.1}), offline_map(), truth(), truth());
+  const MissionErrors errors =
+      mission_errors(run_with_errors({0.1, 0.1, 0.1, 0.1}), offline_map(), truth(), truth());
   EXPECT_TRUE(errors.in_map_frame);
   EXPECT_EQ(errors.alignment_keyframes, 4);
   EXPECT_NEAR(position_statistics(errors.causal).rmse, 0.1, 1e-9) << "a constant error is not aligned away";
@@ -94,11 +95,12 @@ TEST(MissionErrors, AreNoneWithoutTruthAtTheRightTime) {
 }
 
 TEST(AlignedErrors, AlignTheRunItself) {
-  const MissionErrors errors = aligned_errors(run_with_errors({0.0, 0.0, 0.0, 0.0, 0.0}), truth());
+  const MissionErrors errors = aligned_errors(run_with_errors({0.0, 0.0, 0.0, 0.0, 0.0}), truth(), Scale::fixed);
   EXPECT_FALSE(errors.in_map_frame);
   EXPECT_NEAR(position_statistics(errors.causal).max, 0.0, 1e-9);
   EXPECT_THAT(errors.final, SizeIs(5));
-  EXPECT_THAT(aligned_errors(run_with_errors({0.0, 0.0}), truth()).causal, SizeIs(0)) << "too few to align";
+  EXPECT_THAT(aligned_errors(run_with_errors({0.0, 0.0}), truth(), Scale::fixed).causal, SizeIs(0))
+      << "too few to align";
 }
 
 }  // namespace

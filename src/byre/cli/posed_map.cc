@@ -41,7 +41,8 @@ std::string to_text(const PosedRun& run, const MapOptions& options) {
 
 ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range);
+  const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range, options.open);
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   limit_image_threads(1);
   const InterruptCatcher interrupt(options.outputs());
   const PosedRun run = run_with_progress(*recording, options, interrupt);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -15,9 +16,12 @@ namespace byre::cli {
 class RenderedFixture {
  public:
   RenderedFixture(const std::string& name, int frames, double frame_rate_hz)
-      : folder_(std::filesystem::path(testing::TempDir()) / (name + "." + std::to_string(getpid()))) {
-    const Calibration calibration = euroc_like_calibration(4);
-    truth_ = figure_eight_trajectory(frames, frame_rate_hz, 3.0, 0.012 * frames, calibration.body_from_left);
+      : RenderedFixture(name, euroc_like_calibration(4),
+                        figure_eight_trajectory(frames, frame_rate_hz, 3.0, 0.012 * frames,
+                                                euroc_like_calibration(4).body_from_left)) {}
+  RenderedFixture(const std::string& name, const Calibration& calibration, Trajectory truth)
+      : folder_(std::filesystem::path(testing::TempDir()) / (name + "." + std::to_string(getpid()))),
+        truth_(std::move(truth)) {
     write_euroc_recording(RenderedRoom({}), calibration, truth_, folder_, {});
   }
   ~RenderedFixture() { std::filesystem::remove_all(folder_); }

@@ -6,6 +6,7 @@
 #include "byre/cli/output_options.h"
 #include "byre/cli/run_options.h"
 #include "byre/cli/run_with_progress.h"
+#include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
@@ -48,6 +49,7 @@ MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
   protocol.program = "byre run";
   protocol.recording = options.recording.string();
   protocol.format = guess_format(options.recording);
+  protocol.camera = camera_of(recording, options.open);
   protocol.range = options.range;
   protocol.frames_in_range = recording.size();
   protocol.options.pace = options.pace;
@@ -80,21 +82,24 @@ MapRun run_and_log(Recording& recording, const MapRunOptions& run_options, const
   return run;
 }
 
-Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth) {
+Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth,
+              const ScaledRecording& recording) {
   Mission mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
   if (!truth) return mission;
   mission.errors = options.offline ? mission_errors(run, options.offline->map(), truth->of_map, truth->of_frames)
-                                   : aligned_errors(run, truth->of_frames);
+                                   : aligned_errors(run, recording.path_of(truth->of_frames),
+                                                    recording.is_metric ? Scale::fixed : Scale::free);
   return mission;
 }
 
-void save_online_map(const Map& map, const SourceRecording& source, const Vocabulary& vocabulary,
-                     const fs::path& path) {
+void save_online_map(const Map& map, const RunOptions& options, const ScaledRecording& recording,
+                     const Vocabulary& vocabulary) {
   StoredMap stored;
   stored.map = map;
-  stored.recordings = {source};
-  save_for_use(std::move(stored), vocabulary, "", path);
+  stored.recordings = {describe_source(options.recording, *recording.recording)};
+  stored.scale = recording.is_metric ? MapScale::metric : MapScale::unknown;
+  save_for_use(std::move(stored), vocabulary, "", *options.online_map);
 }
 
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol, const Mission& mission,
@@ -105,39 +110,31 @@ void write_results(const RunOptions& options, const MapRun& run, const MapProtoc
   if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
 }
 
-void require_poses(const MapRun& run, const RunOptions& options) {
-  if (!run.causal.empty()) return;
-  if (options.map) {
-    throw std::runtime_error("no frame was found in " + options.map->string() +
-                             ": the recording may be of another place, or too different in light or viewpoint");
-  }
-  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
-}
-
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
-  const std::unique_ptr<Recording> recording = open_stereo_recording(options.recording, options.range);
+  const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
+  if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
   const std::optional<Truth> truth = load_truths(options);
-  const MapProtocol protocol = protocol_of(options, *recording);
+  MapProtocol protocol = protocol_of(options, *opened.recording);
+  protocol.is_metric = opened.is_metric;
 
   limit_image_threads(1);
   const InterruptCatcher interrupt(options.outputs());
-  MapRun run = run_and_log(*recording, protocol.options, options, interrupt);
+  MapRun run = run_and_log(*opened.recording, protocol.options, options, interrupt);
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
   }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (options.online_map) {
-    save_online_map(run.map, describe_source(options.recording, *recording), *protocol.options.vocabulary,
-                    *options.online_map);
+    save_online_map(run.map, options, opened, *protocol.options.vocabulary);
   }
   const ResourceUse resources = resources_used_so_far();
-  const Mission mission = judge(run, protocol.options, truth);
+  const Mission mission = judge(run, protocol.options, truth, opened);
   write_results(options, run, protocol, mission, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
   if (interrupt.caught()) return ExitCode::interrupted;
-  require_poses(run, options);
+  require_poses(run, protocol);
   return ExitCode::done;
 }
 

@@ -2,6 +2,7 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/open_options.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
 
@@ -20,6 +21,7 @@ constexpr const char* kFooter = R"(Examples:
   byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
   byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
   byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
+  byre run evening_round --map barn.byre --camera left --events events.jsonl
   byre run evening_round --truth evening_round --stats without_map.json
 
 With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
@@ -31,10 +33,7 @@ that one's truth too (--map-truth). Ctrl-C stops after the current frame and sti
 is 130. Exit code 1 when no frame got a pose. docs/mission.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
-  command
-      .add_option("RECORDING", options.recording, "Folder of a stereo recording, as EuRoC or KITTI odometry has them")
-      ->type_name("FOLDER")
-      ->required();
+  command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
   CLI::Option* const map =
       command.add_option("--map", options.map, "The offline map of the mission (none: plain SLAM)")->type_name("MAP");
   command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
@@ -122,6 +121,7 @@ std::vector<fs::path> RunOptions::outputs() const {
 void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
+  declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
   declare_tracking(command, options.track);

@@ -26,6 +26,7 @@ struct RunOptions {
   double time_offset_s = 0.0;                       // added to the time stamps of both
   std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
   FrameRange range;
+  OpenOptions open;  // how to take the recording
   Pace pace = Pace::paced;
   TrackOptions track;
   bool quiet = false;

@@ -19,8 +19,8 @@ SourceRecording describe_source(const fs::path& folder, const Recording& recordi
 StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
   StoredMap stored = load_map(path);
   if (stored.scale != MapScale::metric) {
-    throw InputError(path.string(), "has no metric scale, so stereo images cannot be compared with it",
-                     "import the model with --scale, the length of its unit in metres");
+    throw InputError(path.string(), "has no metric scale, so nothing can be measured on it",
+                     "give it one: byre scale, or --scale when importing a model");
   }
   if (stored.map.keyframe_count() == 0) throw InputError(path.string(), "holds no keyframes", "map a recording first");
   add_words(stored, vocabulary);

@@ -1,31 +1,20 @@
 #include "byre/cli/vocabulary_images.h"
 
 #include "byre/dataset/image_file.h"
+#include "byre/dataset/image_names.h"
 #include "byre/input/input_error.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <string>
-#include <string_view>
 
 namespace byre::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_image_name(const fs::path& path) {
-  constexpr std::array<std::string_view, 8> kExtensions = {".png", ".jpg", ".jpeg", ".bmp",
-                                                           ".pgm", ".ppm", ".tif",  ".tiff"};
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
-}
-
-std::vector<fs::path> images_in(const fs::path& folder) {
+std::vector<fs::path> images_by_name(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && is_image_name(entry.path())) images.push_back(entry.path());
+    if (entry.is_regular_file() && has_image_name(entry.path())) images.push_back(entry.path());
   }
   if (images.empty()) throw InputError(folder.string(), "holds no images", "name the folder they are in");
   std::ranges::sort(images);
@@ -54,7 +43,7 @@ std::vector<fs::path> find_images(std::span<const fs::path> files_and_folders) {
       images.push_back(path);
       continue;
     }
-    const std::vector<fs::path> found = images_in(path);
+    const std::vector<fs::path> found = images_by_name(path);
     images.insert(images.end(), found.begin(), found.end());
   }
   return images;

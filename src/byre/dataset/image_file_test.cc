@@ -28,6 +28,16 @@ TEST_F(ReadImage, ReadsJpegAndTurnsColourIntoGrey) {
   EXPECT_EQ(colour->pixels, std::vector<std::uint8_t>(4, 50));
 }
 
+TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
+  cv::imwrite((folder_ / "deep.png").string(), cv::Mat(2, 3, CV_16U, cv::Scalar(0x50A0)));
+  cv::imwrite((folder_ / "clear.png").string(), cv::Mat(2, 3, CV_8UC4, cv::Scalar(90, 90, 90, 10)));
+  const std::optional<Image> deep = read_image(folder_ / "deep.png");
+  const std::optional<Image> clear = read_image(folder_ / "clear.png");
+  ASSERT_TRUE(deep && clear);
+  EXPECT_NEAR(deep->pixels.front(), 0x50, 1);
+  EXPECT_EQ(clear->pixels, std::vector<std::uint8_t>(6, 90));
+}
+
 TEST_F(ReadImage, IsEmptyForWhatIsNoWholeImage) {
   write_image("cut.png", 640, 480, 90);
   write_image("cut.jpg", 640, 480, 90);

@@ -85,23 +85,28 @@ std::vector<fs::path> image_paths(const fs::path& folder, std::size_t count) {
   return paths;
 }
 
+PlacedCalibration read_projections(const fs::path& file, const Image& image, bool stereo) {
+  const Projection projection = read_projection(file, "P0");
+  PlacedCalibration calibration{{}, file.string() + ": P0", file.string() + ": P1"};
+  calibration.cameras.left = pinhole(projection, image, calibration.left_size);
+  if (stereo) calibration.cameras.right = read_partner(file, projection, image);
+  return calibration;
+}
+
 }  // namespace
 
-RecordingIndex index_kitti(const fs::path& folder) {
-  const fs::path calibration = folder / "calib.txt";
-  const Projection projection = read_projection(calibration, "P0");
+RecordingIndex index_kitti(const fs::path& folder, const OpenOptions& options) {
   const std::vector<Timestamp> times = read_times(folder / "times.txt");
   const std::vector<fs::path> left = image_paths(folder / "image_0", times.size());
-  const bool stereo = fs::is_directory(folder / "image_1");
+  const bool stereo = options.camera != CameraChoice::left && fs::is_directory(folder / "image_1");
 
   RecordingIndex index;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    index.frames.push_back({times[i], left[i], std::nullopt});
+    index.frames.push_back({times[i], left[i]});
     if (stereo) index.frames.back().right = image_path(folder / "image_1", i);
   }
-  const Image image = first_readable(left);
-  index.calibration.left = pinhole(projection, image, calibration.string() + ": P0");
-  if (stereo) index.calibration.right = read_partner(calibration, projection, image);
+  index.calibration = options.calibration ? calibration_for(folder, options)
+                                          : read_projections(folder / "calib.txt", first_readable(left), stereo);
   return index;
 }
 

@@ -1,12 +1,14 @@
 #include "byre/dataset/recording.h"
 
+#include "byre/dataset/calibration_file.h"
+#include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/recording_index.h"
+#include "byre/dataset/video.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/input/input_error.h"
 
 #include <cassert>
-#include <cstdio>
 #include <utility>
 
 namespace byre {
@@ -16,11 +18,11 @@ namespace fs = std::filesystem;
 
 class ImageFiles final : public Recording {
  public:
-  explicit ImageFiles(RecordingIndex index) : index_(std::move(index)) {
+  explicit ImageFiles(RecordingIndex index) : index_(std::move(index)), warnings_(index_.warnings) {
     for (const FrameFiles& frame : index_.frames) times_.push_back(frame.time);
   }
 
-  const Calibration& calibration() const override { return index_.calibration; }
+  const Calibration& calibration() const override { return index_.calibration.cameras; }
   const std::vector<Timestamp>& times() const override { return times_; }
   std::optional<ImageFrame> read(int index) override;
   const std::vector<std::string>& warnings() const override { return warnings_; }
@@ -37,14 +39,14 @@ class ImageFiles final : public Recording {
 std::optional<ImageFrame> ImageFiles::read(int index) {
   assert(index >= 0 && index < size());
   const FrameFiles& files = index_.frames[static_cast<std::size_t>(index)];
-  std::optional<Image> left = read_calibrated(files.left, index_.calibration.left);
+  std::optional<Image> left = read_calibrated(files.left, calibration().left);
   if (!left) return std::nullopt;
   return ImageFrame{files.time, std::move(*left), read_right(files)};
 }
 
 std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
-  if (!index_.calibration.right) return std::nullopt;
-  if (files.right) return read_calibrated(*files.right, index_.calibration.right->camera);
+  if (!calibration().right) return std::nullopt;
+  if (files.right) return read_calibrated(*files.right, calibration().right->camera);
   warnings_.push_back(files.left.string() + ": has no right image of the same time");
   return std::nullopt;
 }
@@ -61,28 +63,35 @@ std::optional<Image> ImageFiles::read_calibrated(const fs::path& path, const Cam
   return std::nullopt;
 }
 
-bool is_within(const FrameRange& range, int number, double seconds) {
-  if (number < range.first || (range.last && number >= *range.last)) return false;
-  return (!range.start_s || seconds >= *range.start_s) && (!range.end_s || seconds < *range.end_s);
-}
-
-std::string describe(const std::vector<FrameFiles>& frames) {
-  const double span = to_seconds(frames.back().time - frames.front().time);
-  return "it holds " + std::to_string(frames.size()) + " frames in " + std::to_string(span) + " s";
-}
-
-// Precondition: frames is not empty.
-std::vector<FrameFiles> select(const std::vector<FrameFiles>& frames, const FrameRange& range, const fs::path& folder) {
-  if (range.stride < 1) throw InputError(folder.string(), "the stride of frames must be at least 1");
+// With the frames that are in range.
+RecordingIndex select(RecordingIndex index, const FrameRange& range, const fs::path& path) {
+  std::vector<Timestamp> times;
+  for (const FrameFiles& frame : index.frames) times.push_back(frame.time);
   std::vector<FrameFiles> selected;
-  int within = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double seconds = to_seconds(frames[i].time - frames.front().time);
-    if (!is_within(range, static_cast<int>(i), seconds)) continue;
-    if (within++ % range.stride == 0) selected.push_back(frames[i]);
+  for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(index.frames[i]);
+  index.frames = std::move(selected);
+  return index;
+}
+
+// Throws InputError where the first images that can be read are of another size than calibrated.
+void require_calibrated_sizes(const RecordingIndex& index) {
+  std::vector<fs::path> left, right;
+  for (const FrameFiles& frame : index.frames) {
+    left.push_back(frame.left);
+    if (frame.right) right.push_back(*frame.right);
   }
-  if (selected.empty()) throw InputError(folder.string(), "no frame lies in the range asked for", describe(frames));
-  return selected;
+  const auto& [cameras, left_size, right_size] = index.calibration;
+  const Image first_left = first_readable(left);
+  require_calibrated_size(first_left.width, first_left.height, cameras.left, left_size);
+  if (!cameras.right || right.empty()) return;
+  const Image first_right = first_readable(right);
+  require_calibrated_size(first_right.width, first_right.height, cameras.right->camera, right_size);
+}
+
+void require_untimed(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
+  if (!options.frame_rate_hz || format == RecordingFormat::images || format == RecordingFormat::video) return;
+  throw InputError(path.string(), "has time stamps, so no frame rate can be given",
+                   "leave it out, or name the folder of the images");
 }
 
 }  // namespace
@@ -95,25 +104,95 @@ Image first_readable(const std::vector<fs::path>& files) {
                    "check that the folder is complete");
 }
 
-RecordingFormat guess_format(const fs::path& folder) {
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "is no folder", "give the folder of a recording");
-  if (find_mav_folder(folder)) return RecordingFormat::euroc;
-  if (fs::exists(folder / "calib.txt") || fs::is_directory(folder / "image_0")) return RecordingFormat::kitti;
-  throw InputError(folder.string(), "holds no recording that byre knows",
-                   "looked for mav0/cam0 or cam0 (EuRoC) and calib.txt or image_0 (KITTI odometry)");
+PlacedCalibration calibration_for(const fs::path& folder, const OpenOptions& options) {
+  const std::optional<fs::path> file = options.calibration ? options.calibration : find_calibration(folder);
+  if (file) return {read_calibration(*file), file->string(), file->string()};
+  throw InputError(folder.empty() ? "." : folder.string(), "holds no calibration of the camera",
+                   "name one (--calibration FILE), or put it there as calibration.yaml, camera.yaml or sensor.yaml");
 }
 
-std::unique_ptr<Recording> open_recording(const fs::path& folder, const FrameRange& range) {
-  RecordingIndex index = guess_format(folder) == RecordingFormat::euroc ? index_euroc(folder) : index_kitti(folder);
-  index.frames = select(index.frames, range, folder);
+std::string_view to_string(RecordingFormat format) {
+  switch (format) {
+    case RecordingFormat::euroc:
+      return "euroc";
+    case RecordingFormat::kitti:
+      return "kitti";
+    case RecordingFormat::tum:
+      return "tum";
+    case RecordingFormat::images:
+      return "images";
+    case RecordingFormat::video:
+      return "video";
+  }
+  return "";
+}
+
+std::string_view to_string(CameraChoice choice) {
+  switch (choice) {
+    case CameraChoice::stereo:
+      return "stereo";
+    case CameraChoice::left:
+      return "left";
+    case CameraChoice::right:
+      return "right";
+  }
+  return "";
+}
+
+RecordingFormat guess_format(const fs::path& path) {
+  if (is_video_file(path)) return RecordingFormat::video;
+  if (!fs::is_directory(path)) {
+    throw InputError(path.string(), "is no folder and no video", "give the folder of a recording, or a video file");
+  }
+  if (find_mav_folder(path)) return RecordingFormat::euroc;
+  if (fs::exists(path / "rgb.txt")) return RecordingFormat::tum;
+  if (fs::exists(path / "calib.txt") || fs::is_directory(path / "image_0")) return RecordingFormat::kitti;
+  if (holds_images(path)) return RecordingFormat::images;
+  throw InputError(path.string(), "holds no recording that byre knows",
+                   "looked for mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
+                   "and images, in it or in left and right");
+}
+
+RecordingIndex index_recording(const fs::path& path, const OpenOptions& options) {
+  const RecordingFormat format = guess_format(path);
+  require_untimed(format, path, options);
+  switch (format) {
+    case RecordingFormat::euroc:
+      return index_euroc(path, options);
+    case RecordingFormat::kitti:
+      return index_kitti(path, options);
+    case RecordingFormat::tum:
+      return index_tum(path, options);
+    case RecordingFormat::images:
+      return index_images(path, options);
+    case RecordingFormat::video:
+      break;
+  }
+  throw InputError(path.string(), "is a video, which has no image files", "extract its images into a folder");
+}
+
+std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
+  if (is_video_file(path)) return open_video(path, range, options);
+  RecordingIndex index = index_recording(path, options);
+  const bool is_pair = has_pairs(index);
+  index = choose_camera(select(std::move(index), range, path), is_pair, options.camera, path);
+  require_calibrated_sizes(index);
   return std::make_unique<ImageFiles>(std::move(index));
 }
 
-std::optional<fs::path> find_ground_truth(const fs::path& folder) {
-  if (guess_format(folder) == RecordingFormat::euroc) return find_euroc_ground_truth(folder);
-  const fs::path sequence = fs::canonical(folder);
-  const fs::path poses = sequence.parent_path().parent_path() / "poses" / (sequence.filename().string() + ".txt");
-  return fs::exists(poses) ? std::optional(poses) : std::nullopt;
+CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {
+  return recording.calibration().right ? CameraChoice::stereo : options.camera.value_or(CameraChoice::left);
+}
+
+std::optional<fs::path> find_ground_truth(const fs::path& path) {
+  const RecordingFormat format = guess_format(path);
+  if (format == RecordingFormat::euroc) return find_euroc_ground_truth(path);
+  fs::path truth = path / "groundtruth.txt";
+  if (format == RecordingFormat::kitti) {
+    const fs::path sequence = fs::canonical(path);
+    truth = sequence.parent_path().parent_path() / "poses" / (sequence.filename().string() + ".txt");
+  }
+  return fs::exists(truth) ? std::optional(truth) : std::nullopt;
 }
 
 }  // namespace byre

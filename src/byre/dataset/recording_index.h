@@ -1,10 +1,12 @@
 #pragma once
 
+#include "byre/dataset/recording.h"
 #include "byre/features/image.h"
 #include "byre/geometry/camera.h"
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace byre {
@@ -13,24 +15,46 @@ namespace byre {
 struct FrameFiles {
   Timestamp time{};
   std::filesystem::path left;
-  std::optional<std::filesystem::path> right;
+  std::optional<std::filesystem::path> right{};
 };
 
-// What a recording consists of, before any image is wanted.
+// A calibration and the places where it says the size of the images, as InputError names them.
+struct PlacedCalibration {
+  Calibration cameras;
+  std::string left_size;
+  std::string right_size;
+};
+
+// What a recording of image files consists of, before any image is wanted. The calibration may be of a pair though the
+// frames are of one camera, or the other way round; choose_camera settles that.
 struct RecordingIndex {
-  Calibration calibration;
+  PlacedCalibration calibration;
   std::vector<FrameFiles> frames;  // strictly increasing in time
+  std::vector<std::string> warnings{};
 };
 
 // The folder that holds cam0 in an EuRoC recording, given it or the one above; empty when there is none.
 std::optional<std::filesystem::path> find_mav_folder(const std::filesystem::path& folder);
 
-// Both throw InputError as open_recording says. Images of the two EuRoC cameras belong together when their time stamps
-// differ by 2 ms at most; KITTI's by their number.
-RecordingIndex index_euroc(const std::filesystem::path& folder);
-RecordingIndex index_kitti(const std::filesystem::path& folder);
+// Whether the folder holds image files, or folders left and right that do.
+bool holds_images(const std::filesystem::path& folder);
+
+// All throw InputError as open_recording says. Images of two cameras belong together when their time stamps differ by
+// 2 ms at most; KITTI's by their number. The right camera is left out where the left one alone is asked for.
+RecordingIndex index_euroc(const std::filesystem::path& folder, const OpenOptions& options);
+RecordingIndex index_kitti(const std::filesystem::path& folder, const OpenOptions& options);
+RecordingIndex index_tum(const std::filesystem::path& folder, const OpenOptions& options);
+RecordingIndex index_images(const std::filesystem::path& folder, const OpenOptions& options);
+
+// Of a recording of image files, all frames and cameras. Throws InputError also for a video, which has none.
+RecordingIndex index_recording(const std::filesystem::path& path, const OpenOptions& options);
+
+// The calibration of the options, or else the one in the folder. Throws InputError when there is neither.
+PlacedCalibration calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
 
 // The first image that can be decoded; throws InputError naming the folder when there is none.
 Image first_readable(const std::vector<std::filesystem::path>& files);
+
+inline constexpr double kAssumedFrameRate = 30.0;  // Hz, where nothing says which
 
 }  // namespace byre

@@ -57,6 +57,11 @@ Camera equidistant() {
           {0.0034823, 0.00071503, -0.0020532, 0.00020293, 0.0}};
 }
 
+// A lens that sees more than half of all directions: 210 degrees from side to side.
+Camera beyond_half_space() {
+  return {CameraModel::equidistant, 320, 240, 87.3, 87.3, 159.5, 119.5, {0.001, -0.0005, 0.0, 0.0, 0.0}};
+}
+
 // Centred at right_in_left, and turned by a rotation vector.
 Pose right_from_left(const Eigen::Vector3d& right_in_left, const Eigen::Vector3d& turn = Eigen::Vector3d::Zero()) {
   const Pose left_from_right{rotation_exp(turn), right_in_left};
@@ -85,6 +90,8 @@ std::vector<Case> distorted_pairs() {
       {"unequal", with_body({radial_tangential_left(), StereoPartner{equidistant(), pose}, Pose{}})},
       {"pinhole", with_body({pinhole(), StereoPartner{pinhole(), pose}, Pose{}})},
       {"mono", with_body({radial_tangential_left(), std::nullopt, Pose{}})},
+      {"mono_fisheye", with_body({equidistant(), std::nullopt, Pose{}})},
+      {"mono_beyond_half_space", with_body({beyond_half_space(), std::nullopt, Pose{}})},
   };
 }
 
@@ -225,6 +232,62 @@ TEST(Rectifier, KeepsAWideFieldAboutTheAxisWhereItIsCropped) {
   const Rig rig = Rectifier({equidistant(), StereoPartner{equidistant(), pose}, Pose{}}).rig();
   EXPECT_NEAR(rig.cx, 0.5 * (rig.width - 1), 1.0);
   EXPECT_NEAR(rig.cy, 0.5 * (rig.height - 1), 1.0);
+}
+
+TEST(Rectifier, GivesAWideLensAFocalLengthThatNeitherBlursNorCropsTooMuch) {
+  for (const Camera& camera : {equidistant(), beyond_half_space()}) {
+    const Rig rig = Rectifier({camera, std::nullopt, Pose{}}).rig();
+    EXPECT_GE(rig.focal, 0.5 * camera.fx) << "the centre would be coarser than half";
+    const double field = 2.0 * std::atan(0.5 * (rig.width - 1) / rig.focal) * 180.0 / std::numbers::pi;
+    EXPECT_GT(field, 100.0) << "degrees of the horizon";
+    EXPECT_LT(field, 150.0) << "degrees of the horizon";
+  }
+}
+
+// A white half-plane z = 1, x cos(turn) + y sin(turn) > offset, as the camera sees it; its border is soft.
+cv::Mat image_of_half_plane(const Camera& camera, double turn, double offset) {
+  constexpr double kSoftness = 0.04;
+  cv::Mat image = cv::Mat::zeros(camera.height, camera.width, CV_8U);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const auto bearing = camera.bearing({double(u), double(v)});
+      if (!bearing || bearing->z() < 0.05) continue;
+      const Eigen::Vector2d on_plane = bearing->head<2>() / bearing->z();
+      const double beyond = on_plane.x() * std::cos(turn) + on_plane.y() * std::sin(turn) - offset;
+      image.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(127.5 + 127.5 * beyond / kSoftness);
+    }
+  }
+  return image;
+}
+
+// Where a row of the image turns from dark to bright.
+std::optional<double> crossing(const cv::Mat& image, int row) {
+  constexpr double kMiddle = 127.5;
+  for (int u = 1; u < image.cols; ++u) {
+    const double before = image.at<std::uint8_t>(row, u - 1), after = image.at<std::uint8_t>(row, u);
+    if (before < kMiddle && after >= kMiddle) return u - 1 + (kMiddle - before) / (after - before);
+  }
+  return std::nullopt;
+}
+
+TEST(Rectifier, ShowsStraightLinesOfAFisheyeStraight) {
+  const Camera camera = equidistant();
+  const Rectifier rectifier({camera, std::nullopt, Pose{}});
+  const Rig& rig = rectifier.rig();
+  for (const double offset : {-0.8, 0.1, 0.7}) {
+    constexpr double kLean = 0.2;  // radians
+    const cv::Mat rectified = rectifier.left(image_of_half_plane(camera, kLean, offset));
+    int rows = 0;
+    for (int row = rig.height / 6; row < rig.height * 5 / 6; ++row) {
+      const double y = (row - rig.cy) / rig.focal;
+      const double expected = rig.cx + rig.focal * (offset - y * std::sin(kLean)) / std::cos(kLean);
+      const std::optional<double> found = crossing(rectified, row);
+      ASSERT_TRUE(found) << row;
+      EXPECT_NEAR(*found, expected, 0.25) << row;
+      ++rows;
+    }
+    EXPECT_GT(rows, 100);
+  }
 }
 
 TEST(Rectifier, DoesNotTouchTheImageItIsGiven) {

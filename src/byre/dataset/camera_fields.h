@@ -1,0 +1,19 @@
+#pragma once
+
+#include "byre/dataset/calibration_fields.h"
+#include "byre/geometry/camera.h"
+
+#include <string>
+
+namespace byre {
+
+// The camera of one file or group, as EuRoC and Kalibr describe it: resolution, camera_model, intrinsics,
+// distortion_model, and coefficients in a field that each calls its own way. Throws InputError, naming the field, for a
+// model that byre does not know, and for what is missing or makes no sense.
+Camera read_camera_fields(const CalibrationFields& fields, const std::string& coefficients);
+
+// The camera of a file as OpenCV's calibration programs and ROS write it: image_width, image_height, camera_matrix and
+// distortion_coefficients, an equidistant lens where distortion_model or fisheye_model says so. Throws likewise.
+Camera read_opencv_camera(const CalibrationFields& fields);
+
+}  // namespace byre
