@@ -1,0 +1,126 @@
+// One camera alone: a real recording mapped from nothing, and a turn on the spot, which tells one camera no distances,
+// rendered here.
+
+#include "mapped_recording.h"
+
+#include "byre/features/extract.h"
+#include "byre/place/map_words.h"
+#include "byre/place/vocabulary.h"
+#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/simulated_trajectory.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::Each;
+
+constexpr double kFrameRateHz = 20.0;
+constexpr int kTurnFrames = 200;  // ten seconds
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
+  return loaded;
+}
+
+Calibration left_alone(Calibration calibration) {
+  calibration.right.reset();
+  return calibration;
+}
+
+Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), std::move(offline)};
+}
+
+std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
+  std::vector<bool> result;
+  for (const FrameReport& report : reports) result.push_back(report.map_from_body.has_value());
+  return result;
+}
+
+TEST(OneCameraInMh01, BeginsWithinTwoSecondsAndFollowsEveryFrameToMillimetres) {
+  const auto folder = find_recording("euroc/MH_01_easy");
+  if (!folder) GTEST_SKIP() << missing("euroc/MH_01_easy");
+  const auto recording = open_recording(*folder, {}, {.camera = CameraChoice::left});
+  Calibration calibration = recording->calibration();
+  const Pose body_from_camera = std::exchange(calibration.body_from_left, {});
+  Extractor extractor(calibration, {});
+  Session session = session_of(extractor.rig());
+  std::vector<FrameReport> reports;
+  for (int i = 0; i < recording->size(); ++i) {
+    reports.push_back(session.process(extractor.extract(recording->read(i).value()).frame));
+  }
+  session.finish();
+  const std::vector<bool> posed = has_pose(reports);
+  const auto first = std::ranges::find(posed, true);
+  EXPECT_LE(static_cast<double>(first - posed.begin()) / kFrameRateHz, 2.0);
+  EXPECT_EQ(std::count(first, posed.end(), false), 0);
+  Trajectory truth = truth_of(*folder);
+  for (StampedPose& sample : truth) sample.world_from_body = sample.world_from_body * body_from_camera;
+  const auto error = absolute_trajectory_error(associate(session.final_trajectory(), truth, {}), Scale::free);
+  ASSERT_TRUE(error);
+  EXPECT_LE(error->translation.rmse, 0.008);
+}
+
+// Once around about the left camera's own centre, in a room of its own; begun so many seconds later, so that no image
+// of one turn is that of another.
+class TurnOnTheSpot : public testing::Test {
+ protected:
+  static Trajectory turn(double later_s) {
+    Trajectory truth = turning_in_place_trajectory(kTurnFrames, kFrameRateHz, 1.0, kCalibration.body_from_left);
+    for (StampedPose& sample : truth) sample.time += from_seconds(later_s);
+    return truth;
+  }
+
+  static std::vector<FrameReport> run(Session& session, const Calibration& calibration, const Trajectory& truth) {
+    Extractor extractor(calibration, {});
+    const RenderedCameras cameras(calibration);
+    std::vector<FrameReport> reports;
+    for (const auto& [time, world_from_body] : truth) {
+      const ImageFrame images = kRoom.render(cameras, world_from_body, time);
+      reports.push_back(session.process(extractor.extract(images).frame));
+    }
+    return reports;
+  }
+
+  static Rig rig_of(const Calibration& calibration) { return Extractor(calibration, {}).rig(); }
+
+  static inline const Calibration kCalibration = euroc_like_calibration(2);
+  static inline const RenderedRoom kRoom{RenderedRoomOptions{}};
+};
+
+TEST_F(TurnOnTheSpot, BeginsNoMapAndSaysWhy) {
+  Session session = session_of(rig_of(left_alone(kCalibration)));
+  const auto reports = run(session, left_alone(kCalibration), turn(0.0));
+  EXPECT_THAT(has_pose(reports), Each(false));
+  EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), kTurnFrames / 2);
+}
+
+TEST_F(TurnOnTheSpot, IsFollowedFrameByFrameOnAStereoMap) {
+  Session mapping = session_of(rig_of(kCalibration));
+  run(mapping, kCalibration, turn(0.0));
+  mapping.finish();
+  StoredMap stored;
+  stored.map = offline_copy(mapping.map().online());
+  add_words(stored, vocabulary());
+  Session mission = session_of(rig_of(left_alone(kCalibration)),
+                               std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary()));
+  const Trajectory truth = turn(100.025);
+  const auto reports = run(mission, left_alone(kCalibration), truth);
+  EXPECT_THAT(has_pose(reports), Each(true));
+  // The map's frame is the body at its first frame.
+  const Pose truth_from_map = turn(0.0).front().world_from_body;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    if (!reports[i].map_from_body) continue;
+    const Pose estimated = truth_from_map * *reports[i].map_from_body;
+    EXPECT_LT((estimated.translation - truth[i].world_from_body.translation).norm(), 0.03) << "frame " << i;
+  }
+}
+
+}  // namespace
+}  // namespace byre
