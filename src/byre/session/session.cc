@@ -94,12 +94,14 @@ void Session::take_over_results(const std::optional<FinishedJob>& finished, Fram
 
 void Session::take_over(const FinishedJob& job) {
   apply(job.delta, online_);
+  local_points_of_.reset();
   forget_places(job.delta);
 }
 
 bool Session::take_over_correction() {
   if (!global_.is_waiting() || !executor_->idle()) return false;
   forget_places(global_.apply(online_));
+  local_points_of_.reset();
   return true;
 }
 
@@ -108,6 +110,7 @@ bool Session::correct_online() {
   const WaitingCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   apply(correction_of(online_, correction.first_keyframe, correction.offline_from_online, correction.shape), online_);
   segments_[segment_].is_registered = true;
+  local_points_of_.reset();
   offset_from_online_.reset();
   if (last_keyframe_ && pending_.empty()) pending_.push_back(*last_keyframe_);
   return true;
@@ -188,6 +191,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
   index_place(id);
   last_keyframe_ = id;
   online_reference_ = id;
+  local_points_of_.reset();
   frames_since_keyframe_ = 0;
   reference_.reset();
   pending_.push_back(id);

@@ -162,6 +162,7 @@ class Session {
   void settle_loop(const LoopHypothesis& loop);
 
   Located locate(const Frame& frame);
+  const std::vector<PointId>& local_online_points();
   std::optional<HybridTrack> find_pose(const Frame& frame);
   std::optional<HybridTrack> track_from(const Frame& frame, const Pose& predicted, const std::vector<PointId>& online);
   std::optional<HybridTrack> relocalise(const Frame& frame);
@@ -232,6 +233,8 @@ class Session {
   std::optional<KeyframeId> last_keyframe_;
   std::uint32_t last_held_keyframe_ = 0;  // number of the newest online keyframe when offline points last held the pose
   std::optional<KeyframeId> online_reference_;  // whose points are looked for
+  std::vector<PointId> local_points_;           // online ones around a keyframe,
+  std::optional<KeyframeId> local_points_of_;   // this one; empty when the map has changed since
   int frames_since_keyframe_ = 0;
   int last_inliers_ = 0;                 // in the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe

@@ -75,15 +75,24 @@ std::optional<HybridTrack> Session::track_from(const Frame& frame, const Pose& p
   }
   std::vector<PointId> candidates;
   if (is_registered()) candidates = mission_->candidates(predicted);
-  std::ranges::copy_if(online, std::back_inserter(candidates), [](PointId id) { return id.origin == Origin::online; });
+  candidates.insert(candidates.end(), online.begin(), online.end());
   return track_hybrid(frame, predicted, rig_, map(), candidates, mission_->drift(), options_.track);
+}
+
+// Kept until the map or the reference changes: frames come more often than that.
+const std::vector<PointId>& Session::local_online_points() {
+  if (local_points_of_ && local_points_of_ == online_reference_) return local_points_;
+  local_points_.clear();
+  if (online_reference_) local_points_ = local_points(map(), *online_reference_, options_.local_keyframes);
+  std::erase_if(local_points_, [](PointId id) { return id.origin == Origin::offline; });
+  local_points_of_ = online_reference_;
+  return local_points_;
 }
 
 std::optional<HybridTrack> Session::find_pose(const Frame& frame) {
   // Mapping may have removed the last frame's keyframe since, but never the newest.
   if (!online_reference_ || online_.find_keyframe(*online_reference_) == nullptr) online_reference_ = last_keyframe_;
-  std::vector<PointId> online;
-  if (online_reference_) online = local_points(map(), *online_reference_, options_.local_keyframes);
+  const std::vector<PointId>& online = local_online_points();
   const Pose predicted = has_pose_ ? predict(frame.time) : last_camera_from_world();
   auto best = track_from(frame, predicted, online);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
@@ -181,6 +190,7 @@ void Session::begin_monocular(const Frame& frame, Located& located) {
 void Session::begin_segment(const Frame& frame) {
   segment_ = segments_.size() - 1;
   online_reference_ = last_keyframe_;
+  local_points_of_.reset();
   const Pose body = body_pose(online_.camera_from_world(*last_keyframe_));
   if (anchored_.empty()) {
     odometry_.start(body);
