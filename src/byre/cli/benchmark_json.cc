@@ -89,7 +89,7 @@ Json map_json(const MadeMap& map) {
           {"file", map.file.string()},
           {"keyframes", map.keyframes},
           {"points", map.points},
-          {"alignment_keyframes", map.alignment.keyframes},
+          {"alignment_poses", map.alignment.poses},
           {"truth_from_map_translation_m", {t.x(), t.y(), t.z()}},
           {"truth_from_map_quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
           {"wall_s", map.wall_seconds}};

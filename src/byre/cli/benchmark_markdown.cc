@@ -134,8 +134,8 @@ std::string final_table(const BenchmarkResult& result, const BenchmarkProtocol& 
 }
 
 std::string alignment_text(const MapAlignment& alignment) {
-  if (alignment.keyframes == 0) return "none: too few keyframes with truth";
-  return formatted("%d keyframes", alignment.keyframes);
+  if (alignment.poses == 0) return "none: too few poses with truth";
+  return formatted("%d poses", alignment.poses);
 }
 
 std::string maps_table(const BenchmarkResult& result) {

@@ -51,7 +51,7 @@ BenchmarkResult result() {
 TEST(BenchmarkMarkdown, SaysHowFiguresWereMade) {
   const std::string text = to_markdown(result(), protocol(), kSetting);
   for (const char* part : {"# Barns", "**byre** " BYRE_VERSION, "barns.yaml", "seeds 0, 1, 2", "2 cores; pace paced",
-                           "mean / median / worst", "SE(3)", "no run is aligned", "120", "118 keyframes"}) {
+                           "mean / median / worst", "SE(3)", "no run is aligned", "120", "118 poses"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   EXPECT_THAT(text, Not(HasSubstr("stopped early")));
@@ -106,7 +106,7 @@ TEST(BenchmarkJson, HoldsEveryRunAndItsSummary) {
   const auto json = nlohmann::json::parse(to_json(result(), protocol(), kSetting));
   EXPECT_EQ(json["protocol"]["seeds"], nlohmann::json({0, 1, 2}));
   EXPECT_EQ(json["protocol"]["version"], BYRE_VERSION);
-  EXPECT_EQ(json["maps"][0]["alignment_keyframes"], 118);
+  EXPECT_EQ(json["maps"][0]["alignment_poses"], 118);
   const auto& arm = json["cases"][0]["arms"][0];
   EXPECT_EQ(arm["arm"], "localise_only");
   EXPECT_EQ(arm["summary"]["final"]["map_error_m"]["median"], 0.006);

@@ -222,7 +222,7 @@ class BenchmarkRunner {
                  options_.output / (file_name_of(name) + ".byre"),
                  run.map.keyframe_count(),
                  run.map.point_count(),
-                 align_to_truth(run.map, Scale::fixed, source.truth),
+                 align_to_truth(run.final, Scale::fixed, source.truth),
                  run.wall_seconds};
     StoredMap stored;
     stored.recordings.push_back(describe_source(source.folder, *recording));

@@ -135,7 +135,7 @@ LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored
                                  const Trajectory& truth) {
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
   const MapAlignment alignment = align_to_truth(stored.map, scale, map_truth);
-  return {errors_in_map(found_trajectory(run), truth, alignment), alignment.keyframes};
+  return {errors_in_map(found_trajectory(run), truth, alignment), alignment.poses};
 }
 
 std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,

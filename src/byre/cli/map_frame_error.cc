@@ -35,9 +35,13 @@ double PoseError::rotation() const {
 }
 
 MapAlignment align_to_truth(const Map& map, Scale scale, const Trajectory& map_truth) {
-  constexpr std::size_t kFewestKeyframes = 3;
-  const std::vector<PosePair> pairs = associate(keyframe_trajectory(map), map_truth, {});
-  if (pairs.size() < kFewestKeyframes) return {};
+  return align_to_truth(keyframe_trajectory(map), scale, map_truth);
+}
+
+MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, const Trajectory& map_truth) {
+  constexpr std::size_t kFewestPoses = 3;
+  const std::vector<PosePair> pairs = associate(world_from_body, map_truth, {});
+  if (pairs.size() < kFewestPoses) return {};
   const auto error = absolute_trajectory_error(pairs, scale);
   if (!error) return {};
   return {error->truth_from_estimate, static_cast<int>(pairs.size())};

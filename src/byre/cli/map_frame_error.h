@@ -10,12 +10,15 @@ namespace byre::cli {
 // Where the frame of a map lies in that of the truth.
 struct MapAlignment {
   Similarity truth_from_map;
-  int keyframes = 0;  // that it rests on; zero: the truth is taken for given in the map's frame
+  int poses = 0;  // that it rests on; zero: the truth is taken for given in the map's frame
 };
 
 // By the map's own keyframes, never by what is found or tracked in it. map_truth holds the truth at their times, where
 // it does: with less than three of them aligned nothing is.
 MapAlignment align_to_truth(const Map& map, Scale scale, const Trajectory& map_truth);
+
+// The same by all frames of the run that made the map, where they are known: many more than its keyframes.
+MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, const Trajectory& map_truth);
 
 // How far an estimated pose is from the truth.
 struct PoseError {

@@ -33,13 +33,13 @@ Trajectory truth() {
 
 TEST(MapAlignment, RestsOnTheMapsKeyframes) {
   const MapAlignment alignment = align_to_truth(small_map(4), Scale::fixed, truth());
-  EXPECT_EQ(alignment.keyframes, 4);
+  EXPECT_EQ(alignment.poses, 4);
   EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTruthFromMap).norm(), 0.0, 1e-9);
 }
 
 TEST(MapAlignment, IsLeftOutWhereTheTruthCoversTooFewKeyframes) {
-  EXPECT_EQ(align_to_truth(small_map(2), Scale::fixed, truth()).keyframes, 0);
-  EXPECT_EQ(align_to_truth(small_map(4), Scale::fixed, {}).keyframes, 0);
+  EXPECT_EQ(align_to_truth(small_map(2), Scale::fixed, truth()).poses, 0);
+  EXPECT_EQ(align_to_truth(small_map(4), Scale::fixed, {}).poses, 0);
 }
 
 TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {

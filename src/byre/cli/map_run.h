@@ -70,10 +70,10 @@ struct MapRun {
   Map map{Origin::offline};            // as it is kept; of the keyframes made, others were found redundant
   std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // of a mission, of adjusting its online map as a whole
-  std::vector<double> job_seconds;     // wall time of each mapping job
-  std::vector<std::string> warnings;   // of the recording
-  std::vector<double> lateness;        // live: seconds by which frames were fed too late, of those that were
-  double wall_seconds = 0.0;           // of it all
+  std::vector<double> job_seconds;                  // wall time of each mapping job
+  std::vector<std::string> warnings;                // of the recording
+  std::vector<double> lateness;  // live: seconds by which frames were fed too late, of those that were
+  double wall_seconds = 0.0;     // of it all
 };
 
 struct MapRunHooks {

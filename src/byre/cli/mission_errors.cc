@@ -70,15 +70,10 @@ std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Tra
 
 }  // namespace
 
-MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajectory& map_truth,
-                             const Trajectory& truth) {
-  return mission_errors(run, align_to_truth(offline, Scale::fixed, map_truth), truth);
-}
-
 MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
   MissionErrors errors;
   errors.in_map_frame = true;
-  errors.alignment_keyframes = alignment.keyframes;
+  errors.alignment_poses = alignment.poses;
   errors.causal = errors_in_map(run.causal, truth, alignment);
   errors.final = errors_in_map(run.final, truth, alignment);
   judge_trust(run, errors);

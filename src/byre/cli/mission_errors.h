@@ -13,7 +13,7 @@ struct MissionErrors {
   // True: in the frame of the offline map, which alone was aligned to the truth. False: of a run without one, whose
   // causal and final trajectories were each aligned to the truth.
   bool in_map_frame = false;
-  int alignment_keyframes = 0;      // of the offline map; zero: the truth is taken for given in the map's frame
+  int alignment_poses = 0;          // of the run that made the map; zero: the truth is taken for given in its frame
   std::vector<PoseError> causal;    // as published
   std::vector<PoseError> trusted;   // of those, of frames reported as trusted
   std::vector<PoseError> degraded;  // of those, of frames reported as degraded
@@ -25,11 +25,7 @@ struct MissionErrors {
 
 inline constexpr double kFarMetres = 0.2;
 
-// Errors in the map's frame; map_truth holds the truth at the times of the map's keyframes, where it does.
-MissionErrors mission_errors(const MapRun& run, const Map& offline, const Trajectory& map_truth,
-                             const Trajectory& truth);
-
-// The same where that alignment is known.
+// Errors in the frame of a map that was aligned so.
 MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
 
 // Errors after alignment, of a run without an offline map; of one camera alone with its scale.

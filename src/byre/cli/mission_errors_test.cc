@@ -32,6 +32,10 @@ Map offline_map() {
   return map;
 }
 
+MapAlignment aligned_map() {
+  return align_to_truth(offline_map(), Scale::fixed, truth());
+}
+
 // Ten frames half a second apart, each off by so many metres along its own x axis, with a sigma of a centimetre.
 MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Verdict::trusted) {
   MapRun run;
@@ -53,10 +57,9 @@ MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Ve
 }
 
 TEST(MissionErrors, AreThoseInTheFrameOfTheMapWhateverTheMission) {
-  const MissionErrors errors =
-      mission_errors(run_with_errors({0.1, 0.1, 0.1, 0.1}), offline_map(), truth(), truth());
+  const MissionErrors errors = mission_errors(run_with_errors({0.1, 0.1, 0.1, 0.1}), aligned_map(), truth());
   EXPECT_TRUE(errors.in_map_frame);
-  EXPECT_EQ(errors.alignment_keyframes, 4);
+  EXPECT_EQ(errors.alignment_poses, 4);
   EXPECT_NEAR(position_statistics(errors.causal).rmse, 0.1, 1e-9) << "a constant error is not aligned away";
   EXPECT_NEAR(position_statistics(errors.final).rmse, 0.1, 1e-9);
 }
@@ -64,7 +67,7 @@ TEST(MissionErrors, AreThoseInTheFrameOfTheMapWhateverTheMission) {
 TEST(MissionErrors, SayHowMuchTrustWasWrong) {
   MapRun run = run_with_errors({0.0, 0.3, 0.0, 0.3, 0.3, 0.3, 0.3, 0.0});
   run.frames[6].report->health.verdict = Verdict::degraded;
-  const MissionErrors errors = mission_errors(run, offline_map(), truth(), truth());
+  const MissionErrors errors = mission_errors(run, aligned_map(), truth());
   EXPECT_THAT(errors.trusted, SizeIs(7));
   EXPECT_THAT(errors.degraded, SizeIs(1));
   EXPECT_EQ(errors.wrongly_trusted, 4);
@@ -74,7 +77,7 @@ TEST(MissionErrors, SayHowMuchTrustWasWrong) {
 TEST(MissionErrors, HoldErrorsAgainstTheirCovariance) {
   // The bound for three degrees of freedom is 2.8 sigmas.
   const MapRun run = run_with_errors({0.0, 0.027, 0.029, 0.1});
-  EXPECT_EQ(mission_errors(run, offline_map(), truth(), truth()).within_bound, 0.5);
+  EXPECT_EQ(mission_errors(run, aligned_map(), truth()).within_bound, 0.5);
 }
 
 TEST(MissionErrors, LeaveOutFramesThatCouldNotBeReadOrHaveNoPose) {
@@ -82,14 +85,14 @@ TEST(MissionErrors, LeaveOutFramesThatCouldNotBeReadOrHaveNoPose) {
   run.frames[1].report.reset();
   run.frames[2].report->map_from_body.reset();
   run.causal.erase(run.causal.begin() + 1, run.causal.begin() + 3);
-  const MissionErrors errors = mission_errors(run, offline_map(), truth(), truth());
+  const MissionErrors errors = mission_errors(run, aligned_map(), truth());
   EXPECT_THAT(errors.causal, SizeIs(2));
   EXPECT_THAT(errors.trusted, SizeIs(2));
   EXPECT_THAT(errors.final, SizeIs(4));
 }
 
 TEST(MissionErrors, AreNoneWithoutTruthAtTheRightTime) {
-  const MissionErrors errors = mission_errors(run_with_errors({0.0, 0.0}), offline_map(), truth(), {});
+  const MissionErrors errors = mission_errors(run_with_errors({0.0, 0.0}), aligned_map(), {});
   EXPECT_THAT(errors.causal, SizeIs(0));
   EXPECT_EQ(errors.within_bound, std::nullopt);
 }

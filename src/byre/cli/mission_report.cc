@@ -54,8 +54,8 @@ std::string describe_inliers(const MissionStatistics& statistics) {
 
 std::string describe_alignment(const MissionErrors& errors) {
   if (!errors.in_map_frame) return "causal and final poses are each aligned to it";
-  if (errors.alignment_keyframes == 0) return "taken for given in the map's frame";
-  return formatted("the map alone is aligned to it, by its %d keyframes", errors.alignment_keyframes);
+  if (errors.alignment_poses == 0) return "taken for given in the map's frame";
+  return formatted("the map alone is aligned to it, by %d poses of the run that made it", errors.alignment_poses);
 }
 
 std::string error_row(const char* name, const std::vector<PoseError>& errors) {
@@ -136,7 +136,7 @@ Json to_json(const MissionStatistics& statistics) {
 
 Json to_json(const MissionErrors& errors) {
   return {{"of", errors.in_map_frame ? "poses in the map's frame" : "poses after alignment"},
-          {"alignment_keyframes", errors.alignment_keyframes},
+          {"alignment_poses", errors.alignment_poses},
           {"causal", errors_json(errors.causal)},
           {"causal_trusted", errors_json(errors.trusted)},
           {"causal_degraded", errors_json(errors.degraded)},

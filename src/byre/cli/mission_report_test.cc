@@ -37,7 +37,7 @@ PoseError off_by(double metres) {
 MissionErrors small_errors() {
   MissionErrors errors;
   errors.in_map_frame = true;
-  errors.alignment_keyframes = 12;
+  errors.alignment_poses = 12;
   errors.causal = {off_by(0.01), off_by(0.01), off_by(0.25)};
   errors.trusted = {off_by(0.01), off_by(0.25)};
   errors.final = {off_by(0.005)};
@@ -62,7 +62,7 @@ TEST(MissionText, TellsKeyframesOfPlacesTheMissionCameTo) {
 
 TEST(MissionText, TellsErrorsInTheMapsFrameAndOfTrustedFramesApart) {
   const std::string text = to_text(small_errors());
-  EXPECT_THAT(text, HasSubstr("truth        the map alone is aligned to it, by its 12 keyframes\n"));
+  EXPECT_THAT(text, HasSubstr("truth        the map alone is aligned to it, by 12 poses of the run that made it\n"));
   EXPECT_THAT(text, HasSubstr("causal       RMSE 0.1446 m"));
   EXPECT_THAT(text, HasSubstr("worst 0.0050 m\n"));
   EXPECT_THAT(text, HasSubstr("wrong trust  1 frames trusted but off by more than 0.2 m, 0.00 s at a time\n"));

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct Truth {
   Trajectory of_frames;
   Trajectory of_map;
+  std::optional<Trajectory> map_run;  // not true, but what the map is aligned to the truth by
 };
 
 Trajectory load_truth_later_by(const fs::path& path, Timestamp offset) {
@@ -41,7 +42,13 @@ std::optional<Truth> load_truths(const RunOptions& options) {
   Truth truth;
   truth.of_frames = load_truth_later_by(*options.truth, offset);
   truth.of_map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.of_frames;
+  if (options.map_trajectory) truth.map_run = load_trajectory(*options.map_trajectory, {});
   return truth;
+}
+
+MapAlignment align_map(const Map& map, const Truth& truth) {
+  return truth.map_run ? align_to_truth(*truth.map_run, Scale::fixed, truth.of_map)
+                       : align_to_truth(map, Scale::fixed, truth.of_map);
 }
 
 MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
@@ -87,7 +94,7 @@ Mission judge(const MapRun& run, const MapRunOptions& options, const std::option
   Mission mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
   if (!truth) return mission;
-  mission.errors = options.offline ? mission_errors(run, options.offline->map(), truth->of_map, truth->of_frames)
+  mission.errors = options.offline ? mission_errors(run, align_map(options.offline->map(), *truth), truth->of_frames)
                                    : aligned_errors(run, recording.path_of(truth->of_frames),
                                                     recording.is_metric ? Scale::fixed : Scale::free);
   return mission;

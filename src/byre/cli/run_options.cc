@@ -29,8 +29,9 @@ beside them, and says of each frame how far its pose may be trusted. The map's f
 frame, those of odometry in one that begins where the robot does and never jumps. With --localise-only nothing is mapped
 beside the map; without --map all is, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
-that one's truth too (--map-truth). Ctrl-C stops after the current frame and still writes all files, then the exit code
-is 130. Exit code 1 when no frame got a pose. docs/mission.md describes the events and what health means.)";
+that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
+a pose. docs/mission.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
@@ -46,6 +47,12 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       .add_option("--map-truth", options.map_truth,
                   "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
       ->type_name("FILE|FOLDER")
+      ->needs(truth)
+      ->needs(map);
+  command
+      .add_option("--map-trajectory", options.map_trajectory,
+                  "Final poses of the run that made the map, to align it by all of them (by the map's keyframes)")
+      ->type_name("FILE")
       ->needs(truth)
       ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")

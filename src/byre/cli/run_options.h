@@ -22,9 +22,10 @@ struct RunOptions {
   std::optional<std::filesystem::path> odometry;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> truth;
-  std::optional<std::filesystem::path> map_truth;   // of the map's own recording, where that is another
-  double time_offset_s = 0.0;                       // added to the time stamps of both
-  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  std::optional<std::filesystem::path> map_truth;       // of the map's own recording, where that is another
+  std::optional<std::filesystem::path> map_trajectory;  // of the run that made the map
+  double time_offset_s = 0.0;                           // added to the time stamps of both
+  std::optional<std::filesystem::path> vocabulary;      // else the one that comes with byre
   FrameRange range;
   OpenOptions open;  // how to take the recording
   Pace pace = Pace::paced;

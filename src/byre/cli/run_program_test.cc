@@ -163,7 +163,7 @@ TEST_F(MissionProgram, PublishesPosesInTheMapsFrame) {
   const Outcome outcome = mission("--causal-trajectory causal.txt --stats stats.json --truth " + kRoom);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(12));
-  EXPECT_THAT(outcome.output, HasSubstr("truth        the map alone is aligned to it, by its "));
+  EXPECT_THAT(outcome.output, HasSubstr("truth        the map alone is aligned to it, by "));
   const json errors = json::parse(read("stats.json")).at("errors");
   EXPECT_LT(errors.at("causal").at("position_m").at("max"), 0.05);
   EXPECT_EQ(errors.at("trusted_off_by_more_than_0.2m"), 0);

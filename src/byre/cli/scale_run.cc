@@ -61,7 +61,8 @@ Eigen::Vector3d camera_position_at(const StoredMap& stored, const std::string& t
     nearest_gap = gap;
     nearest = keyframe;
   }
-  if (nearest == nullptr) reject(text, "is more than a second from every keyframe of the map, " + time_span(stored.map));
+  if (nearest == nullptr)
+    reject(text, "is more than a second from every keyframe of the map, " + time_span(stored.map));
   return inverse(nearest->camera_from_world).translation;
 }
 
