@@ -17,6 +17,20 @@ Eigen::Vector3d mean(Points points) {
 
 }  // namespace
 
+Pose scale_lengths(const Pose& pose, double scale) {
+  return {pose.rotation, scale * pose.translation};
+}
+
+Matrix6 scale_lengths(const Matrix6& covariance, double scale) {
+  Vector6 factors;
+  factors << Eigen::Vector3d::Constant(scale), Eigen::Vector3d::Ones();
+  return factors.asDiagonal() * covariance * factors.asDiagonal();
+}
+
+Pose move_camera(const Similarity& target_from_source, const Pose& camera_from_source) {
+  return scale_lengths(camera_from_source, target_from_source.scale) * inverse(target_from_source.target_from_source);
+}
+
 std::optional<Similarity> align(Points points_in_source, Points points_in_target, Scale scale) {
   assert(points_in_source.size() == points_in_target.size());
   if (points_in_source.size() < 3) return std::nullopt;

@@ -17,6 +17,13 @@ struct Similarity {
   }
 };
 
+// With all lengths times the scale: of a pose, and of the covariance of a small motion.
+Pose scale_lengths(const Pose& pose, double scale);
+Matrix6 scale_lengths(const Matrix6& covariance, double scale);
+
+// Where a camera lies that goes along with all it sees: the image stays the same, and depths grow with the scale.
+Pose move_camera(const Similarity& target_from_source, const Pose& camera_from_source);
+
 enum class Scale { fixed, free };
 
 // Least-squares fit of source onto target (Umeyama 1991, eq. 34 to 43). Empty when the points do not

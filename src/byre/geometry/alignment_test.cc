@@ -127,5 +127,23 @@ TEST(Align, IsEmptyWithFewerThanThreePoints) {
   EXPECT_FALSE(align({}, {}, Scale::fixed).has_value());
 }
 
+TEST(MoveCamera, KeepsTheImageAndScalesDepths) {
+  const Similarity target_from_source = truth(1.7);
+  const Pose camera_from_source{rotation_exp({0.1, 0.2, -0.3}), {0.4, -1.0, 2.0}};
+  const Pose camera_from_target = move_camera(target_from_source, camera_from_source);
+  for (const Eigen::Vector3d& point_in_source : scattered(10, 3)) {
+    const Eigen::Vector3d seen = camera_from_target * (target_from_source * point_in_source);
+    EXPECT_THAT(seen, PointNear(1.7 * (camera_from_source * point_in_source), 1e-12));
+  }
+}
+
+TEST(ScaleLengths, OfACovarianceLeavesRotationsAlone) {
+  Vector6 sigmas;
+  sigmas << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
+  const Matrix6 covariance = sigmas * sigmas.transpose();
+  sigmas.head<3>() *= 2.5;
+  EXPECT_LT((scale_lengths(covariance, 2.5) - sigmas * sigmas.transpose()).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace byre

@@ -156,6 +156,11 @@ void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matr
   keyframe->covariance = covariance;
 }
 
+void Map::scale_removed_keyframe(KeyframeId id, double scale) {
+  if (!was_given_out(id) || !slot(id).removed) return;
+  slot(id).removed->camera_from_parent.translation *= scale;
+}
+
 void Map::update_point(PointId id, const MapPoint& point) {
   if (!find_point(id)) return;
   points_[id.number].point = point;
@@ -235,6 +240,12 @@ Pose Map::camera_from_world(KeyframeId id) const {
   return camera_from_ancestor * slot(id).keyframe->camera_from_world;
 }
 
+std::optional<KeyframeId> Map::living_ancestor(std::optional<KeyframeId> id) const {
+  if (!id || !was_given_out(*id)) return std::nullopt;
+  while (!slot(*id).keyframe) id = slot(*id).removed->parent;
+  return id;
+}
+
 bool Map::was_given_out(KeyframeId id) const {
   return id.origin == origin_ && id.number < keyframes_.size();
 }
@@ -249,12 +260,6 @@ std::vector<Observation>* Map::find_observations(PointId id) {
   if (origin_ == Origin::offline) return nullptr;
   if (id.number >= offline_observations_.size()) offline_observations_.resize(id.number + std::size_t{1});
   return &offline_observations_[id.number];
-}
-
-std::optional<KeyframeId> Map::living_ancestor(std::optional<KeyframeId> id) const {
-  if (!id || !was_given_out(*id)) return std::nullopt;
-  while (!slot(*id).keyframe) id = slot(*id).removed->parent;
-  return id;
 }
 
 std::optional<PointId> Map::unlink(const Observation& observation) {

@@ -117,6 +117,8 @@ class Map {
 
   void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
+  // Where a removed keyframe lies relative to its parent, with lengths times the scale. Nothing for one still there.
+  void scale_removed_keyframe(KeyframeId id, double scale);
   // A reference that does not observe the point is replaced by the point's lowest observation.
   void update_point(PointId id, const MapPoint& point);
 
@@ -141,6 +143,8 @@ class Map {
 
   // The pose of a keyframe now, also of a removed one, through its parents. Precondition: the id was once given out.
   Pose camera_from_world(KeyframeId id) const;
+  // The keyframe itself while it is there, else the first of its parents that is; empty for an id never given out.
+  std::optional<KeyframeId> living_ancestor(std::optional<KeyframeId> id) const;
 
  private:
   struct KeyframeSlot {
@@ -161,7 +165,6 @@ class Map {
   const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
   // Where the observations of a point are kept, of an offline point too; nullptr for one that is gone.
   std::vector<Observation>* find_observations(PointId id);
-  std::optional<KeyframeId> living_ancestor(std::optional<KeyframeId> id) const;
 
   // Takes the observation out at both ends and returns its point, whose slot stays even when nothing is left in it.
   std::optional<PointId> unlink(const Observation& observation);

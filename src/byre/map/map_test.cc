@@ -256,6 +256,24 @@ TEST(CameraFromWorld, FollowsRemovedKeyframesToTheirMovedAncestor) {
   EXPECT_THAT(map.camera_from_world(middle), PoseNear(middle_from_root * corrected, 1e-9, 1e-8));
 }
 
+TEST(ScaleRemovedKeyframe, ChangesLengthsFromItsParentAlone) {
+  Map map(Origin::online);
+  const KeyframeId root = map.add_keyframe(keyframe_at(motion(0.0, 0.0)));
+  const KeyframeId removed = map.add_keyframe(keyframe_at(motion(1.0, 0.3), root));
+  const KeyframeId kept = map.add_keyframe(keyframe_at(motion(2.0, 0.7), removed));
+  map.remove_keyframe(removed);
+  EXPECT_EQ(map.living_ancestor(removed), root);
+  EXPECT_EQ(map.living_ancestor(kept), kept);
+  EXPECT_FALSE(map.living_ancestor(KeyframeId{Origin::online, 3}));
+
+  for (const KeyframeId id : {root, removed, kept}) map.scale_removed_keyframe(id, 1.1);
+  EXPECT_THAT(map.camera_from_world(root), PoseNear(motion(0.0, 0.0), 1e-9, 1e-8));
+  EXPECT_THAT(map.camera_from_world(kept), PoseNear(motion(2.0, 0.7), 1e-9, 1e-8));
+  Pose camera_from_root = motion(1.0, 0.3) * inverse(motion(0.0, 0.0));
+  camera_from_root.translation *= 1.1;
+  EXPECT_THAT(map.camera_from_world(removed), PoseNear(camera_from_root * motion(0.0, 0.0), 1e-9, 1e-8));
+}
+
 TEST(AddRig, StoresEqualRigsOnce) {
   Map map(Origin::online);
   Rig rig = rig_of_width(640);

@@ -123,7 +123,8 @@ class CeresGraph {
       problem.AddResidualBlock(&*cost++, loss.get(), first[0], first[1], first[2], second[0], second[1], second[2]);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (problem.HasParameterBlock(nodes_[i].addresses()[0])) set_freedom(problem, i, roles.node_moves[i]);
+      if (problem.HasParameterBlock(nodes_[i].addresses()[0]))
+        set_freedom(problem, i, graph.nodes[i], roles.node_moves[i]);
     }
     ceres::Solver::Summary summary;
     ceres::Solve(solver_options(), &problem, &summary);
@@ -144,12 +145,12 @@ class CeresGraph {
     return options;
   }
 
-  void set_freedom(ceres::Problem& problem, std::size_t node, bool moves) {
-    const auto [rotation, position, log_scale] = nodes_[node].addresses();
+  void set_freedom(ceres::Problem& problem, std::size_t index, const PoseGraphNode& node, bool moves) {
+    const auto [rotation, position, log_scale] = nodes_[index].addresses();
     problem.SetManifold(rotation, &manifold_);
     if (!moves) problem.SetParameterBlockConstant(rotation);
     if (!moves) problem.SetParameterBlockConstant(position);
-    if (!moves || !options_.scale_is_free) problem.SetParameterBlockConstant(log_scale);
+    if (!moves || !options_.scale_is_free || node.scale_is_known) problem.SetParameterBlockConstant(log_scale);
   }
 
   const PoseGraphOptions& options_;  // owned by the caller, constant

@@ -11,7 +11,8 @@ struct PoseGraphNode {
   // Lengths measured at this camera for each metre of the world; other than 1 only where the scale drifts, as it does
   // in monocular maps. What the camera takes for point_in_camera is scale * (camera_from_world * point_in_world).
   double scale = 1.0;
-  bool fixed = false;  // an anchor: neither pose nor scale move
+  bool fixed = false;           // an anchor: neither pose nor scale move
+  bool scale_is_known = false;  // the scale alone is held: the camera measures lengths itself, as a stereo pair does
 };
 
 // A measured motion: point_in_second = rotation * (scale * point_in_first) + translation, in lengths as measured there.
@@ -38,7 +39,7 @@ struct PoseGraphOptions {
   int max_iterations = 50;  // for each loss
   RobustLoss loss = RobustLoss::huber;
   double loss_width = 4.0;     // sigmas of an edge's whole error; 4 is the 99 % quantile of one that is right
-  bool scale_is_free = false;  // of nodes that move: similarities instead of rigid motions (Strasdat 2010)
+  bool scale_is_free = false;  // of nodes that move, unless known: similarities, not rigid motions (Strasdat 2010)
   int threads = 1;             // one keeps the order of sums, hence the result, reproducible
 };
 

@@ -216,6 +216,16 @@ TEST(OptimisePoseGraph, HoldsScalesUnlessTheyAreFree) {
   for (std::size_t i = 0; i < truth.nodes.size(); ++i) EXPECT_EQ(result.scales[i], truth.nodes[i].scale);
 }
 
+TEST(OptimisePoseGraph, HoldsTheScaleOfNodesThatKnowIt) {
+  PoseGraph graph = displaced(measured_graph(17, {.nodes = 20, .rounds = 1}), 17, 0.1, 0.05);
+  for (PoseGraphEdge& edge : graph.edges) edge.scale = 1.01;
+  graph.nodes[10].scale_is_known = true;
+  const PoseGraphResult result = optimise_pose_graph(graph, {.scale_is_free = true});
+  ASSERT_TRUE(result.usable);
+  EXPECT_EQ(result.scales[10], 1.0);
+  EXPECT_GT(result.scales[15], 1.02) << "the others follow their edges";
+}
+
 TEST(OptimisePoseGraph, HoldsTheFirstNodeWithAnEdgeWhenNothingIsFixed) {
   PoseGraph graph = with_odometry(measured_graph(11, kNoisy));
   graph.nodes.front().fixed = false;

@@ -21,11 +21,12 @@ void GlobalLane::finish() {
   if (auto finished = executor_->finish()) correction_ = std::move(finished->delta);
 }
 
-MapDelta GlobalLane::apply(Map& online) {
+AppliedCorrection GlobalLane::apply(Map& online) {
   assert(is_waiting());
-  apply_correction(*correction_, *snapshot_, online);
+  const MapDelta correction = *std::exchange(correction_, std::nullopt);
+  LengthChanges changes = apply_correction(correction, *snapshot_, online);
   snapshot_.reset();
-  return *std::exchange(correction_, std::nullopt);
+  return {correction, std::move(changes)};
 }
 
 }  // namespace byre

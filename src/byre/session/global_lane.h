@@ -10,6 +10,11 @@
 
 namespace byre {
 
+struct AppliedCorrection {
+  MapDelta delta;
+  LengthChanges length_changes;  // by which what lies relative to a keyframe is to follow
+};
+
 // Corrections of the whole map, one at a time, beside tracking and local mapping. A finished correction waits until
 // local mapping has nothing in flight, for what that works on would be out of date.
 class GlobalLane {
@@ -26,7 +31,7 @@ class GlobalLane {
   void collect();                        // once per frame
   void finish();                         // waits for the job in flight
   void hurry() { *is_hurried_ = true; }  // the job in flight, and those to come, end soon with what they have reached
-  MapDelta apply(Map& online);           // precondition: is_waiting(); gives what was applied
+  AppliedCorrection apply(Map& online);  // precondition: is_waiting()
 
  private:
   // Constant after construction.

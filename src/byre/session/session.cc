@@ -100,9 +100,22 @@ void Session::take_over(const FinishedJob& job) {
 
 bool Session::take_over_correction() {
   if (!global_.is_waiting() || !executor_->idle()) return false;
-  forget_places(global_.apply(online_));
+  const AppliedCorrection applied = global_.apply(online_);
+  forget_places(applied.delta);
+  follow(applied.length_changes);
   local_points_of_.reset();
   return true;
+}
+
+// What was measured relative to keyframes, in lengths that have changed since.
+void Session::follow(const LengthChanges& changes) {
+  for (AnchoredPose& pose : anchored_) {
+    const auto change = changes.find(pose.keyframe);
+    if (change == changes.end()) continue;
+    pose.camera_from_keyframe = scale_lengths(pose.camera_from_keyframe, change->second);
+    if (&pose == &anchored_.back()) velocity_.head<3>() *= change->second;
+  }
+  for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
 }
 
 bool Session::correct_online() {
@@ -214,14 +227,16 @@ void Session::finish() {
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
   assert(places_);
-  return byre::finish_map(online_, *places_, options, hooks);
+  FinishReport report = byre::finish_map(online_, *places_, options, hooks);
+  follow(report.length_changes);
+  return report;
 }
 
 void Session::finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
   assert(mission_);
   if (online_.keyframe_count() == 0) return;
   const MapWindow whole = whole_map(map());
-  apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_);
+  follow(apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_));
 }
 
 Trajectory Session::final_trajectory() const {

@@ -153,6 +153,7 @@ class Session {
   void take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report);
   void take_over(const FinishedJob& job);
   bool take_over_correction();
+  void follow(const LengthChanges& changes);
   bool correct_online();
   void consider_place(const FoundPlace& found);
   void forget_places(const MapDelta& delta);

@@ -37,9 +37,10 @@ std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypoth
   return hypothesis;
 }
 
-void correct(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options, const FinishHooks& hooks) {
+LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
+                      const FinishHooks& hooks) {
   const MapWindow whole = whole_map(online);
-  apply_correction(adjust_map(whole, edges, options.global, hooks.should_stop), whole, online);
+  return apply_correction(adjust_map(whole, edges, options.global, hooks.should_stop), whole, online);
 }
 
 void thin_out(Map& online, const FinishOptions& options) {
@@ -137,10 +138,12 @@ FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptio
   }
   report.loops = static_cast<int>(edges.size());
   announce(hooks, "adjusting the whole map");
-  if (!stopped(hooks)) correct(online, edges, options, hooks);
+  if (!stopped(hooks)) report.length_changes = correct(online, edges, options, hooks);
   announce(hooks, "removing what adds nothing");
   if (!stopped(hooks)) thin_out(online, options);
-  for (const LoopEdge& edge : edges) report.loop_residuals.push_back(residual_of(online, edge));
+  for (const LoopEdge& edge : edges) {
+    report.loop_residuals.push_back(residual_of(online, in_new_lengths(edge, report.length_changes)));
+  }
   report.after = quality_of(online);
   report.keyframes_removed = report.before.keyframes - report.after.keyframes;
   report.points_removed = report.before.points - report.after.points;

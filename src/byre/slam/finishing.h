@@ -30,6 +30,7 @@ struct FinishReport {
   std::vector<double> loop_residuals;  // metres by which they still disagree with what was seen
   int keyframes_removed = 0;           // found redundant
   int points_removed = 0;              // found weak
+  LengthChanges length_changes;        // by which what lies relative to a keyframe is to follow; see apply_correction
   MapQuality before;
   MapQuality after;
 };

@@ -1,5 +1,6 @@
 #include "byre/slam/global_mapping.h"
 
+#include "byre/geometry/median.h"
 #include "byre/optimise/pose_graph.h"
 #include "byre/slam/mapping_steps.h"
 
@@ -54,27 +55,53 @@ std::vector<std::pair<int, int>> nearest_keyframes(const MapWindow& window, int 
   return ranked;
 }
 
-// How well two covisible keyframes know where they lie to each other: the better the more points they share. Only the
-// proportions matter.
-Matrix6 covisible_information(int shared_points) {
-  constexpr double kPositionSigma = 0.003;  // metres, for a hundred points
-  constexpr double kRotationSigma = 0.001;  // radians
+// What stands for a metre in a map without stereo, whose unit of length may be any: a share of the depth.
+double length_of_a_metre(const MapWindow& window) {
+  constexpr double kUsualDepth = 3.0;  // metres
+  if (!scale_may_drift(window)) return 1.0;
+  std::vector<double> depths;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    for (const int point : keyframe.point_of_feature) {
+      if (point < 0) continue;
+      const Eigen::Vector3d& position = window.points[static_cast<std::size_t>(point)].point.position_in_world;
+      depths.push_back((keyframe.keyframe.camera_from_world * position).z());
+    }
+  }
+  return depths.empty() ? 1.0 : median(std::move(depths)) / kUsualDepth;
+}
+
+// How well two covisible keyframes that share a hundred points know where they lie to each other. Only the proportions
+// matter.
+constexpr double kPositionSigma = 0.003;  // metres
+constexpr double kRotationSigma = 0.001;  // radians
+constexpr double kScaleSigma = 0.003;     // of the logarithm
+
+// The better the more points they share.
+Matrix6 covisible_information(int shared_points, double metre) {
+  const double position_sigma = kPositionSigma * metre;
   Vector6 weights;
-  weights << Eigen::Vector3d::Constant(1.0 / (kPositionSigma * kPositionSigma)),
+  weights << Eigen::Vector3d::Constant(1.0 / (position_sigma * position_sigma)),
       Eigen::Vector3d::Constant(1.0 / (kRotationSigma * kRotationSigma));
   return Matrix6((weights * (shared_points / 100.0)).asDiagonal());
 }
 
-// Of a loop: what its matches leave open, and as much again as neighbours leave open, for points may err together.
-Matrix6 loop_information(const LoopEdge& loop) {
-  return (loop.covariance + covisible_information(100).inverse()).inverse();
+// Of a loop: what its matches leave open, and as much again as neighbours leave open, for points may err together. It
+// has the say of so many links.
+PoseGraphEdge graph_edge(const LoopEdge& loop, int place, int keyframe, double metre, double links) {
+  return {.first = place,
+          .second = keyframe,
+          .second_from_first = loop.keyframe_from_place,
+          .information = links * (loop.covariance + covisible_information(100, metre).inverse()).inverse(),
+          .scale = loop.scale,
+          .scale_sigma = std::hypot(loop.scale_sigma, kScaleSigma) / std::sqrt(links)};
 }
 
-PoseGraphEdge edge_between(const MapWindow& window, int first, int second, const Matrix6& information) {
+PoseGraphEdge edge_between(const MapWindow& window, int first, int second, int shared_points, double metre) {
   return {.first = first,
           .second = second,
           .second_from_first = pose_of(window, second) * inverse(pose_of(window, first)),
-          .information = information};
+          .information = covisible_information(shared_points, metre),
+          .scale_sigma = kScaleSigma * std::sqrt(100.0 / shared_points)};
 }
 
 // A loop is to bend what was mapped out of sight of the offline map, and to leave alone what lies in it.
@@ -82,18 +109,26 @@ bool is_held(const MapWindow& window, const WindowKeyframe& keyframe) {
   return !keyframe.movable || count_offline_sightings(window, keyframe) >= kMinOfflineSightings;
 }
 
+PoseGraphNode node_of(const MapWindow& window, const WindowKeyframe& keyframe) {
+  return {.camera_from_world = keyframe.keyframe.camera_from_world,
+          .fixed = is_held(window, keyframe),
+          .scale_is_known = window.rig_of(keyframe).is_stereo()};
+}
+
 PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<LoopEdge>& loops,
                           const GlobalMappingOptions& options) {
   PoseGraph graph;
+  const double metre = length_of_a_metre(window);
+  // A drift of scale opens gaps wider than fusion searches. So a loop stands for links between all that is fused at it.
+  const double links = scale_may_drift(window) ? std::pow(options.fusion_neighbours, 2) : 1.0;
   std::set<std::pair<int, int>> joined;
   const auto join = [&](int first, int second, int shared) {
     if (!joined.insert(std::minmax(first, second)).second) return;
-    graph.edges.push_back(edge_between(window, first, second, covisible_information(shared)));
+    graph.edges.push_back(edge_between(window, first, second, shared, metre));
   };
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
     const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
-    graph.nodes.push_back(
-        {.camera_from_world = keyframe.keyframe.camera_from_world, .fixed = is_held(window, keyframe)});
+    graph.nodes.push_back(node_of(window, keyframe));
     for (const auto& [shared, other] :
          nearest_keyframes(window, i, options.min_shared_points, options.max_neighbours)) {
       join(other, i, shared);
@@ -104,24 +139,33 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
     if (place == index_of.end() || keyframe == index_of.end()) continue;
-    graph.edges.push_back({.first = place->second,
-                           .second = keyframe->second,
-                           .second_from_first = loop.keyframe_from_place,
-                           .information = loop_information(loop)});
+    graph.edges.push_back(graph_edge(loop, place->second, keyframe->second, metre, links));
   }
   return graph;
 }
 
-// Moves the keyframes, and each point with the keyframe that defines it.
-void take_over(MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<Pose>& camera_from_world) {
+// Moves a point along its ray, so that it lies so many times as far from the camera.
+void grow(MapPoint& point, double growth, const Pose& camera_from_world) {
+  const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
+  point.position_in_world = camera_in_world + growth * (point.position_in_world - camera_in_world);
+  point.min_distance *= static_cast<float>(growth);
+  point.max_distance *= static_cast<float>(growth);
+}
+
+// Moves the keyframes, and each point with the keyframe that defines it, in the lengths that hold there.
+void take_over(MapWindow& window, const IndexOfKeyframe& index_of, const PoseGraphResult& bent) {
   for (WindowPoint& point : window.points) {
     const auto reference = index_of.find(point.point.reference.keyframe);
     if (point.removed || reference == index_of.end()) continue;
     const Pose& before = pose_of(window, reference->second);
-    const Pose& after = camera_from_world[static_cast<std::size_t>(reference->second)];
+    const Pose& after = bent.camera_from_world[static_cast<std::size_t>(reference->second)];
+    const double scale = bent.scales[static_cast<std::size_t>(reference->second)];
+    if (scale != 1.0) grow(point.point, 1.0 / scale, before);
     point.point.position_in_world = inverse(after) * (before * point.point.position_in_world);
   }
-  for (std::size_t i = 0; i < window.keyframes.size(); ++i) pose_of(window, static_cast<int>(i)) = camera_from_world[i];
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    pose_of(window, static_cast<int>(i)) = bent.camera_from_world[i];
+  }
 }
 
 // A keyframe and those nearest to it.
@@ -140,8 +184,11 @@ void fuse_around(MapWindow& window, int keyframe, int place, const GlobalMapping
 
 void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options) {
   const IndexOfKeyframe index_of = index_keyframes(window);
-  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops, options), {});
-  if (bent.usable) take_over(window, index_of, bent.camera_from_world);
+  PoseGraphOptions graph_options;
+  graph_options.scale_is_free = scale_may_drift(window);
+  if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are what is expected
+  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops, options), graph_options);
+  if (bent.usable) take_over(window, index_of, bent);
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
     if (place == index_of.end() || keyframe == index_of.end()) continue;
@@ -150,6 +197,14 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Gl
 }
 
 }  // namespace
+
+bool scale_may_drift(const MapWindow& window) {
+  const auto has_no_stereo = [&](const WindowKeyframe& keyframe) { return !window.rig_of(keyframe).is_stereo(); };
+  const auto is_of_offline_map = [](const auto& entry) { return is_offline(entry); };
+  return std::ranges::any_of(window.keyframes, has_no_stereo) &&
+         std::ranges::none_of(window.keyframes, is_of_offline_map) &&
+         std::ranges::none_of(window.points, is_of_offline_map);
+}
 
 MapWindow whole_map(const MapView& map) {
   MapWindow window = window_of(map, map.online().keyframe_ids());

@@ -1,6 +1,7 @@
 #include "byre/slam/loop_closing.h"
 
 #include "byre/slam/keyframes.h"
+#include "byre/slam/scale_drift.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,17 +82,42 @@ struct CameraShift {
   double turn = 0.0;
 };
 
-CameraShift camera_shift(const Pose& camera_from_world, const Pose& old_from_new) {
-  const Pose world_from_camera = inverse(camera_from_world);
-  return {((old_from_new * world_from_camera).translation - world_from_camera.translation).norm(),
-          rotation_log(old_from_new.rotation).norm()};
+CameraShift camera_shift(const Pose& camera_from_world, const Similarity& old_from_new) {
+  const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
+  return {(old_from_new * camera_in_world - camera_in_world).norm(),
+          rotation_log(old_from_new.target_from_source.rotation).norm()};
+}
+
+const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
+  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
 }
 
 bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOptions& options) {
-  const CameraShift shift =
-      camera_shift(map.find_keyframe(hypothesis.keyframe)->camera_from_world, hypothesis.old_from_new);
+  const Keyframe& keyframe = *map.find_keyframe(hypothesis.keyframe);
+  const CameraShift shift = camera_shift(keyframe.camera_from_world, drift_of(hypothesis));
   const double path = path_between(map, hypothesis.place, hypothesis.keyframe);
-  return shift.turn <= options.max_drift_turn && shift.distance <= options.max_drift + options.max_drift_share * path;
+  const double scale_drift = std::abs(std::log(hypothesis.scale));
+  const double on_top =
+      rig_of(map, keyframe).is_stereo() ? options.max_drift : options.max_drift_depths * hypothesis.median_depth;
+  return shift.turn <= options.max_drift_turn && scale_drift <= options.max_scale_drift &&
+         shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
+}
+
+// The drift that takes a camera from where the newer part has it to where the older one does.
+Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, double scale) {
+  return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
+}
+
+// A rig with stereo measures lengths itself. Else points in both parts tell, no better than the camera's own place in
+// the older one is known.
+std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part,
+                                           double depth, const LoopOptions& options) {
+  if (rig_of(map, keyframe).is_stereo()) return ScaleDrift{};
+  auto drift = estimate_scale_drift(depth_pairs(map, keyframe, in_older_part), options.min_scale_points);
+  if (!drift) return std::nullopt;
+  drift->sigma = std::hypot(drift->sigma, std::sqrt(in_older_part.match_covariance(2, 2)) / depth);
+  if (drift->sigma > options.max_scale_sigma) return std::nullopt;
+  return drift;
 }
 
 }  // namespace
@@ -110,9 +136,14 @@ std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index,
   LoopHypothesis hypothesis;
   hypothesis.keyframe = newest;
   hypothesis.place = found.tracked->reference;
-  hypothesis.old_from_new = inverse(found.tracked->camera_from_world) * keyframe->camera_from_world;
   hypothesis.covariance = found.tracked->match_covariance;
   hypothesis.median_depth = median_depth(*found.tracked, view);
+  const auto drift = find_scale_drift(map, *keyframe, *found.tracked, hypothesis.median_depth, options);
+  if (!drift) return std::nullopt;
+  hypothesis.scale = drift->old_per_new;
+  hypothesis.scale_sigma = drift->sigma;
+  hypothesis.old_from_new =
+      drift_between(found.tracked->camera_from_world, keyframe->camera_from_world, hypothesis.scale);
   if (!is_plausible(hypothesis, map, options)) return std::nullopt;
   return hypothesis;
 }
@@ -121,7 +152,7 @@ LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, 
                           const Rig& rig, const Map& map, const LoopOptions& options) {
   LoopHypothesis checked = hypothesis;
   const MapView view(nullptr, map);
-  const Pose predicted_camera_from_old = camera_from_world * inverse(hypothesis.old_from_new);
+  const Pose predicted_camera_from_old = move_camera(drift_of(hypothesis), camera_from_world);
   const auto tracked =
       track(frame, predicted_camera_from_old, rig, view,
             local_points(view, hypothesis.place, options.localise.local_keyframes), options.localise.track);
@@ -139,7 +170,7 @@ LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, 
   }
   ++checked.confirmations;
   checked.place = tracked->reference;
-  checked.old_from_new = inverse(tracked->camera_from_world) * camera_from_world;
+  checked.old_from_new = drift_between(tracked->camera_from_world, camera_from_world, hypothesis.scale);
   checked.covariance = tracked->match_covariance;
   checked.median_depth = depth;
   return checked;
@@ -149,17 +180,22 @@ std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map
   const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
   const Keyframe* const place = map.find_keyframe(hypothesis.place);
   if (keyframe == nullptr || place == nullptr) return std::nullopt;
-  const Pose camera_from_old = keyframe->camera_from_world * inverse(hypothesis.old_from_new);
-  return LoopEdge{hypothesis.keyframe, hypothesis.place, camera_from_old * inverse(place->camera_from_world),
-                  hypothesis.covariance};
+  const Pose camera_from_old = move_camera(drift_of(hypothesis), keyframe->camera_from_world);
+  const double new_per_old = 1.0 / hypothesis.scale;
+  return LoopEdge{hypothesis.keyframe,
+                  hypothesis.place,
+                  scale_lengths(camera_from_old * inverse(place->camera_from_world), new_per_old),
+                  scale_lengths(hypothesis.covariance, new_per_old),
+                  new_per_old,
+                  hypothesis.scale_sigma};
 }
 
 double apparent_drift(const LoopHypothesis& hypothesis, const Map& map) {
   const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
   if (keyframe == nullptr) return 0.0;
-  const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe->rig)];
-  const CameraShift shift = camera_shift(keyframe->camera_from_world, hypothesis.old_from_new);
-  return rig.focal * (shift.turn + shift.distance / std::max(1e-3, hypothesis.median_depth));
+  const CameraShift shift = camera_shift(keyframe->camera_from_world, drift_of(hypothesis));
+  const double shift_share = shift.distance / std::max(1e-3, hypothesis.median_depth);
+  return rig_of(map, *keyframe).focal * (shift.turn + shift_share + std::abs(std::log(hypothesis.scale)));
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/geometry/alignment.h"
 #include "byre/map/map.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/localisation.h"
@@ -10,12 +11,15 @@
 namespace byre {
 
 // A keyframe of the newer part of a map and one of the older part that see the same place, and how they lie to each
-// other.
+// other. Where the scale has drifted, lengths differ: point_in_keyframe = keyframe_from_place * (scale *
+// point_in_place), each in the lengths of the map around it.
 struct LoopEdge {
   KeyframeId keyframe;
   KeyframeId place;
   Pose keyframe_from_place;              // of their cameras
   Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * keyframe_from_place
+  double scale = 1.0;                    // other than 1 only for a keyframe without stereo
+  double scale_sigma = 0.0;              // of its logarithm
 };
 
 // To see what place recognition may get wrong before the map does: candidates in random order, some of them missing.
@@ -32,6 +36,11 @@ struct LoopOptions {
   double max_drift_share = 0.03;  // of the path since the place was seen, by which the map may have drifted,
   double max_drift = 0.3;         // and metres on top
   double max_drift_turn = 0.2;    // radians
+  // Without stereo, where the unit of length is the map's own, and drifts too.
+  double max_drift_depths = 0.1;  // median depths, in place of max_drift
+  double max_scale_drift = 0.4;   // of the scale's logarithm; positions may then have drifted by as much of the path
+  double max_scale_sigma = 0.03;  // of its logarithm: less certain, and the loop would do harm
+  int min_scale_points = 15;      // seen in both parts of the map
   PlaceNoise noise;
   int min_confirmations = 3;       // frames, not only keyframes, that must find the place where the first one did
   int min_frames_between = 10;     // loops: until mapping knows of the one before, the next frames would find it again
@@ -44,17 +53,25 @@ struct LoopHypothesis {
   KeyframeId keyframe;
   KeyframeId place;
   // Where things lie in the older part of the map, given where they lie in the newer one: the drift in between.
+  // point_in_old = old_from_new * (scale * point_in_new), see drift_of.
   Pose old_from_new;
   Matrix6 covariance =
       Matrix6::Zero();        // of the keyframe's camera in the older part, as TrackedFrame::match_covariance
   double median_depth = 0.0;  // metres, of the points that say so
   int confirmations = 0;
   int misses = 0;
+  double scale = 1.0;        // other than 1 only for a keyframe without stereo
+  double scale_sigma = 0.0;  // of its logarithm
 };
+
+inline Similarity drift_of(const LoopHypothesis& hypothesis) {
+  return {hypothesis.scale, hypothesis.old_from_new};
+}
 
 // Looks among the keyframes that share no points with the newest one's surroundings for one that shows the same, finds
 // the newest keyframe's pose there, and believes it only when the drift this means is no more than the path allows: a
-// fence repeats itself within metres, but a map does not drift by them within a few.
+// fence repeats itself within metres, but a map does not drift by them within a few. Without stereo the scale drifts
+// too, and is told by the points that the keyframe sees in both parts.
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options);
 
@@ -73,7 +90,8 @@ inline bool is_refuted(const LoopHypothesis& hypothesis, const LoopOptions& opti
 // The loop as an edge between two keyframes; empty when one of them has gone.
 std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map);
 
-// By how much the drift moves what the keyframe sees, pixels: less than a point is searched by needs fusion only.
+// By how much the drift moves what the keyframe sees, pixels, and a drift of scale what is seen from a depth beside it:
+// less than a point is searched by needs fusion only.
 double apparent_drift(const LoopHypothesis& hypothesis, const Map& map);
 
 }  // namespace byre

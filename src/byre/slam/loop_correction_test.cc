@@ -1,0 +1,219 @@
+// Loops from their discovery to the corrected map, where the scale drifts and where it cannot.
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/drift_scene.h"
+#include "byre/slam/finishing.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::IsEmpty;
+
+FinishOptions finish_options() {
+  FinishOptions options;
+  options.loops.min_gap = 15;
+  return options;
+}
+
+Pose drift_of_pose() {
+  return {rotation_exp({0.02, 0.03, 0.01}), {0.1, -0.08, 0.04}};
+}
+
+// Metres between where a map has a loop's keyframe and where the loop saw it.
+double gap_at(const LoopEdge& loop, const Map& map) {
+  const Pose keyframe_from_place = map.camera_from_world(loop.keyframe) * inverse(map.camera_from_world(loop.place));
+  return (keyframe_from_place * inverse(loop.keyframe_from_place)).translation.norm();
+}
+
+class ScaleThatDrifts : public testing::TestWithParam<double> {
+ protected:
+  DriftedLap lap_{monocular_rig(), {GetParam(), drift_of_pose()}};
+};
+
+TEST_P(ScaleThatDrifts, IsMeasuredAtTheLoop) {
+  ASSERT_THAT(find_faults(lap_.map), IsEmpty());
+  const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
+  ASSERT_TRUE(loop);
+  EXPECT_NEAR(loop->scale * lap_.drift_at(lap_.newest()).scale, 1.0, 0.025) << "points drifted as where first seen";
+  EXPECT_LT(loop->scale_sigma, 0.005);
+}
+
+TEST_P(ScaleThatDrifts, IsBroughtBackByTheLoop) {
+  Map map = lap_.map;
+  const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
+  EXPECT_GE(report.loops, 1);
+  EXPECT_GT(lap_.worst_error(lap_.map, Scale::free), 0.1);
+  EXPECT_LT(lap_.worst_error(map, Scale::free), 0.01);
+  EXPECT_THAT(find_faults(map), IsEmpty());
+}
+
+TEST_P(ScaleThatDrifts, IsClosedBeforeFusionLooksForPoints) {
+  const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
+  ASSERT_TRUE(loop);
+  const LoopEdge edge = *edge_of(*loop, lap_.map);
+  Map map = lap_.map;
+  const MapWindow whole = whole_map(map);
+  const auto without_bundle_adjustment = [] { return true; };
+  const LengthChanges changes = apply_correction(adjust_map(whole, {edge}, {}, without_bundle_adjustment), whole, map);
+  EXPECT_GT(gap_at(edge, lap_.map), 0.2);
+  EXPECT_LT(gap_at(in_new_lengths(edge, changes), map), 0.01);
+}
+
+TEST_P(ScaleThatDrifts, IsTheOneThatLengthsChangeBy) {
+  Map map = lap_.map;
+  const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
+  EXPECT_NEAR(report.length_changes.at(lap_.newest()) * lap_.drift_at(lap_.newest()).scale, 1.0, 0.035);
+  EXPECT_FALSE(report.length_changes.contains({Origin::online, 0}));
+}
+
+INSTANTIATE_TEST_SUITE_P(LoopCorrection, ScaleThatDrifts, testing::Values(0.9, 1.1));
+
+class GrownLap : public testing::Test {
+ protected:
+  std::optional<LoopHypothesis> find() const { return find_loop(lap_.map, lap_.index, lap_.newest(), options_); }
+
+  const DriftedLap lap_{monocular_rig(), {1.1, drift_of_pose()}};
+  LoopOptions options_ = finish_options().loops;
+};
+
+TEST_F(GrownLap, IsConfirmedByFramesThatFindItToo) {
+  auto loop = find();
+  ASSERT_TRUE(loop);
+  const Similarity drift = lap_.drift_at(lap_.newest());
+  for (const std::size_t frame : {66u, 68u, 71u}) {
+    const Pose camera_from_world = move_camera(drift, true_camera_from_world(lap_.mission, frame));
+    loop = check_loop(*loop, lap_.mission.frames[frame], camera_from_world, lap_.mission.rig, lap_.map, options_);
+  }
+  EXPECT_TRUE(is_confirmed(*loop, options_));
+}
+
+TEST_F(GrownLap, IsNotBelievedBeyondTheDriftOfScaleThatIsAllowed) {
+  options_.max_scale_drift = 0.05;
+  EXPECT_FALSE(find());
+}
+
+TEST_F(GrownLap, IsNotBelievedWhenTooFewPointsTellTheScale) {
+  options_.min_scale_points = 10000;
+  EXPECT_FALSE(find());
+}
+
+TEST_F(GrownLap, IsNotBelievedWhenTheScaleIsUncertain) {
+  options_.max_scale_sigma = 1e-5;
+  EXPECT_FALSE(find());
+}
+
+TEST_F(GrownLap, HasAnEdgeInTheLengthsOfBothSides) {
+  const auto loop = find();
+  ASSERT_TRUE(loop);
+  const auto edge = edge_of(*loop, lap_.map);
+  ASSERT_TRUE(edge);
+  const Similarity drift = lap_.drift_at(loop->keyframe);
+  const Pose true_keyframe_from_place = lap_.true_pose(loop->keyframe) * inverse(lap_.true_pose(loop->place));
+  EXPECT_NEAR(edge->scale, drift.scale, 0.02);
+  EXPECT_THAT(edge->keyframe_from_place, PoseNear(scale_lengths(true_keyframe_from_place, drift.scale), 0.02, 0.01));
+}
+
+TEST_F(GrownLap, AppearsToDriftByItsScaleToo) {
+  auto loop = find();
+  ASSERT_TRUE(loop);
+  loop->old_from_new = Pose{};
+  loop->scale = 1.02;
+  EXPECT_GT(apparent_drift(*loop, lap_.map), 0.02 * lap_.mission.rig.focal);
+}
+
+TEST(LoopWithStereo, HasNoScale) {
+  const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
+  const auto loop = find_loop(lap.map, lap.index, lap.newest(), finish_options().loops);
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->scale, 1.0);
+  EXPECT_EQ(edge_of(*loop, lap.map)->scale, 1.0);
+}
+
+TEST(LoopWithStereo, ChangesNoLengths) {
+  const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
+  Map map = lap.map;
+  const FinishReport report = finish_map(map, lap.index, finish_options(), {});
+  EXPECT_GE(report.loops, 1);
+  EXPECT_THAT(report.length_changes, IsEmpty());
+  EXPECT_LT(lap.worst_error(map, Scale::fixed), 0.015);
+}
+
+// A correction by which the newer half of a map of one camera grows.
+class GrowingHalf : public testing::Test {
+ protected:
+  GrowingHalf() {
+    MapWindow after = before_;
+    for (WindowKeyframe& keyframe : after.keyframes) {
+      if (keyframe.id.number < kFirstNew) continue;
+      keyframe.keyframe.camera_from_world = move_camera(kGrowth, keyframe.keyframe.camera_from_world);
+    }
+    for (WindowPoint& point : after.points) {
+      if (point.point.reference.keyframe.number < kFirstNew) continue;
+      point.point.position_in_world = kGrowth * point.point.position_in_world;
+    }
+    correction_ = difference(before_, after);
+  }
+
+  static constexpr std::uint32_t kFirstNew = 8;  // of 24 keyframes
+  static inline const Similarity kGrowth{1.2, {rotation_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}}};
+  static constexpr KeyframeId kNew{Origin::online, 20};
+  Map map_ = DriftedLap(monocular_rig(), {}).map;
+  const MapWindow before_ = whole_map(map_);
+  MapDelta correction_;
+};
+
+TEST_F(GrowingHalf, TakesKeyframesAlongThatCameLater) {
+  Keyframe later = *map_.find_keyframe(kNew);
+  for (Sighting& sighting : later.sightings) sighting.point.reset();
+  later.parent = kNew;
+  const KeyframeId id = map_.add_keyframe(later);
+  const LengthChanges changes = apply_correction(correction_, before_, map_);
+  EXPECT_THAT(map_.find_keyframe(id)->camera_from_world,
+              PoseNear(move_camera(kGrowth, later.camera_from_world), 1e-6, 1e-6));
+  EXPECT_NEAR(changes.at(id), 1.2, 1e-6);
+}
+
+TEST_F(GrowingHalf, TakesPointsAlongThatCameLater) {
+  MapPoint later = *map_.find_point(*std::ranges::find_if(map_.find_keyframe(kNew)->sightings, [](const Sighting& s) {
+                                       return s.point.has_value();
+                                     })->point);
+  const auto free = std::ranges::find_if(map_.find_keyframe(kNew)->sightings,
+                                         [](const Sighting& sighting) { return !sighting.point; });
+  const int feature = static_cast<int>(free - map_.find_keyframe(kNew)->sightings.begin());
+  later.reference = {kNew, feature};
+  const PointId id = map_.add_point(later);
+  map_.add_observation(later.reference, {id, free->pixel, 1.0f});
+  apply_correction(correction_, before_, map_);
+  EXPECT_THAT(map_.find_point(id)->position_in_world, PointNear(kGrowth * later.position_in_world, 1e-5));
+  EXPECT_NEAR(map_.find_point(id)->max_distance, 1.2f * later.max_distance, 1e-3f);
+}
+
+TEST_F(GrowingHalf, LeavesTheOlderHalfAsItWas) {
+  const LengthChanges changes = apply_correction(correction_, before_, map_);
+  EXPECT_FALSE(changes.contains({Origin::online, kFirstNew - 1}));
+  EXPECT_TRUE(changes.contains({Origin::online, kFirstNew + 1}));
+}
+
+TEST_F(GrowingHalf, ReachesKeyframesThatWereRemoved) {
+  const KeyframeId parent = *map_.find_keyframe(kNew)->parent;
+  map_.remove_keyframe(kNew);
+  const Pose then = map_.camera_from_world(kNew) * inverse(map_.camera_from_world(parent));
+  const LengthChanges changes = apply_correction(correction_, before_, map_);
+  const Pose now = map_.camera_from_world(kNew) * inverse(map_.camera_from_world(parent));
+  EXPECT_THAT(now, PoseNear(scale_lengths(then, 1.2), 1e-6, 1e-6));
+  EXPECT_NEAR(changes.at(kNew), 1.2, 1e-6);
+}
+
+TEST_F(GrowingHalf, BringsLoopsToTheNewLengths) {
+  const LoopEdge old{
+      kNew, {Origin::online, 0}, {Eigen::Quaterniond::Identity(), {0.5, 0.0, 0.0}}, Matrix6::Identity(), 0.8};
+  const LoopEdge now = in_new_lengths(old, apply_correction(correction_, before_, map_));
+  EXPECT_THAT(now.keyframe_from_place.translation, PointNear(Eigen::Vector3d(0.6, 0.0, 0.0), 1e-6));
+  EXPECT_NEAR(now.scale, 0.96, 1e-6);
+  EXPECT_NEAR(now.covariance(0, 0), 1.44, 1e-5);
+}
+
+}  // namespace
+}  // namespace byre
