@@ -1,7 +1,8 @@
 #include "byre/cli/open_options.h"
 
+#include "byre/input/text_file.h"
+
 #include <array>
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +11,11 @@ namespace byre::cli {
 namespace {
 
 constexpr std::array kChoices = {CameraChoice::stereo, CameraChoice::left, CameraChoice::right};
+
+std::optional<double> parse_frame_rate(std::string_view text) {
+  const std::optional<double> rate = parse_number(text);
+  return rate && *rate >= kLowestFrameRate && *rate <= kHighestFrameRate ? rate : std::nullopt;
+}
 
 }  // namespace
 
@@ -21,22 +27,28 @@ std::optional<CameraChoice> parse_camera(std::string_view text) {
 }
 
 void declare_open_options(CLI::App& command, OpenOptions& options) {
-  std::map<std::string, CameraChoice> choices;
-  for (const CameraChoice choice : kChoices) choices.emplace(to_string(choice), choice);
+  const auto set_camera = [&options](const std::string& text) {
+    options.camera = parse_camera(text);
+    if (!options.camera) throw CLI::ValidationError("--camera", "\"" + text + "\" is none of stereo, left and right");
+  };
+  const auto set_frame_rate = [&options](const std::string& text) {
+    options.frame_rate_hz = parse_frame_rate(text);
+    if (!options.frame_rate_hz) throw CLI::ValidationError("--fps", "\"" + text + "\" is no frame rate");
+  };
   command
-      .add_option("--camera", options.camera, "Take both cameras of the recording or one alone (both where it has two)")
-      ->type_name("stereo|left|right")
-      ->transform(CLI::CheckedTransformer(choices).description(""));
+      .add_option_function<std::string>("--camera", set_camera,
+                                        "Take both cameras of the recording or one alone (both where it has two)")
+      ->type_name("stereo|left|right");
   command
       .add_option(
           "--calibration", options.calibration,
           "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
       ->type_name("FILE");
   command
-      .add_option("--fps", options.frame_rate_hz,
-                  "Frame rate of images and videos, in place of the times in their names or of what the video says")
-      ->type_name("HZ")
-      ->check(CLI::Range(kLowestFrameRate, kHighestFrameRate).description(""));
+      .add_option_function<std::string>(
+          "--fps", set_frame_rate,
+          "Frame rate of images and videos, in place of the times in their names or of what the video says")
+      ->type_name("HZ");
 }
 
 }  // namespace byre::cli

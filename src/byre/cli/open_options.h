@@ -2,6 +2,9 @@
 
 #include "byre/dataset/recording.h"
 
+#include <optional>
+#include <string_view>
+
 #include <CLI/App.hpp>
 
 namespace byre::cli {
