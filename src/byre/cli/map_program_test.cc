@@ -175,12 +175,10 @@ TEST_F(MapProgram, NamesBadInput) {
   }
 }
 
-TEST_F(MapProgram, NeedsStereo) {
-  const RenderedFixture monocular("byre_monocular_room", 2, 20.0);
-  fs::remove_all(monocular.folder() / "mav0" / "cam1");
-  const Outcome outcome = run("map " + quoted(monocular.folder()) + " --trajectory out.txt");
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.errors, HasSubstr("has no right camera: only stereo recordings can be mapped"));
+TEST_F(MapProgram, SaysWhyOneCameraBeganNoMap) {
+  const Outcome outcome = map("--trajectory out.txt --camera left --frames 0:2");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("no frame got a pose, for one camera begins a map by moving sideways"));
 }
 
 TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {

@@ -173,11 +173,10 @@ RecordingIndex index_recording(const fs::path& path, const OpenOptions& options)
 
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
   if (is_video_file(path)) return open_video(path, range, options);
-  RecordingIndex index = index_recording(path, options);
-  const bool is_pair = has_pairs(index);
-  index = choose_camera(select(std::move(index), range, path), is_pair, options.camera, path);
-  require_calibrated_sizes(index);
-  return std::make_unique<ImageFiles>(std::move(index));
+  const RecordingIndex whole = index_recording(path, options);
+  const bool is_pair = has_pairs(whole);
+  require_calibrated_sizes(choose_camera(whole, is_pair, options.camera, path));
+  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), is_pair, options.camera, path));
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {

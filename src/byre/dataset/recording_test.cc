@@ -164,6 +164,16 @@ TEST_F(EurocRecording, RefusesAFolderWithoutAnyReadableImage) {
   EXPECT_THAT(open_error(), HasSubstr("cam0/data: none of the images listed can be read"));
 }
 
+TEST_F(EurocRecording, OpensAtARangeWithoutAnyReadableImage) {
+  fs::remove(folder_ / "mav0/cam0/data/1.png");
+  fs::remove(folder_ / "mav0/cam1/data/2.png");
+  const std::unique_ptr<Recording> recording = open({.last = 2});
+  EXPECT_FALSE(recording->read(0).has_value());
+  EXPECT_FALSE(recording->read(1)->right.has_value());
+  EXPECT_FALSE(open({.last = 1})->read(0).has_value());
+  EXPECT_FALSE(open({.first = 1, .last = 2})->read(0)->right.has_value());
+}
+
 TEST_F(EurocRecording, MayHoldItsGroundTruth) {
   EXPECT_FALSE(find_ground_truth(folder_).has_value());
   write("mav0/state_groundtruth_estimate0/data.csv", "");
