@@ -124,5 +124,26 @@ TEST(Monocular, WaitsForItsPlaceInAMapRatherThanBeginAnother) {
   EXPECT_EQ(session.map().online().keyframe_count(), 0);
 }
 
+double error_of(const Session& session, const SimulatedMission& mission) {
+  return absolute_trajectory_error(associate(session.final_trajectory(), mission.truth, {}), Scale::free)
+      ->translation.rmse;
+}
+
+TEST(Monocular, ClosesItsLoopsAndTakesItsFramesAlong) {
+  SimulationOptions options = visit(2);
+  options.landmarks = 5000;
+  const SimulatedMission mission = simulate_mission(one_camera(), circling_trajectory(160, 10.0, 2.0, 1.33), options);
+  Session open(one_camera(), {}, Lanes(make_inline_executor()));
+  run(open, mission);
+  open.finish();
+  Session session = session_of(one_camera());
+  run(session, mission);
+  session.finish();
+  EXPECT_EQ(session.loops().size(), 1u);
+  EXPECT_LT(error_of(session, mission), 0.75 * error_of(open, mission));
+  session.finish_map({}, {});
+  EXPECT_LT(error_of(session, mission), 0.01);
+}
+
 }  // namespace
 }  // namespace byre
