@@ -152,6 +152,7 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
     run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
     run.frames.push_back(thread.process(*decoded));
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
+    if (hooks.look && decoded->images) hooks.look({*decoded->images, run.frames.back(), thread.session()});
     is_begun = is_begun || has_pose(run.frames.back());
     if (is_begun && hooks.offer_map) hooks.offer_map(thread.online());
   }

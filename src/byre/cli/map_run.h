@@ -76,9 +76,17 @@ struct MapRun {
   double wall_seconds = 0.0;     // of it all
 };
 
+// What can be seen of a run right after a frame: valid for the time of the call.
+struct RunView {
+  const ImageFrame& images;
+  const MappedFrame& frame;
+  const Session& session;
+};
+
 struct MapRunHooks {
   std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
+  std::function<void(const RunView& view)> look;  // unless empty, after each frame that could be read; not in its time
   std::function<void(const Map& online)> offer_map;  // unless empty, after each frame from the first with a pose on
   std::function<void(const char* step)> before_finishing_step;
 };

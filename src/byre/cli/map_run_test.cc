@@ -4,6 +4,8 @@
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_error.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 namespace byre::cli {
@@ -54,6 +56,22 @@ TEST(RunMap, FollowsARecordingInEveryPace) {
     EXPECT_THAT(mapped.finishing->faults, SizeIs(0));
     EXPECT_EQ(mapped.finishing->report.after.keyframes, mapped.map.keyframe_count());
   }
+}
+
+TEST(RunMap, ShowsEachFrameWithThePointsSeenInIt) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {});
+  MapRunHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  int looks = 0;
+  hooks.look = [&looks](const RunView& view) {
+    ++looks;
+    EXPECT_EQ(view.images.time, view.frame.time);
+    const std::vector<SeenPoint>& seen = view.session.seen_points();
+    EXPECT_EQ(std::ranges::count_if(seen, &SeenPoint::is_inlier), view.frame.report->inliers);
+  };
+  const MapRun mapped = run_map(*recording, {}, hooks);
+  EXPECT_EQ(looks, static_cast<int>(mapped.frames.size()));
 }
 
 TEST(RunMap, RepeatsItselfWhenPaced) {

@@ -27,6 +27,7 @@ MapRun run_with_progress(Recording& recording, const MapRunOptions& options, con
   const FinishHooks finishing = finish_hooks(interrupt, quiet);
   MapRunHooks hooks;
   hooks.should_stop = finishing.should_stop;
+  hooks.look = more_hooks.look;
   hooks.offer_map = more_hooks.offer_map;
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     if (more_hooks.after_frame) more_hooks.after_frame(done, frame);

@@ -8,7 +8,7 @@
 namespace byre::cli {
 
 // run_map, stopped by Ctrl-C, that tells on the standard error stream how far it is unless quiet. Of the hooks,
-// after_frame and offer_map are called too unless empty; the others are set here.
+// after_frame, look and offer_map are called too unless empty; the others are set here.
 MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
                          const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before = {});
 

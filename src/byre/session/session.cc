@@ -73,6 +73,7 @@ FrameReport Session::process(const Frame& frame) {
     lose_pose(frame, report);
   }
   conclude(frame, located, report);
+  seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
   if (finished) report.job_seconds = finished->seconds;
   return report;
@@ -200,7 +201,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
   keyframe.recording = options_.recording;
   keyframe.parent = track.online_reference;
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
-  add_stereo_points(online_, id, track.tracked.contradicting);
+  add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
   index_place(id);
   last_keyframe_ = id;
   online_reference_ = id;

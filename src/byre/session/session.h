@@ -114,6 +114,9 @@ class Session {
 
   MapView map() const { return {mission_ ? &mission_->offline().map() : nullptr, online_}; }
 
+  // Map points matched in the last frame; none when it had no pose.
+  const std::vector<SeenPoint>& seen_points() const { return seen_; }
+
   // Places found again so far, each with what was seen of it then.
   const std::vector<LoopEdge>& loops() const { return loops_; }
 
@@ -239,6 +242,7 @@ class Session {
   int frames_since_keyframe_ = 0;
   int last_inliers_ = 0;                 // in the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe
+  std::vector<SeenPoint> seen_;          // in the last frame
   std::optional<KeyframeId> reference_;  // of the last frame
   std::vector<KeyframeId> pending_;      // keyframes mapping has not worked on
   std::vector<AnchoredPose> anchored_;   // one per frame with a pose

@@ -215,7 +215,7 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   result.offline_expected = static_cast<int>(expected.offline.size());
   result.offline_matches = static_cast<int>(matches.offline.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(expected.online.size());
-  result.tracked.contradicting = contradicting_features(solution->refined, solution->measured, *frame.features);
+  result.tracked.outliers = outliers_of(solution->refined, solution->measured);
   result.tracked.matches = result.offline_matches + static_cast<int>(matches.online.size());
   tell_offline_points(query, measured, result);
   return result;

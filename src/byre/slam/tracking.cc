@@ -20,11 +20,28 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
   tracked.matches = static_cast<int>(matches.size());
-  tracked.contradicting = contradicting_features(*refined, measured, *frame.features);
+  tracked.outliers = outliers_of(*refined, measured);
   return tracked;
 }
 
 }  // namespace
+
+std::vector<int> contradicting_features(const TrackedFrame& tracked, const Features& features) {
+  std::vector<int> contradicting;
+  for (const TrackedFeature& feature : tracked.outliers) {
+    if (shows_patch(feature, features)) contradicting.push_back(feature.feature);
+  }
+  std::ranges::sort(contradicting);
+  return contradicting;
+}
+
+std::vector<SeenPoint> seen_points(const TrackedFrame& tracked) {
+  std::vector<SeenPoint> seen;
+  seen.reserve(tracked.features.size() + tracked.outliers.size());
+  for (const TrackedFeature& feature : tracked.features) seen.push_back({feature.point, feature.pixel, true});
+  for (const TrackedFeature& feature : tracked.outliers) seen.push_back({feature.point, feature.pixel, false});
+  return seen;
+}
 
 std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
   std::vector<PointId> points;

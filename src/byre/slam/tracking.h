@@ -24,10 +24,23 @@ struct TrackedFrame {
   Matrix6 match_covariance = Matrix6::Zero();  // of that, what the matches leave open: relative to the map around it
   KeyframeId reference;                        // the keyframe that shares most points
   std::vector<TrackedFeature> features;        // inliers only, ascending
-  std::vector<int> contradicting;              // features that show a point's very patch, but not where the pose has it
+  std::vector<TrackedFeature> outliers;        // matches that are not where the pose has their points
   int expected = 0;                            // map points in the frustum
   int matches = 0;                             // of those, matched before outliers were taken out
 };
+
+// Of the outliers, the features where the point's very patch was found, ascending: what they show has moved, or moves.
+std::vector<int> contradicting_features(const TrackedFrame& tracked, const Features& features);
+
+// A map point as it was matched in a frame.
+struct SeenPoint {
+  PointId point;
+  Eigen::Vector2f pixel;  // in the left rectified image
+  bool is_inlier = false;
+};
+
+// What there is to show of a tracked frame: inliers, then outliers.
+std::vector<SeenPoint> seen_points(const TrackedFrame& tracked);
 
 // In which order points of an offline map and of an online one are used.
 //   first     a pose from offline points, where there are enough, guides the search for online ones

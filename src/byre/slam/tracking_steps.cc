@@ -26,6 +26,15 @@ PixelMeasurement measure(const MapView& map, const MapPoint& point, const Camera
   return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
 }
 
+std::vector<TrackedFeature> matches_by(const PoseRefinement& refined, const MeasuredPoints& measured, bool agreement) {
+  std::vector<TrackedFeature> matches;
+  matches.reserve(measured.features.size());
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    if (static_cast<bool>(refined.inliers[i]) == agreement) matches.push_back(measured.features[i]);
+  }
+  return matches;
+}
+
 }  // namespace
 
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
@@ -83,28 +92,16 @@ std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<
 }
 
 std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
-  std::vector<TrackedFeature> inliers;
-  inliers.reserve(measured.features.size());
-  for (std::size_t i = 0; i < measured.features.size(); ++i) {
-    if (refined.inliers[i]) inliers.push_back(measured.features[i]);
-  }
-  return inliers;
+  return matches_by(refined, measured, true);
+}
+
+std::vector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+  return matches_by(refined, measured, false);
 }
 
 bool shows_patch(const TrackedFeature& feature, const Features& features) {
   return features.find_patch(feature.feature) == nullptr ||
          feature.pixel_sigma < corner_measurement(features.keypoint(feature.feature)).sigma;
-}
-
-std::vector<int> contradicting_features(const PoseRefinement& refined, const MeasuredPoints& measured,
-                                        const Features& features) {
-  std::vector<int> contradicting;
-  for (std::size_t i = 0; i < measured.features.size(); ++i) {
-    const TrackedFeature& feature = measured.features[i];
-    if (!refined.inliers[i] && shows_patch(feature, features)) contradicting.push_back(feature.feature);
-  }
-  std::ranges::sort(contradicting);
-  return contradicting;
 }
 
 TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,

@@ -38,13 +38,10 @@ SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFe
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});
 
 std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+std::vector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
 
 // Whether the feature was found to show the point itself, and not just to resemble it, as far as patches can tell.
 bool shows_patch(const TrackedFeature& feature, const Features& features);
-
-// Outliers whose patches were found, ascending: what they show has moved, or is moving.
-std::vector<int> contradicting_features(const PoseRefinement& refined, const MeasuredPoints& measured,
-                                        const Features& features);
 
 // What is left to the caller: counts of expected points and of matches.
 TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,

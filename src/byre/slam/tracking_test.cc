@@ -95,6 +95,20 @@ TEST_F(TrackingOnATrueMap, CountsExpectedMatchedAndInliers) {
   EXPECT_GE(static_cast<int>(tracked->features.size()), TrackOptions{}.min_inliers);
 }
 
+TEST_F(TrackingOnATrueMap, ShowsInliersAndOutliersWithTheirPoints) {
+  const SimulatedMission disturbed = visit(3, 0.3);
+  const auto tracked = track_from(rough_, disturbed);
+  ASSERT_TRUE(tracked);
+  EXPECT_FALSE(tracked->outliers.empty());
+  EXPECT_EQ(tracked->features.size() + tracked->outliers.size(), static_cast<std::size_t>(tracked->matches));
+  const std::vector<SeenPoint> seen = seen_points(*tracked);
+  ASSERT_EQ(seen.size(), static_cast<std::size_t>(tracked->matches));
+  EXPECT_TRUE(seen.front().is_inlier);
+  EXPECT_EQ(seen.front().point, tracked->features.front().point);
+  EXPECT_FALSE(seen.back().is_inlier);
+  EXPECT_EQ(seen.back().pixel, tracked->outliers.back().pixel);
+}
+
 TEST_F(TrackingOnATrueMap, NamesFeaturesOnceAndAscending) {
   const auto tracked = track_from(rough_, second_);
   ASSERT_TRUE(tracked);
