@@ -23,8 +23,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 // Random bytes would never become a map: mutations begin with one, and mostly get right checksums.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
-  if (size < byre::kHeaderSize) {
-    static const byre::MapBytes original = byre::write_map(byre::StoredMapScene(2, 4).stored());
+  if (size < byre::kSmallestHeaderSize) {
+    static const byre::MapBytes without_plan = byre::write_map(byre::StoredMapScene(2, 4).stored());
+    static const byre::MapBytes with_plan = byre::write_map(byre::StoredMapScene(2, 4).stored_with_plan());
+    const byre::MapBytes& original = seed % 2 == 0 ? without_plan : with_plan;
     size = std::min(original.size(), max_size);
     std::memcpy(data, original.data(), size);
   }

@@ -29,7 +29,7 @@ std::size_t mutant_count() {
 
 std::vector<MapBytes> originals() {
   return {write_map({}), write_map(StoredMapScene().stored()), write_map(StoredMapScene(2, 3, 2).stored()),
-          write_map(StoredMapScene(9, 30, 3).stored())};
+          write_map(StoredMapScene(9, 30, 3).stored()), write_map(StoredMapScene(2, 3, 4).stored_with_plan())};
 }
 
 // What became of the mutants so far.
@@ -104,7 +104,7 @@ TEST(DamagedMaps, AreReadAsSoundMapsOrRefused) {
 
   // Otherwise the mutants say nothing.
   for (const char* const section : {"summary", "notes", "provenance", "rigs", "keyframes", "features", "patches",
-                                    "points", "observations", "words", "header"}) {
+                                    "points", "observations", "words", "plan", "header"}) {
     EXPECT_GT(tally.refusals[section], 0u) << section << " was never refused for more than its checksum";
   }
   EXPECT_GT(tally.read_with_right_checksums, count / 100);

@@ -22,5 +22,15 @@ TEST(OldFormats, FirstIsReadAndWrittenTheSame) {
   EXPECT_EQ(write_map(stored), read_file(kFormats / "format_1.byre"));
 }
 
+TEST(OldFormats, SecondIsReadAndWrittenTheSame) {
+  const StoredMap stored = load_map(kFormats / "format_2.byre");
+  EXPECT_THAT(find_faults(stored), IsEmpty());
+  EXPECT_EQ(stored.map.keyframe_count(), 5);
+  ASSERT_TRUE(stored.plan.has_value());
+  EXPECT_EQ(stored.plan->plan, "barn 3, ground floor");
+  EXPECT_EQ(stored.plan->plan_from_map.scale, 1.25);
+  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_2.byre"));
+}
+
 }  // namespace
 }  // namespace byre

@@ -23,6 +23,7 @@ Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
+Action declare_register(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
 Action declare_vocabulary(CLI::App& command);

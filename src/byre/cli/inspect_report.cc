@@ -1,6 +1,7 @@
 #include "byre/cli/inspect_report.h"
 
 #include "byre/cli/formatted.h"
+#include "byre/cli/register_report.h"
 
 #include <algorithm>
 #include <string_view>
@@ -113,6 +114,7 @@ std::string origin_text(const StoredMap& stored, const MapCounts& counts) {
     text += wide_row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
   }
   for (const auto& [key, note] : stored.notes) text += wide_row(key, note);
+  if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
   return text;
 }
 
@@ -211,6 +213,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"pose_source", name_of(stored.pose_source)},
       {"recordings", recordings_json(stored.recordings, inspection.counts)},
       {"notes", stored.notes},
+      {"plan", stored.plan ? registration_json(*stored.plan) : Json()},
       {"vocabulary_checksum", formatted("%016llx", static_cast<unsigned long long>(stored.vocabulary_checksum))},
       {"counts", to_json(inspection.counts)},
       {"observations_per_point", to_json(inspection.observations_per_point)},

@@ -118,10 +118,10 @@ TEST(InspectReport, IsJsonWithStableKeys) {
   const Json json = Json::parse(to_json(stored, inspect(stored), file));
   std::vector<std::string> keys;
   for (const auto& item : json.items()) keys.push_back(item.key());
-  EXPECT_THAT(
-      keys, testing::UnorderedElementsAre("file", "scale", "pose_source", "recordings", "notes", "vocabulary_checksum",
-                                          "counts", "observations_per_point", "reprojection_error", "bounding_box",
-                                          "path_length", "memory_bytes", "faults"));
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "scale", "pose_source", "recordings", "notes", "plan",
+                                                  "vocabulary_checksum", "counts", "observations_per_point",
+                                                  "reprojection_error", "bounding_box", "path_length", "memory_bytes",
+                                                  "faults"));
   EXPECT_EQ(json["file"]["section_bytes"]["header"], 432);
   EXPECT_EQ(json["counts"]["points"], 16);
   EXPECT_EQ(json["notes"]["site"], "barn 3");
@@ -130,6 +130,17 @@ TEST(InspectReport, IsJsonWithStableKeys) {
   EXPECT_EQ(json["recordings"][0]["last_time_ns"], 200000000000);
   EXPECT_EQ(json["pose_source"], "given");
   EXPECT_EQ(json["observations_per_point"]["p50"], 2.0);
+}
+
+TEST(InspectReport, SaysInJsonWhereTheMapLiesOnItsPlan) {
+  const StoredMap stored = StoredMapScene().stored_with_plan();
+  const Json plan = Json::parse(to_json(stored, inspect(stored), {})).at("plan");
+  EXPECT_EQ(plan.at("plan"), "barn 3, ground floor");
+  EXPECT_EQ(plan.at("scale"), 1.25);
+  EXPECT_EQ(plan.at("translation_m"), Json({12.5, -3.25, 0.0}));
+  EXPECT_EQ(plan.at("covariance").size(), 49);
+  const StoredMap without = StoredMapScene().stored();
+  EXPECT_TRUE(Json::parse(to_json(without, inspect(without), {})).at("plan").is_null());
 }
 
 TEST(PointCloud, HoldsEveryPoint) {

@@ -5,6 +5,7 @@
 #include "byre/cli/localise_run.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
+#include "byre/cli/pose_frame.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
 #include "byre/cli/stored_map.h"
@@ -32,6 +33,7 @@ struct LocaliseCommandOptions {
   std::vector<fs::path> inputs;
   FrameRange range;
   OpenOptions open;
+  PoseFrame frame = PoseFrame::map;
   std::optional<fs::path> truth;
   std::optional<fs::path> map_truth;
   std::optional<fs::path> trajectory;
@@ -95,7 +97,9 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
   LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
                               : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);
   progress.close();
-  return {std::move(run), {options.map.string(), recording ? options.inputs.front().string() : "images", frames}};
+  LocaliseProtocol protocol{options.map.string(), recording ? options.inputs.front().string() : "images", frames, {}};
+  if (options.frame == PoseFrame::plan) protocol.plan = stored.plan;
+  return {std::move(run), std::move(protocol)};
 }
 
 std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, const LocaliseRun& run,
@@ -105,17 +109,18 @@ std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, c
   return errors_in_map(run, stored, options.map_truth ? load_truth(*options.map_truth) : truth, truth);
 }
 
-void write_found(const LocaliseRun& run, const fs::path& path) {
+void write_found(const Work& work, const fs::path& path) {
   Trajectory found;
-  for (const LocalisedFrame& frame : run.frames) {
+  for (const LocalisedFrame& frame : work.run.frames) {
     if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
   }
-  write_whole(path, found);
+  write_whole(path, work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found);
 }
 
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
   if (options.trajectory) require_writable(*options.trajectory);
   StoredMap stored = load_map(options.map);
+  if (options.frame == PoseFrame::plan) require_plan(stored.plan, options.map);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   add_words(stored, vocabulary);
 
@@ -123,9 +128,9 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
   const InterruptCatcher interrupt;
   const Work work = localise_all(options, stored, vocabulary, interrupt);
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
-  if (options.trajectory) write_found(work.run, *options.trajectory);
-  const auto print = options.json ? to_json : to_text;
-  result << print(work.run, work.protocol, judge(options, work.run, stored));
+  if (options.trajectory) write_found(work, *options.trajectory);
+  const std::optional<LocalisationErrors> errors = judge(options, work.run, stored);
+  result << (options.json ? to_json(work.run, work.protocol, errors) : to_text(work.run, work.protocol, errors));
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 
@@ -138,6 +143,7 @@ void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
       ->required();
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
+  declare_pose_frame(command, options.frame);
   command.add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
       ->type_name("FILE|FOLDER");
   command
@@ -152,8 +158,7 @@ void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
 Action declare_localise(CLI::App& command) {
   const auto options = std::make_shared<LocaliseCommandOptions>();
   declare_inputs(command, *options);
-  command.add_option("--trajectory", options->trajectory, "Write the poses found, in the map's frame. TUM format")
-      ->type_name("FILE");
+  command.add_option("--trajectory", options->trajectory, "Write the poses found. TUM format")->type_name("FILE");
   command
       .add_option("--vocabulary", options->vocabulary, "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");

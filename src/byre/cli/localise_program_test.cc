@@ -4,6 +4,8 @@
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/map/map_file.h"
 
 #include <cmath>
 
@@ -100,6 +102,23 @@ TEST_F(LocaliseProgram, TakesImagesForTheCameraThatIsNamed) {
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(of_right[axis], of_calibration[axis], 1e-6);
   const double apart = std::hypot(of_left[0] - of_right[0], of_left[1] - of_right[1], of_left[2] - of_right[2]);
   EXPECT_NEAR(apart, 0.11, 0.03) << "taken for the left camera's, the body is off by the baseline";
+}
+
+TEST_F(LocaliseProgram, GivesPosesOnThePlanThatTheMapLiesOn) {
+  StoredMap stored = load_map(folder_ / "room.byre");
+  stored.plan.emplace();
+  stored.plan->plan_from_map.target_from_source.translation << 1000.0, 2000.0, 0.0;
+  save_map(stored, folder_ / "room.byre");
+  const std::string frames = kRoom + " --frames 1:4 --stride 2 --quiet --json";
+  localise(frames + " --trajectory map.txt");
+  const json report = json::parse(localise(frames + " --trajectory plan.txt --frame plan").output);
+  const Trajectory in_map = read_trajectory(folder_ / "map.txt");
+  const Trajectory on_plan = read_trajectory(folder_ / "plan.txt");
+  ASSERT_THAT(on_plan, SizeIs(2));
+  const Eigen::Vector3d shift(1000.0, 2000.0, 0.0);
+  EXPECT_THAT(on_plan[1].world_from_body.translation, PointNear(in_map[1].world_from_body.translation + shift, 1e-6));
+  EXPECT_NEAR(report.at("per_frame").at(1).at("position_on_plan_m").at(0),
+              report.at("per_frame").at(1).at("position_in_map_m").at(0).get<double>() + 1000.0, 1e-6);
 }
 
 TEST_F(LocaliseProgram, TakesImagesForTheMapsCamera) {

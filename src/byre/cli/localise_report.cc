@@ -97,7 +97,14 @@ std::string error_rows(const LocalisationErrors& errors, std::size_t frames) {
   return text;
 }
 
-Json frame_json(const LocalisedFrame& frame) {
+void add_pose(const Pose& frame_from_body, const char* position_name, const char* rotation_name, Json& json) {
+  const Eigen::Vector3d& position = frame_from_body.translation;
+  const Eigen::Vector4d rotation = frame_from_body.rotation.coeffs();
+  json[position_name] = {position.x(), position.y(), position.z()};
+  json[rotation_name] = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+}
+
+Json frame_json(const LocalisedFrame& frame, const std::optional<PlanRegistration>& plan) {
   const Localisation& found = frame.localisation;
   Json json = {{"name", frame.name},
                {"time_s", to_seconds(frame.time)},
@@ -108,11 +115,10 @@ Json frame_json(const LocalisedFrame& frame) {
                {"inliers", found.inliers},
                {"extract_ms", 1e3 * frame.extract_seconds},
                {"localise_ms", 1e3 * frame.localise_seconds}};
-  if (frame.world_from_body) {
-    const Eigen::Vector3d& position = frame.world_from_body->translation;
-    const Eigen::Vector4d rotation = frame.world_from_body->rotation.coeffs();
-    json["position_in_map_m"] = {position.x(), position.y(), position.z()};
-    json["rotation_map_from_body_xyzw"] = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+  if (!frame.world_from_body) return json;
+  add_pose(*frame.world_from_body, "position_in_map_m", "rotation_map_from_body_xyzw", json);
+  if (plan) {
+    add_pose(plan_from_body(*plan, *frame.world_from_body), "position_on_plan_m", "rotation_plan_from_body_xyzw", json);
   }
   return json;
 }
@@ -142,6 +148,7 @@ std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
                     const std::optional<LocalisationErrors>& errors) {
   const int found = count_found(run);
   std::string text = row("map", protocol.map);
+  if (protocol.plan) text += row("plan", protocol.plan->plan);
   text += row("frames", formatted("%s, %d frames", protocol.input.c_str(), protocol.frames));
   text += row("found", formatted("%d of %zu frames (%.1f %%), each without a guess", found, run.frames.size(),
                                  percent(found, run.frames.size())));
@@ -176,7 +183,7 @@ std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
   if (errors) json["errors"] = errors_json(*errors);
   json["warnings"] = run.warnings;
   json["per_frame"] = Json::array();
-  for (const LocalisedFrame& frame : run.frames) json["per_frame"].push_back(frame_json(frame));
+  for (const LocalisedFrame& frame : run.frames) json["per_frame"].push_back(frame_json(frame, protocol.plan));
   return json.dump(1) + "\n";
 }
 

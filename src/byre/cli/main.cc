@@ -28,6 +28,7 @@ constexpr std::array kCommands = {
     Command{"map", "Turn a recording into a map and a trajectory", declare_map},
     Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
     Command{"localise", "Find frames in a map, each without a guess", declare_localise},
+    Command{"register", "Find where a map lies on a floor plan", declare_register},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
     Command{"scale", "Give the map of one camera its size, by a distance that is known", declare_scale},
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},

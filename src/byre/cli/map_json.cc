@@ -1,5 +1,6 @@
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
+#include "byre/cli/register_report.h"
 #include "byre/cli/report_json.h"
 #include "byre/cli/stored_map.h"
 
@@ -65,6 +66,8 @@ Json protocol_json(const MapProtocol& protocol) {
   if (!protocol.extended.empty()) json["extended"] = protocol.extended;
   if (!protocol.offline.empty()) {
     json["offline_map"] = protocol.offline;
+    json["pose_frame"] = protocol.plan ? "plan" : "map";
+    if (protocol.plan) json["registration"] = registration_json(*protocol.plan);
     json["localise_only"] = !protocol.options.session.map_online;
     json["offline_weight"] = protocol.options.session.track.offline_weight;
     json["offline_policy"] = name_of(protocol.options.session.track.offline_policy);

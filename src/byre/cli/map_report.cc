@@ -151,7 +151,8 @@ std::string closing_rows(const MapRun& run, const std::vector<std::string>& file
 std::string describe_offline(const MapProtocol& protocol) {
   const Map& map = protocol.options.offline->map();
   return protocol.offline + formatted(", %d keyframes, %d points", map.keyframe_count(), map.point_count()) +
-         (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)");
+         (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)") +
+         (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
 }
 
 // What "byre map" is about.

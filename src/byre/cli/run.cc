@@ -65,6 +65,9 @@ MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
   protocol.options.vocabulary = open_vocabulary(options.vocabulary);
   if (!options.map) return protocol;
   protocol.offline = options.map->string();
+  if (options.frame == PoseFrame::plan) {
+    protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
+  }
   protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary);
   return protocol;
 }
@@ -76,14 +79,16 @@ std::ofstream open_events(const fs::path& path) {
   return file;
 }
 
-MapRun run_and_log(Recording& recording, const MapRunOptions& run_options, const RunOptions& options,
+MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options,
                    const InterruptCatcher& interrupt) {
-  if (!options.events) return run_with_progress(recording, run_options, {}, interrupt, options.quiet);
+  if (!options.events) return run_with_progress(recording, protocol.options, {}, interrupt, options.quiet);
   std::ofstream file = open_events(*options.events);
   EventLog log(file);
   MapRunHooks hooks;
-  hooks.after_frame = [&log](int done, const MappedFrame& frame) { log.note(done - 1, frame); };
-  MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet);
+  hooks.after_frame = [&](int done, const MappedFrame& frame) {
+    log.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
+  };
+  MapRun run = run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
   if (!file)
     run.warnings.push_back(options.events->string() + ": events are missing, as the file could not be written");
   return run;
@@ -127,7 +132,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
 
   limit_image_threads(1);
   const InterruptCatcher interrupt(options.outputs());
-  MapRun run = run_and_log(*opened.recording, protocol.options, options, interrupt);
+  MapRun run = run_and_log(*opened.recording, protocol, options, interrupt);
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
@@ -138,6 +143,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   }
   const ResourceUse resources = resources_used_so_far();
   const Mission mission = judge(run, protocol.options, truth, opened);
+  if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
   write_results(options, run, protocol, mission, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
   if (interrupt.caught()) return ExitCode::interrupted;

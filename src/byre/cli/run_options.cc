@@ -22,12 +22,14 @@ constexpr const char* kFooter = R"(Examples:
   byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
   byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
   byre run evening_round --map barn.byre --camera left --events events.jsonl
+  byre run evening_round --map barn-plan.byre --frame plan --trajectory plan.txt
   byre run evening_round --truth evening_round --stats without_map.json
 
 With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
 beside them, and says of each frame how far its pose may be trusted. The map's file is only read. Poses are in the map's
 frame, those of odometry in one that begins where the robot does and never jumps. With --localise-only nothing is mapped
-beside the map; without --map all is, as "byre map" does it, finishing included. With truth, errors are those in the map's
+beside the map; with --frame plan poses in the map become poses on the floor plan that "byre register" found it on.
+Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
 Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
@@ -39,6 +41,7 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       command.add_option("--map", options.map, "The offline map of the mission (none: plain SLAM)")->type_name("MAP");
   command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
       ->needs(map);
+  declare_pose_frame(command, options.frame)->needs(map);
   CLI::Option* const truth =
       command
           .add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/cli/map_run.h"
+#include "byre/cli/pose_frame.h"
 
 #include <filesystem>
 #include <optional>
@@ -15,6 +16,7 @@ struct RunOptions {
   std::filesystem::path recording;
   std::optional<std::filesystem::path> map;  // the offline map; without it plain SLAM
   bool localise_only = false;
+  PoseFrame frame = PoseFrame::map;
   std::optional<std::filesystem::path> online_map;
   std::optional<std::filesystem::path> events;
   std::optional<std::filesystem::path> trajectory;

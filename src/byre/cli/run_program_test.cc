@@ -4,6 +4,7 @@
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
+#include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"
 #include "byre/slam/state.h"
 
@@ -167,6 +168,29 @@ TEST_F(MissionProgram, PublishesPosesInTheMapsFrame) {
   const json errors = json::parse(read("stats.json")).at("errors");
   EXPECT_LT(errors.at("causal").at("position_m").at("max"), 0.05);
   EXPECT_EQ(errors.at("trusted_off_by_more_than_0.2m"), 0);
+}
+
+TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
+  StoredMap stored = load_map(folder_ / "room.byre");
+  stored.plan.emplace();
+  stored.plan->plan = "plan.yaml";
+  stored.plan->plan_from_map.target_from_source = {rotation_exp({0.0, 0.0, 2.0}), {1000.0, 2000.0, 0.0}};
+  save_map(stored, folder_ / "room.byre");
+  ASSERT_EQ(mission("--causal-trajectory map.txt --odometry a.txt --quiet").exit_code, 0);
+  const Outcome outcome = mission(
+      "--frame plan --causal-trajectory plan.txt --odometry b.txt --events events.jsonl --stats stats.json --truth " +
+      kRoom);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("; poses on the plan plan.yaml\n"));
+  const Pose in_map = read_trajectory(folder_ / "map.txt").back().world_from_body;
+  const Pose on_plan = read_trajectory(folder_ / "plan.txt").back().world_from_body;
+  EXPECT_THAT(on_plan, PoseNear(stored.plan->plan_from_map.target_from_source * in_map, 1e-6, 1e-6));
+  EXPECT_EQ(read("a.txt"), read("b.txt")) << "odometry has a frame of its own";
+  const json stats = json::parse(read("stats.json"));
+  EXPECT_EQ(stats.at("protocol").at("pose_frame"), "plan");
+  EXPECT_NEAR(stats.at("frames").back().at("position_m").at(1), on_plan.translation.y(), 1e-6);
+  EXPECT_LT(stats.at("errors").at("causal").at("position_m").at("max"), 0.05) << "errors stay those in the map";
+  EXPECT_GT(lines_of("events.jsonl").back().at("position_m").at(1), 1900.0);
 }
 
 TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {

@@ -103,6 +103,7 @@ ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, c
   scaled.stored = stored;
   scaled.stored.map = scaled_copy(stored.map, scaled.factor);
   scaled.stored.scale = MapScale::metric;
+  if (scaled.stored.plan) scaled.stored.plan->plan_from_map.scale /= scaled.factor;
   return scaled;
 }
 

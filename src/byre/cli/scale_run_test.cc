@@ -54,6 +54,16 @@ TEST(ScaleByDistance, LeavesWhatIsSeenWhereItIsInTheImages) {
   }
 }
 
+TEST(ScaleByDistance, LeavesTheMapWhereItLiesOnItsPlan) {
+  StoredMap stored = unscaled();
+  stored.plan.emplace();
+  stored.plan->plan_from_map = {3.5, {rotation_exp({0.1, 0.2, 0.3}), {10.0, -4.0, 1.0}}};
+  const ScaledMap scaled = scale_by_distance(stored, "point:3", "point:40", 4.2);
+  const Eigen::Vector3d before = stored.plan->plan_from_map * find_place(stored, "point:7");
+  const Eigen::Vector3d now = scaled.stored.plan.value().plan_from_map * find_place(scaled.stored, "point:7");
+  EXPECT_LT((now - before).norm(), 1e-9);
+}
+
 TEST(FindPlace, TakesTheCameraAtATime) {
   EXPECT_LT((find_place(unscaled(), "time:0.41") - camera_in_world(unscaled(), 1)).norm(), 1e-12);
 }

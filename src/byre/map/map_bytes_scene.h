@@ -20,9 +20,7 @@ inline constexpr std::size_t kSectionCountAt = 12;
 inline constexpr std::size_t kFileSizeAt = 16;
 inline constexpr std::size_t kTableAt = 24;
 inline constexpr std::size_t kTableEntrySize = 40;
-inline constexpr std::size_t kSectionCountOfFormat = 10;
-inline constexpr std::size_t kHeaderChecksumAt = kTableAt + kSectionCountOfFormat * kTableEntrySize;
-inline constexpr std::size_t kHeaderSize = kHeaderChecksumAt + 8;
+inline constexpr std::size_t kSmallestHeaderSize = kTableAt + 10 * kTableEntrySize + 8;  // of format 1
 
 // Precondition: the value lies within the bytes.
 template <PlainNumber T>
@@ -34,6 +32,17 @@ T value_at(const MapBytes& bytes, std::size_t place) {
 template <PlainNumber T>
 void put_at(MapBytes& bytes, std::size_t place, T value) {
   std::memcpy(bytes.data() + place, &value, sizeof(T));
+}
+
+// Precondition: the bytes are at least as many as the smallest header's. Bytes of no known format count as format 1.
+inline std::size_t section_count(const MapBytes& bytes) {
+  return value_at<std::uint32_t>(bytes, kFormatAt) == 2 ? 11 : 10;
+}
+inline std::size_t header_checksum_at(const MapBytes& bytes) {
+  return kTableAt + section_count(bytes) * kTableEntrySize;
+}
+inline std::size_t header_size(const MapBytes& bytes) {
+  return header_checksum_at(bytes) + 8;
 }
 
 // A section's entry in the table of the header.
@@ -59,20 +68,21 @@ inline void write_entry(MapBytes& bytes, const TableEntry& entry) {
 
 inline TableEntry section_of(const MapBytes& bytes, std::string_view name) {
   TableEntry entry;
-  for (std::size_t i = 0; i < kSectionCountOfFormat && entry.name != name; ++i) entry = table_entry(bytes, i);
+  for (std::size_t i = 0; i < section_count(bytes) && entry.name != name; ++i) entry = table_entry(bytes, i);
   return entry;
 }
 
 // Makes all checksums right again, so that a change is found by nothing else. Leaves sections alone that the table
 // places outside the bytes, and bytes without a whole header.
 inline void refresh_checksums(MapBytes& bytes) {
-  if (bytes.size() < kHeaderSize) return;
-  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+  if (bytes.size() < kSmallestHeaderSize || bytes.size() < header_size(bytes)) return;
+  for (std::size_t i = 0; i < section_count(bytes); ++i) {
     const TableEntry entry = table_entry(bytes, i);
     if (entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) continue;
     put_at(bytes, entry.at + 32, checksum(std::span(bytes).subspan(entry.offset, entry.size)));
   }
-  put_at(bytes, kHeaderChecksumAt, checksum(std::span(bytes).first(kHeaderChecksumAt)));
+  const std::size_t end = header_checksum_at(bytes);
+  put_at(bytes, end, checksum(std::span(bytes).first(end)));
 }
 
 // Cuts out bytes of a section and puts others in their place; sizes and places of the sections are made to fit.
@@ -86,7 +96,7 @@ inline void replace_in_section(MapBytes& bytes, std::size_t index, std::size_t b
   const std::uint64_t growth = replacement.size() - count;  // may wrap around, and then does so again below
   changed.size += growth;
   write_entry(bytes, changed);
-  for (std::size_t i = index + 1; i < kSectionCountOfFormat; ++i) {
+  for (std::size_t i = index + 1; i < section_count(bytes); ++i) {
     TableEntry later = table_entry(bytes, i);
     later.offset += growth;
     write_entry(bytes, later);

@@ -14,7 +14,8 @@ namespace {
 
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 1;  // the one written, and the newest that is read
+constexpr std::uint32_t kFormat = 2;             // the newest that is read, and written for a map with a plan
+constexpr std::uint32_t kFormatWithoutPlan = 1;  // still written for all others, so that older programs read them
 
 enum Section : std::size_t {
   kSummary,
@@ -27,45 +28,57 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
+  kPlan,  // from format 2 on
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
-    "summary", "notes", "provenance", "rigs", "keyframes", "features", "patches", "points", "observations", "words"};
+    "summary", "notes",  "provenance",   "rigs",  "keyframes", "features",
+    "patches", "points", "observations", "words", "plan"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
-constexpr std::size_t kHeaderBytes =
-    kFixedHeaderBytes + kSectionCount * kTableEntryBytes + sizeof(std::uint64_t);  // with its own checksum
+
+constexpr std::size_t section_count(std::uint32_t format) {
+  return format == kFormatWithoutPlan ? std::size_t{kPlan} : std::size_t{kSectionCount};
+}
+
+// With its own checksum.
+constexpr std::size_t header_bytes(std::size_t sections) {
+  return kFixedHeaderBytes + sections * kTableEntryBytes + sizeof(std::uint64_t);
+}
 
 using Bytes = std::span<const std::byte>;
 
 // Of sections one after the other, the place where each ends.
-using SectionEnds = std::array<std::size_t, kSectionCount>;
+using SectionEnds = std::vector<std::size_t>;
 
 SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {
   const Keyframes all = keyframes_of(stored.map);
-  SectionEnds ends{};
+  SectionEnds ends;
   write_summary(summarise(stored.map), writer);
-  ends[kSummary] = writer.size();
+  ends.push_back(writer.size());
   write_notes(stored.notes, writer);
-  ends[kNotes] = writer.size();
+  ends.push_back(writer.size());
   write_provenance(stored, writer);
-  ends[kProvenance] = writer.size();
+  ends.push_back(writer.size());
   write_rigs(stored.map.rigs(), writer);
-  ends[kRigs] = writer.size();
+  ends.push_back(writer.size());
   write_keyframes(all, writer);
-  ends[kKeyframes] = writer.size();
+  ends.push_back(writer.size());
   write_features(all, writer);
-  ends[kFeatures] = writer.size();
+  ends.push_back(writer.size());
   write_patches(all, writer);
-  ends[kPatches] = writer.size();
+  ends.push_back(writer.size());
   write_points(stored.map, writer);
-  ends[kPoints] = writer.size();
+  ends.push_back(writer.size());
   write_observations(all, writer);
-  ends[kObservations] = writer.size();
+  ends.push_back(writer.size());
   write_words(all, stored.vocabulary_checksum, writer);
-  ends[kWords] = writer.size();
+  ends.push_back(writer.size());
+  if (!stored.plan) return ends;
+  write_plan(*stored.plan, writer);
+  ends.push_back(writer.size());
   return ends;
 }
 
@@ -77,14 +90,15 @@ void write_name(std::string_view name, ByteWriter& writer) {
 
 void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
-  writer.write(kFormat);
-  writer.write(static_cast<std::uint32_t>(kSectionCount));
-  writer.write(std::uint64_t{kHeaderBytes + content.size()});
+  const std::size_t header_size = header_bytes(ends.size());
+  writer.write(ends.size() == kSectionCount ? kFormat : kFormatWithoutPlan);
+  writer.write(static_cast<std::uint32_t>(ends.size()));
+  writer.write(std::uint64_t{header_size + content.size()});
   std::size_t begin = 0;
-  for (std::size_t i = 0; i < kSectionCount; ++i) {
+  for (std::size_t i = 0; i < ends.size(); ++i) {
     const Bytes section = content.subspan(begin, ends[i] - begin);
     write_name(kSectionNames[i], writer);
-    writer.write(std::uint64_t{kHeaderBytes + begin});
+    writer.write(std::uint64_t{header_size + begin});
     writer.write(std::uint64_t{section.size()});
     writer.write(checksum(section));
     begin = ends[i];
@@ -98,9 +112,9 @@ struct SectionPlace {
   std::size_t size = 0;
   std::uint64_t checksum = 0;
 };
-using SectionTable = std::array<SectionPlace, kSectionCount>;
+using SectionTable = std::vector<SectionPlace>;  // as many as the file's format has
 
-void require_format(ByteReader& header, const std::string& name) {
+std::uint32_t read_format(ByteReader& header, const std::string& name) {
   const auto format = header.read<std::uint32_t>();
   if (format == 0) header.fail("has the format 0, which never was");
   if (format > kFormat) {
@@ -109,6 +123,7 @@ void require_format(ByteReader& header, const std::string& name) {
         "has format " + std::to_string(format) + ", this program knows formats up to " + std::to_string(kFormat),
         "use the version of byre that wrote it, or a newer one");
   }
+  return format;
 }
 
 SectionPlace read_place(ByteReader& header, std::string_view expected_name, std::size_t expected_offset,
@@ -135,18 +150,19 @@ SectionTable read_table(Bytes bytes, const std::string& name) {
   }
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
-  require_format(header, name);
-  if (header.read<std::uint32_t>() != kSectionCount) header.fail("has not the sections of its format");
+  const std::size_t sections = section_count(read_format(header, name));
+  const std::size_t header_size = header_bytes(sections);
+  if (header.read<std::uint32_t>() != sections) header.fail("has not the sections of its format");
   if (header.read<std::uint64_t>() != bytes.size()) {
     header.fail("is of a file of another length than its " + std::to_string(bytes.size()) + " bytes");
   }
   SectionTable table;
-  std::size_t offset = kHeaderBytes;
-  for (std::size_t i = 0; i < kSectionCount; ++i) {
-    table[i] = read_place(header, kSectionNames[i], offset, bytes.size());
+  std::size_t offset = header_size;
+  for (std::size_t i = 0; i < sections; ++i) {
+    table.push_back(read_place(header, kSectionNames[i], offset, bytes.size()));
     offset += table[i].size;
   }
-  const std::uint64_t expected = checksum(bytes.first(kHeaderBytes - sizeof(std::uint64_t)));
+  const std::uint64_t expected = checksum(bytes.first(header_size - sizeof(std::uint64_t)));
   if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
   if (offset != bytes.size()) header.fail("leaves bytes to no section");
   return table;
@@ -156,6 +172,8 @@ SectionTable read_table(Bytes bytes, const std::string& name) {
 class SectionOpener {
  public:
   SectionOpener(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name), table_(read_table(bytes, name)) {}
+
+  bool has(Section section) const { return section < table_.size(); }
 
   ByteReader operator()(Section section) const {
     const auto& [offset, size, expected_checksum] = table_[section];
@@ -200,6 +218,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   read_observations(open(kObservations), parts.points, parts.keyframes);
   stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
   stored.map = Map(Origin::offline, std::move(parts));
+  if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
 
   ByteReader summary = open(kSummary);
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");
@@ -208,13 +227,20 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
 
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
   const SectionTable table = read_table(bytes, name);
-  std::vector<SectionSize> sizes = {{"header", kHeaderBytes}};
-  for (std::size_t i = 0; i < kSectionCount; ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
+  std::vector<SectionSize> sizes = {{"header", header_bytes(table.size())}};
+  for (std::size_t i = 0; i < table.size(); ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
   return sizes;
 }
 
 StoredMap load_map(const std::filesystem::path& path) {
   return read_map(read_file(path), path.string());
+}
+
+std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const std::string name = path.string();
+  const SectionOpener open(file.bytes(), name);
+  return open.has(kPlan) ? std::optional(read_plan(open(kPlan))) : std::nullopt;
 }
 
 void save_map(const StoredMap& stored, const std::filesystem::path& path) {

@@ -2,11 +2,13 @@
 
 #include "byre/geometry/camera.h"
 #include "byre/map/map.h"
+#include "byre/map/plan_registration.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,6 +44,7 @@ struct StoredMap {
   PoseSource pose_source = PoseSource::slam;
   std::uint64_t vocabulary_checksum = 0;     // of the vocabulary that keyframes' words are of; 0 while they have none
   std::map<std::string, std::string> notes;  // free text by key, such as site and software
+  std::optional<PlanRegistration> plan;      // where it lies on a floor plan, once somebody has found out
 };
 
 // A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes and sightings of
@@ -74,6 +77,8 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 // The same on files. Saving replaces a file as a whole, see replace_file, once the bytes have been read back: a map
 // that could not be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
+// Where the map of a file lies on a floor plan, without reading the rest of it.
+std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path);
 void save_map(const StoredMap& stored, const std::filesystem::path& path);
 
 }  // namespace byre

@@ -121,6 +121,34 @@ TEST(MapFile, IsTheSameAfterASecondSave) {
   }
 }
 
+TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
+  const StoredMapScene scene;
+  const MapBytes bytes = write_map(scene.stored_with_plan());
+  const StoredMap read = read_map(bytes, "file");
+  ASSERT_TRUE(read.plan.has_value());
+  EXPECT_EQ(read.plan->plan, "barn 3, ground floor");
+  EXPECT_EQ(read.plan->plan_from_map.scale, 1.25);
+  const Pose& expected = scene.stored_with_plan().plan->plan_from_map.target_from_source;
+  EXPECT_EQ(read.plan->plan_from_map.target_from_source.rotation.coeffs(), expected.rotation.coeffs());
+  EXPECT_EQ(read.plan->plan_from_map.target_from_source.translation, expected.translation);
+  EXPECT_EQ(read.plan->covariance, scene.stored_with_plan().plan->covariance);
+  EXPECT_THAT(find_faults(read), IsEmpty());
+  EXPECT_EQ(write_map(read), bytes);
+}
+
+TEST(MapFile, IsOfTheFirstFormatWithoutAPlanSoThatOlderProgramsReadIt) {
+  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 1u);
+  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 2u);
+  EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
+}
+
+TEST(MapFile, RefusesAPlanInAFileOfTheFirstFormat) {
+  MapBytes bytes = write_map(StoredMapScene().stored_with_plan());
+  put_at(bytes, kFormatAt, std::uint32_t{1});
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has not the sections of its format"));
+}
+
 TEST(MapFile, KeepsAnEmptyMap) {
   const StoredMap read = read_map(write_map({}), "file");
   EXPECT_EQ(read.map.keyframe_count(), 0);
@@ -158,10 +186,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{2});
+  put_at(bytes, kFormatAt, std::uint32_t{3});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 2, this program knows formats up to 1 "
+            "barn.byre: header: has format 3, this program knows formats up to 2 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 
@@ -191,8 +219,8 @@ TEST(MapFile, RefusesEveryFlippedBit) {
 }
 
 TEST(MapFile, NamesTheSectionWhoseChecksumIsWrong) {
-  const MapBytes sound = scene_bytes();
-  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+  const MapBytes sound = write_map(StoredMapScene().stored_with_plan());
+  for (std::size_t i = 0; i < section_count(sound); ++i) {
     MapBytes bytes = sound;
     const TableEntry section = table_entry(bytes, i);
     bytes[section.offset + section.size / 2] ^= std::byte{1};
@@ -216,7 +244,7 @@ TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
   EXPECT_THAT(refusal_with(kTableAt + 16, std::uint64_t{0}), HasSubstr("places the section summary wrong"));
   EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("places the section summary wrong"));
   MapBytes bytes = sound;
-  bytes[kHeaderChecksumAt] ^= std::byte{1};
+  bytes[header_checksum_at(bytes)] ^= std::byte{1};
   EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 432: has a wrong checksum"));
 }
 
@@ -244,6 +272,13 @@ TEST_F(MapFileOnDisk, HoldsTheMap) {
   save_map(scene.stored(), folder_ / "barn.byre");
   EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
   EXPECT_EQ(write_map(load_map(folder_ / "barn.byre")), scene_bytes());
+}
+
+TEST_F(MapFileOnDisk, TellsOfAPlanWithoutReadingTheMap) {
+  save_map(StoredMapScene().stored(), folder_ / "barn.byre");
+  EXPECT_FALSE(load_plan_registration(folder_ / "barn.byre").has_value());
+  save_map(StoredMapScene().stored_with_plan(), folder_ / "barn.byre");
+  EXPECT_EQ(load_plan_registration(folder_ / "barn.byre").value().plan, "barn 3, ground floor");
 }
 
 TEST_F(MapFileOnDisk, IsNotReplacedByAnUnsoundMap) {

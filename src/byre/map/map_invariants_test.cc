@@ -16,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
@@ -295,8 +296,8 @@ TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
 }
 
 TEST(BrokenSections, AreRefusedWhenTheyAreTooShortOrTooLong) {
-  const MapBytes sound = write_map(StoredMapScene().stored());
-  for (std::size_t i = 0; i < kSectionCountOfFormat; ++i) {
+  const MapBytes sound = write_map(StoredMapScene().stored_with_plan());
+  for (std::size_t i = 0; i < section_count(sound); ++i) {
     const TableEntry section = table_entry(sound, i);
     MapBytes shorter = sound;
     replace_in_section(shorter, i, section.size - 1, 1, {});
@@ -307,6 +308,38 @@ TEST(BrokenSections, AreRefusedWhenTheyAreTooShortOrTooLong) {
     refresh_checksums(longer);
     EXPECT_THAT(refusal_of(longer), AllOf(HasSubstr("section " + section.name), HasSubstr("1 bytes are left over")));
   }
+}
+
+struct PlanDefect {
+  const char* name;
+  const char* fault;
+  void (*breaks)(PlanRegistration& plan);
+};
+
+class DefectivePlan : public testing::TestWithParam<PlanDefect> {};
+
+TEST_P(DefectivePlan, AreFoundAndNotRead) {
+  StoredMap stored = StoredMapScene().stored_with_plan();
+  GetParam().breaks(*stored.plan);
+  const std::string fault = std::string("the plan ") + GetParam().fault;
+  EXPECT_THAT(find_faults(stored), Contains(fault));
+  EXPECT_THAT(refusal_of(write_map(stored)), AllOf(StartsWith("barn.byre: section plan at byte "), HasSubstr(fault)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, DefectivePlan,
+    testing::Values(
+        PlanDefect{"Scale", "has no positive scale", [](auto& plan) { plan.plan_from_map.scale = 0.0; }},
+        PlanDefect{"Pose", "has no proper pose",
+                   [](auto& plan) { plan.plan_from_map.target_from_source.rotation.coeffs() *= 2.0; }},
+        PlanDefect{"Covariance", "has no finite covariance", [](auto& plan) { plan.covariance.setConstant(kNan); }},
+        PlanDefect{"Variance", "has a negative variance", [](auto& plan) { plan.covariance(2, 2) = -1.0; }}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(DefectivePlans, AreFoundByAnUnsymmetricCovariance) {
+  StoredMap stored = StoredMapScene().stored_with_plan();
+  stored.plan->covariance(0, 6) += 1e-3;
+  EXPECT_THAT(find_faults(stored), ElementsAre("the plan has an unsymmetric covariance"));
 }
 
 // Every keyframe sees the one point with its one feature: little in the file, much in a map.

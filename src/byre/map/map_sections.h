@@ -69,4 +69,7 @@ void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, 
 // Fills in the words of the keyframes and gives the checksum of their vocabulary.
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
 
+void write_plan(const PlanRegistration& registration, ByteWriter& writer);
+PlanRegistration read_plan(ByteReader reader);
+
 }  // namespace byre

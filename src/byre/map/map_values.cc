@@ -93,4 +93,11 @@ std::string_view fault_in(const MapPoint& point) {
   return is_range && std::isfinite(point.max_distance) ? "" : "has no proper range of distances";
 }
 
+std::string_view fault_in(const PlanRegistration& registration) {
+  if (!is_positive(registration.plan_from_map.scale)) return "has no positive scale";
+  if (!registration.covariance.allFinite()) return "has no finite covariance";
+  if ((registration.covariance.diagonal().array() < 0.0).any()) return "has a negative variance";
+  return fault_in(registration.plan_from_map.target_from_source);
+}
+
 }  // namespace byre

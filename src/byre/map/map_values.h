@@ -18,5 +18,6 @@ std::string_view fault_in(const Keypoint& keypoint, const Rig& rig);
 std::string_view fault_in(const Patch& patch);
 std::string_view fault_in(const Sighting& sighting);
 std::string_view fault_in(const MapPoint& point);
+std::string_view fault_in(const PlanRegistration& registration);
 
 }  // namespace byre

@@ -74,6 +74,15 @@ void check_keyframe(const StoredMap& stored, KeyframeId id, Faults& faults) {
   add(word_fault(keyframe, stored.vocabulary_checksum));
 }
 
+void check_plan(const StoredMap& stored, Faults& faults) {
+  if (!stored.plan) return;
+  const auto add = [&faults](std::string_view fault) {
+    if (!fault.empty()) faults.push_back("the plan " + std::string(fault));
+  };
+  add(fault_in(*stored.plan));
+  if (stored.plan->covariance.allFinite()) add(covariance_fault(stored.plan->covariance));
+}
+
 }  // namespace
 
 std::vector<std::string> find_faults(const StoredMap& stored) {
@@ -89,6 +98,7 @@ std::vector<std::string> find_faults(const StoredMap& stored) {
     add_fault(fault_in(stored.recordings[i]), "recording", i, faults);
   }
   for (const KeyframeId id : keyframes) check_keyframe(stored, id, faults);
+  check_plan(stored, faults);
   for (const PointId id : points) {
     const MapPoint& point = *stored.map.find_point(id);
     add_fault(fault_in(point), "point", id.number, faults);

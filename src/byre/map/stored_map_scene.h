@@ -28,6 +28,17 @@ class StoredMapScene {
   }
 
   const StoredMap& stored() const { return stored_; }
+  // The same on a floor plan.
+  StoredMap stored_with_plan() const {
+    StoredMap stored = stored_;
+    stored.plan.emplace();
+    stored.plan->plan = "barn 3, ground floor";
+    stored.plan->plan_from_map.scale = 1.25;
+    stored.plan->plan_from_map.target_from_source = {{0.8, 0.0, 0.0, 0.6}, {12.5, -3.25, 0.0}};
+    stored.plan->covariance = 1e-4 * Matrix7::Identity();
+    stored.plan->covariance(0, 5) = stored.plan->covariance(5, 0) = 1e-6;
+    return stored;
+  }
   // For a map that differs in one thing.
   const MapParts& parts() const { return parts_; }
 

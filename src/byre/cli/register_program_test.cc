@@ -1,0 +1,105 @@
+// byre register as a user runs it.
+
+#include "byre/cli/program_fixture.h"
+#include "byre/cli/register_fixture.h"
+#include "byre/geometry/geometry_matchers.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class RegisterProgram : public ProgramTest {
+ protected:
+  RegisterProgram() {
+    save_map(driven_barn(scene_), folder_ / "barn.byre");
+    write("plan.pgm", plan_image(420, 140));
+    write("plan.yaml", "image: plan.pgm\nresolution: 0.1\norigin: [-1, -7, 0]\n");
+    write("picks.csv", picks_csv(scene_.correspondences(6)));
+  }
+
+  FloorPlanScene scene_;
+};
+
+TEST_F(RegisterProgram, WritesAMapThatKnowsItsPlaceOnThePlan) {
+  const std::string before = read("barn.byre");
+  const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("plan         plan.yaml, 420 x 140 pixels of 100.0 mm\n"),
+                    HasSubstr("points       6, of which 6 agree to 0.000 m"),
+                    HasSubstr("fits         sign 5: off by 0.000 m"), HasSubstr("written      barn-plan.byre\n")));
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  const StoredMap stored = load_map(folder_ / "barn-plan.byre");
+  ASSERT_TRUE(stored.plan.has_value());
+  EXPECT_EQ(stored.plan->plan, "plan.yaml");
+  EXPECT_THAT(stored.plan->plan_from_map.target_from_source,
+              PoseNear(scene_.plan_from_map.target_from_source, 1e-5, 1e-6));
+  EXPECT_EQ(read("barn.byre"), before);
+  EXPECT_THAT(run("inspect barn-plan.byre").output,
+              HasSubstr("plan           plan.yaml: the map's origin is at x 7.000"));
+}
+
+TEST_F(RegisterProgram, NamesAWrongPick) {
+  auto correspondences = scene_.correspondences(8);
+  correspondences[3].name = "water trough";
+  correspondences[3].point_in_plan.x() += 2.0;
+  write("picks.csv", picks_csv(correspondences));
+  const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const json report = json::parse(outcome.output);
+  for (const json& point : report.at("points")) EXPECT_EQ(point.at("outlier"), point.at("name") == "water trough");
+  EXPECT_THAT(report.at("doubts"), IsEmpty());
+  EXPECT_TRUE(report.at("written").is_null());
+  EXPECT_THAT(run("register barn.byre --plan plan.yaml --points picks.csv").output,
+              HasSubstr("outlier      water trough: off by 2.000 m (x -2.000, y "));
+}
+
+TEST_F(RegisterProgram, PlacesAMapInAProjectedCoordinateSystem) {
+  write("plan.wld", "0.1\n0\n0\n-0.1\n499999.05\n5400006.95\n");
+  auto correspondences = scene_.correspondences(6);
+  for (PlanCorrespondence& each : correspondences) each.point_in_plan += Eigen::Vector2d(500000.0, 5400000.0);
+  write("picks.csv", picks_csv(correspondences));
+  EXPECT_EQ(run("register barn.byre --plan plan.pgm --points picks.csv -o barn.byre").exit_code, 0);
+  Pose expected = scene_.plan_from_map.target_from_source;
+  expected.translation += Eigen::Vector3d(500000.0, 5400000.0, 0.0);
+  EXPECT_THAT(load_map(folder_ / "barn.byre").plan.value().plan_from_map.target_from_source,
+              PoseNear(expected, 1e-5, 1e-6));
+}
+
+TEST_F(RegisterProgram, TellsDoubtsOfTooFewPicks) {
+  write("picks.csv", picks_csv(scene_.correspondences(2)));
+  const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("doubt        fewer than three correspondences took part"));
+}
+
+TEST_F(RegisterProgram, RefusesBadInput) {
+  write("one.csv", picks_csv(scene_.correspondences(1)));
+  const Outcome outcome = run("register barn.byre --plan plan.yaml --points one.csv -o out.byre");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("one.csv: has not two points that lie apart"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.byre"));
+  EXPECT_EQ(run("register absent.byre --plan plan.yaml --points picks.csv").exit_code, 3);
+  EXPECT_EQ(run("register barn.byre --plan absent.yaml --points picks.csv").exit_code, 3);
+  EXPECT_EQ(run("register barn.byre --points picks.csv").exit_code, 2);
+  EXPECT_EQ(run("register barn.byre --plan plan.yaml --points picks.csv --pick-sigma 0").exit_code, 2);
+}
+
+TEST_F(RegisterProgram, RefusesPosesOnAPlanOfAMapWithoutOne) {
+  write("photo.pgm", plan_image(320, 240));
+  const Outcome outcome = run("localise barn.byre photo.pgm --frame plan");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("barn.byre: lies on no floor plan, so poses cannot be given on one"));
+  EXPECT_EQ(run("localise barn.byre photo.pgm --frame world").exit_code, 2);
+  EXPECT_EQ(run("run recording --frame plan").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "byre/cli/register_run.h"
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace byre::cli {
+
+// A line for people: where the map's origin lies on the plan.
+std::string describe_origin(const PlanRegistration& registration);
+
+// With units in the names; the covariance row by row, see PlanRegistration.
+nlohmann::ordered_json registration_json(const PlanRegistration& registration);
+
+// What was registered, and where the result went; empty for nowhere.
+struct RegisterProtocol {
+  std::string map;
+  FloorPlan plan;
+  std::string written;
+};
+
+// A page for people, and the same for programs.
+std::string to_text(const Registering& registering, const RegisterProtocol& protocol);
+std::string to_json(const Registering& registering, const RegisterProtocol& protocol);
+
+}  // namespace byre::cli

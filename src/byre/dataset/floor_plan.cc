@@ -1,0 +1,151 @@
+#include "byre/dataset/floor_plan.h"
+
+#include "byre/dataset/image_file.h"
+#include "byre/input/input_error.h"
+#include "byre/input/text_file.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <yaml-cpp/yaml.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Smaller pixels than this, in metres, are none of a plan, but may well be degrees.
+constexpr double kSmallestPixel = 1e-4;
+
+void read_image_size(FloorPlan& plan) {
+  const std::optional<Image> image = read_image(plan.image);
+  if (!image) {
+    throw InputError(plan.image.string(), "cannot be read as the image of a floor plan",
+                     "check that it exists and is a PNG, JPEG, TIFF or PGM image");
+  }
+  plan.width = image->width;
+  plan.height = image->height;
+}
+
+YAML::Node load_yaml(const fs::path& path) {
+  try {
+    YAML::Node root = YAML::LoadFile(path.string());
+    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
+    return root;
+  } catch (const YAML::BadFile&) {
+    throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+  } catch (const YAML::Exception& error) {
+    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
+  }
+}
+
+double to_number(const YAML::Node& node, const std::string& place) {
+  const std::optional<double> number = node && node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
+  if (!number) throw InputError(place, node ? "is not a number" : "is missing");
+  return *number;
+}
+
+double read_resolution(const YAML::Node& root, const fs::path& path) {
+  const std::string place = path.string() + ": resolution";
+  const double resolution = to_number(root["resolution"], place);
+  if (resolution < kSmallestPixel) throw InputError(place, "is not positive", "give the metres of a pixel");
+  return resolution;
+}
+
+struct PlanOrigin {
+  Eigen::Vector2d corner_in_plan;
+  double yaw = 0.0;  // radians
+};
+
+PlanOrigin read_origin(const YAML::Node& root, const fs::path& path) {
+  const std::string place = path.string() + ": origin";
+  const YAML::Node origin = root["origin"];
+  if (!origin) throw InputError(place, "is missing");
+  if (!origin.IsSequence() || origin.size() != 3) {
+    throw InputError(place, "is no list of three numbers", "give x, y and yaw of the lower left corner");
+  }
+  return {{to_number(origin[0], place), to_number(origin[1], place)}, to_number(origin[2], place)};
+}
+
+fs::path read_image_path(const YAML::Node& root, const fs::path& path) {
+  const YAML::Node image = root["image"];
+  if (!image || !image.IsScalar()) throw InputError(path.string() + ": image", "is missing");
+  return path.parent_path() / image.Scalar();  // an absolute one stays
+}
+
+FloorPlan read_map_server_plan(const fs::path& path) {
+  const YAML::Node root = load_yaml(path);
+  FloorPlan plan;
+  plan.name = path.filename().string();
+  plan.image = read_image_path(root, path);
+  const double resolution = read_resolution(root, path);
+  const auto [corner_in_plan, yaw] = read_origin(root, path);
+  read_image_size(plan);
+  const Eigen::Matrix2d plan_from_corner = Eigen::Rotation2Dd(yaw).toRotationMatrix();
+  plan.metres_per_pixel = resolution * plan_from_corner * Eigen::Vector2d(1.0, -1.0).asDiagonal();
+  plan.top_left_in_plan = corner_in_plan + resolution * plan_from_corner * Eigen::Vector2d(0.5, plan.height - 0.5);
+  return plan;
+}
+
+std::optional<fs::path> find_world_file(const fs::path& image) {
+  const std::string extension = image.extension().string();
+  if (extension.size() < 3) return std::nullopt;
+  const std::array<std::string, 3> extensions = {{{'.', extension[1], extension.back(), 'w'}, extension + "w", ".wld"}};
+  for (const std::string& other : extensions) {
+    const fs::path path = fs::path(image).replace_extension(other);
+    if (fs::exists(path)) return path;
+  }
+  return std::nullopt;
+}
+
+std::array<double, 6> read_six_numbers(const fs::path& path) {
+  const std::vector<TextLine> lines = read_lines(path);
+  std::array<double, 6> numbers{};
+  if (lines.size() != numbers.size()) {
+    throw InputError(path.string(), "has " + std::to_string(lines.size()) + " lines instead of six");
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::optional<double> number = parse_number(lines[i].text);
+    if (!number) throw InputError(place_of(path, lines[i]), "is not a number");
+    numbers[i] = *number;
+  }
+  return numbers;
+}
+
+void require_sound_pixels(const FloorPlan& plan, const fs::path& world_file) {
+  if (plan.metres_per_pixel.colwise().norm().minCoeff() < kSmallestPixel) {
+    throw InputError(world_file.string(), "has pixels of less than a tenth of a millimetre",
+                     "if it is in degrees, reproject the plan to a system in metres, such as UTM");
+  }
+  const double turn = plan.metres_per_pixel.determinant();  // rows go down, y goes up
+  if (turn >= 0.0) throw InputError(world_file.string(), "mirrors the plan or makes it a line");
+}
+
+FloorPlan read_geo_referenced_plan(const fs::path& path) {
+  FloorPlan plan;
+  plan.name = path.filename().string();
+  plan.image = path;
+  read_image_size(plan);
+  const std::optional<fs::path> world_file = find_world_file(path);
+  if (!world_file) {
+    throw InputError(path.string(), "has no world file beside it that says where it lies",
+                     "add one, or name the YAML file of a map_server map");
+  }
+  const std::array<double, 6> numbers = read_six_numbers(*world_file);
+  plan.metres_per_pixel << numbers[0], numbers[2], numbers[1], numbers[3];
+  plan.top_left_in_plan << numbers[4], numbers[5];
+  require_sound_pixels(plan, *world_file);
+  return plan;
+}
+
+}  // namespace
+
+FloorPlan read_floor_plan(const fs::path& path) {
+  const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+  return is_yaml ? read_map_server_plan(path) : read_geo_referenced_plan(path);
+}
+
+}  // namespace byre

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+namespace byre {
+
+// An image of a floor plan and where its pixels lie. The plan's frame is what its file says: metres on the floor, for a
+// geo-referenced plan those of the projected coordinate system, which may be millions; seen from above, y is 90 degrees
+// to the left of x. Pixels are continuous, whole numbers are centres, (0, 0) is that of the top left one.
+struct FloorPlan {
+  std::string name;             // of the file that describes it
+  std::filesystem::path image;  // can be opened as it is
+  int width = 0;                // pixels
+  int height = 0;
+  Eigen::Matrix2d metres_per_pixel = Eigen::Matrix2d::Identity();  // columns: a step to the right, a step down
+  Eigen::Vector2d top_left_in_plan = Eigen::Vector2d::Zero();      // centre of the top left pixel
+
+  // Metres on the plan and pixels of its image, which may lie outside of it.
+  Eigen::Vector2d point_at(const Eigen::Vector2d& pixel) const { return top_left_in_plan + metres_per_pixel * pixel; }
+  Eigen::Vector2d pixel_at(const Eigen::Vector2d& point_in_plan) const {
+    return metres_per_pixel.inverse() * (point_in_plan - top_left_in_plan);
+  }
+};
+
+// There are two ways to say where an image lies. NAME.yaml is as ROS' map_server has it: the image's file, metres per
+// pixel (resolution), and the pose [x, y, yaw] of the lower left corner of the lower left pixel (origin);
+// http://wiki.ros.org/map_server. An image file has a world file beside it (.pgw, .tfw, .jgw; .pngw and the like; .wld)
+// of six lines: the step to the right in x and in y, the step down in x and in y, the centre of the top left pixel.
+// Throws InputError naming file and field when one of the two is missing, cannot be read or makes no sense.
+FloorPlan read_floor_plan(const std::filesystem::path& path);
+
+}  // namespace byre

@@ -1,0 +1,80 @@
+#include "byre/map/driving_plane.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace byre {
+namespace {
+
+constexpr double kRigUpSigma = 0.05;          // radians, of a camera that is mounted to look level
+constexpr double kFloorUnevenness = 0.002;    // least, of the path's length
+constexpr double kIndependentPositions = 50;  // at most: neighbours on a path share their errors
+constexpr double kLeastCommonUp = 0.5;        // length of the mean of unit vectors
+
+Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
+Eigen::Matrix3d covariance_of(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& mean) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) sum += (point - mean) * (point - mean).transpose();
+  return sum / static_cast<double>(points.size());
+}
+
+double root(double variance) {
+  return std::sqrt(std::max(variance, 0.0));  // rounding makes zero negative
+}
+
+}  // namespace
+
+// Minimises |up - up_of_rig|^2 / kRigUpSigma^2 + sum over the path ((position - mean) . up)^2 / unevenness^2 for
+// |up| = 1. Its stationary points solve a linear system, but for the multiplier of the constraint, which is the least
+// eigenvalue of the path's term where the path determines the plane, and small against all else where it does not.
+DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map) {
+  assert(!path_in_map.empty());
+  DrivingPlane plane;
+  plane.point_in_map = mean_of(path_in_map);
+  const Eigen::Matrix3d covariance = covariance_of(path_in_map, plane.point_in_map);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);  // least first
+  plane.thickness = root(axes.eigenvalues()[0]);
+  plane.width = root(axes.eigenvalues()[1]);
+  plane.length = root(axes.eigenvalues()[2]);
+
+  const double count = std::min(static_cast<double>(path_in_map.size()), kIndependentPositions);
+  const double unevenness = std::max(plane.thickness, kFloorUnevenness * plane.length);
+  plane.up_information = Eigen::Matrix3d::Identity() / (kRigUpSigma * kRigUpSigma);
+  if (unevenness > 0.0) {
+    const Eigen::Matrix3d in_plane = covariance - axes.eigenvalues()[0] * Eigen::Matrix3d::Identity();
+    plane.up_information += count / (unevenness * unevenness) * in_plane;
+  }
+  plane.up_in_map = (plane.up_information.inverse() * up_of_rig_in_map).normalized();
+  plane.path_in_map = std::move(path_in_map);
+  return plane;
+}
+
+Eigen::Vector3d body_at(const Map& map, const Keyframe& keyframe) {
+  const Pose& body_from_camera = map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera;
+  return (inverse(keyframe.camera_from_world) * inverse(body_from_camera)).translation;
+}
+
+std::optional<DrivingPlane> fit_driving_plane(const Map& map) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> path;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    up -= keyframe.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitY();
+    path.push_back(body_at(map, keyframe));
+  }
+  if (!(up.norm() > kLeastCommonUp * map.keyframe_count())) return std::nullopt;
+  return fit_driving_plane(std::move(path), up.normalized());
+}
+
+}  // namespace byre

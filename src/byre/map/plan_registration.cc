@@ -1,0 +1,23 @@
+#include "byre/map/plan_registration.h"
+
+namespace byre {
+
+Pose plan_from_body(const PlanRegistration& registration, const Pose& map_from_body) {
+  const auto& [scale, plan_from_map] = registration.plan_from_map;
+  return plan_from_map * scale_lengths(map_from_body, scale);
+}
+
+PlanJacobian plan_jacobian(const Similarity& plan_from_map, const Eigen::Vector3d& point_in_map) {
+  const Eigen::Matrix3d rotation = plan_from_map.target_from_source.rotation.toRotationMatrix();
+  const Eigen::Vector3d scaled = plan_from_map.scale * point_in_map;
+  PlanJacobian jacobian;
+  jacobian << rotation, -rotation * skew(scaled), rotation * scaled;
+  return jacobian;
+}
+
+Eigen::Matrix2d plan_covariance_at(const PlanRegistration& registration, const Eigen::Vector3d& point_in_map) {
+  const Eigen::Matrix<double, 2, 7> jacobian = plan_jacobian(registration.plan_from_map, point_in_map).topRows<2>();
+  return jacobian * registration.covariance * jacobian.transpose();
+}
+
+}  // namespace byre
