@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 function(byre_public_headers result)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/*.h)
   list(FILTER headers EXCLUDE REGEX "/src/byre/cli/|_scene\\.h$")
-  set(internal "<(ceres|opencv2|yaml-cpp|nlohmann|gtest|gmock)/")
+  set(internal "<(ceres|embree3|opencv2|yaml-cpp|nlohmann|gtest|gmock)/")
   set(count_before 0)
   list(LENGTH headers count)
   while(NOT count EQUAL count_before) # until no header is left that includes an internal one

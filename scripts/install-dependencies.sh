@@ -7,7 +7,7 @@ packages=(
   # building
   g++ cmake ninja-build ccache git
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
-  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev
+  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev
   # the program
   libcli11-dev
   # tests, fuzzing, benchmarks, rules

@@ -36,6 +36,7 @@ KEPT_IN = {
     r"iostream|CLI/.*": {"cli"},
     r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},
+    r"embree3/.*": {"simulation"},
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
     r"yaml-cpp/.*|nlohmann/.*": {"dataset", "viewer", "cli"},
 }

@@ -27,6 +27,7 @@ Action declare_register(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
 Action declare_vocabulary(CLI::App& command);
+Action declare_simulate(CLI::App& command);
 Action declare_import_colmap(CLI::App& command);
 Action declare_export_colmap(CLI::App& command);
 

@@ -37,6 +37,7 @@ constexpr std::array kCommands = {
     Command{"benchmark", "Run a protocol of recordings, and tell how accurate and fast each way to run them is",
             declare_benchmark},
     Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
+    Command{"simulate", "Render a recording of a made-up barn, with its truth and floor plan", declare_simulate},
     Command{"import-colmap", "Make a map of a COLMAP model and its images", declare_import_colmap},
     Command{"export-colmap", "Write a map as a COLMAP model", declare_export_colmap},
 };

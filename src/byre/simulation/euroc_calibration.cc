@@ -1,22 +1,8 @@
+#include "byre/simulation/divided_camera.h"
 #include "byre/simulation/rendered_room.h"
 
 namespace byre {
 namespace {
-
-// u of a pixel's centre when n x n pixels become one: the image's edge, at -0.5, stays where it is.
-double divided_centre(double centre, int divisor) {
-  return (centre + 0.5) / divisor - 0.5;
-}
-
-Camera divided(Camera camera, int divisor) {
-  camera.width /= divisor;
-  camera.height /= divisor;
-  camera.fx /= divisor;
-  camera.fy /= divisor;
-  camera.cx = divided_centre(camera.cx, divisor);
-  camera.cy = divided_centre(camera.cy, divisor);
-  return camera;
-}
 
 Pose to_pose(const Eigen::Matrix<double, 3, 4>& matrix) {
   return {Eigen::Quaterniond(matrix.leftCols<3>()).normalized(), matrix.col(3)};
@@ -50,8 +36,9 @@ Calibration euroc_like_calibration(int divisor) {
   body_from_right << 0.0125552670891, -0.999755099723, 0.0182237714554, -0.0198435579556,  //
       0.999598781151, 0.0130119051815, 0.0251588363115, 0.0453689425024,                   //
       -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038;
-  return {.left = divided(left, divisor),
-          .right = StereoPartner{divided(right, divisor), inverse(to_pose(body_from_right)) * to_pose(body_from_left)},
+  return {.left = divided_camera(left, divisor),
+          .right = StereoPartner{divided_camera(right, divisor),
+                                 inverse(to_pose(body_from_right)) * to_pose(body_from_left)},
           .body_from_left = to_pose(body_from_left)};
 }
 

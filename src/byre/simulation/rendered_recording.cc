@@ -1,150 +1,19 @@
-// Writes what RenderedRoom renders as the files of a EuRoC recording (Burri 2016).
-
-#include "byre/input/input_error.h"
+#include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/rendered_room.h"
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <iomanip>
-#include <limits>
-#include <numbers>
-#include <string>
-
-#include <opencv2/imgcodecs.hpp>
-
 namespace byre {
-namespace {
-
-namespace fs = std::filesystem;
-
-std::ofstream create(const fs::path& path) {
-  std::error_code failure;
-  fs::create_directories(path.parent_path(), failure);
-  std::ofstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and may be written");
-  file << std::setprecision(std::numeric_limits<double>::max_digits10);
-  return file;
-}
-
-void close(std::ofstream& file, const fs::path& path) {
-  file.close();
-  if (!file) throw InputError(path.string(), "could not be written to its end", "check that the disk is not full");
-}
-
-void write_matrix(std::ofstream& file, const Pose& pose) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  file << "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) file << rotation(row, column) << ", ";
-    file << pose.translation[row] << ",\n         ";
-  }
-  file << "0.0, 0.0, 0.0, 1.0]\n";
-}
-
-void write_lens(std::ofstream& file, const Camera& camera) {
-  const auto& d = camera.distortion;
-  const bool is_fisheye = camera.model == CameraModel::equidistant;
-  const std::size_t count = camera.model == CameraModel::radial_tangential && d[4] != 0.0 ? 5 : 4;
-  file << "camera_model: pinhole\n";
-  file << "intrinsics: [" << camera.fx << ", " << camera.fy << ", " << camera.cx << ", " << camera.cy
-       << "] #fu, fv, cu, cv\n";
-  file << "distortion_model: " << (is_fisheye ? "equidistant" : "radial-tangential") << "\n";
-  file << "distortion_coefficients: [" << d[0];
-  for (std::size_t i = 1; i < count; ++i) file << ", " << d[i];
-  file << "]\n";
-}
-
-double mean_rate_hz(const Trajectory& truth) {
-  if (truth.size() < 2) return 0.0;
-  return static_cast<double>(truth.size() - 1) / to_seconds(truth.back().time - truth.front().time);
-}
-
-void write_sensor(const fs::path& folder, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
-  const fs::path path = folder / "sensor.yaml";
-  std::ofstream file = create(path);
-  file << "sensor_type: camera\ncomment: rendered\n\n# Sensor extrinsics wrt. the body-frame.\n";
-  write_matrix(file, body_from_camera);
-  file << "\n# Camera specific definitions.\nrate_hz: " << rate_hz << "\nresolution: [" << camera.width << ", "
-       << camera.height << "]\n";
-  write_lens(file, camera);
-  close(file, path);
-}
-
-std::string image_name(Timestamp time) {
-  return std::to_string(time.count()) + ".png";
-}
-
-void write_image_list(const fs::path& folder, const Trajectory& truth) {
-  const fs::path path = folder / "data.csv";
-  std::ofstream file = create(path);
-  file << "#timestamp [ns],filename\n";
-  for (const StampedPose& sample : truth) file << sample.time.count() << "," << image_name(sample.time) << "\n";
-  close(file, path);
-}
-
-void write_camera(const fs::path& folder, const Camera& camera, const Pose& body_from_camera, const Trajectory& truth) {
-  write_sensor(folder, camera, body_from_camera, mean_rate_hz(truth));
-  write_image_list(folder, truth);
-  std::error_code failure;
-  fs::create_directories(folder / "data", failure);
-}
-
-void write_image(const fs::path& folder, const Image& image, Timestamp time) {
-  const fs::path path = folder / "data" / image_name(time);
-  cv::Mat pixels(image.height, image.width, CV_8UC1);
-  std::ranges::copy(image.pixels, pixels.data);
-  constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
-  if (cv::imwrite(path.string(), pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest})) return;
-  throw InputError(path.string(), "cannot be written", "check that its folder may be written and the disk is not full");
-}
-
-// By central differences, metres per second.
-Eigen::Vector3d velocity_in_world(const Trajectory& truth, std::size_t i) {
-  const StampedPose& before = truth[i == 0 ? 0 : i - 1];
-  const StampedPose& after = truth[std::min(i + 1, truth.size() - 1)];
-  if (after.time == before.time) return Eigen::Vector3d::Zero();
-  return (after.world_from_body.translation - before.world_from_body.translation) /
-         to_seconds(after.time - before.time);
-}
-
-void write_truth(const fs::path& folder, const Trajectory& truth) {
-  const fs::path path = folder / "data.csv";
-  std::ofstream file = create(path);
-  file << "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
-          "v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], "
-          "b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\n";
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const auto& [rotation, translation] = truth[i].world_from_body;
-    const Eigen::Vector3d velocity = velocity_in_world(truth, i);
-    file << truth[i].time.count();
-    for (const double value : translation) file << "," << value;
-    file << "," << rotation.w() << "," << rotation.x() << "," << rotation.y() << "," << rotation.z();
-    for (const double value : velocity) file << "," << value;
-    file << ",0,0,0,0,0,0\n";  // there is no gyroscope and no accelerometer to have biases
-  }
-  close(file, path);
-}
-
-}  // namespace
 
 void write_euroc_recording(const RenderedRoom& room, const Calibration& calibration, const Trajectory& truth,
-                           const fs::path& folder, const std::function<void(int done, int total)>& progress) {
-  const fs::path mav = folder / "mav0";
-  write_camera(mav / "cam0", calibration.left, calibration.body_from_left, truth);
-  if (calibration.right) {
-    const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
-    write_camera(mav / "cam1", calibration.right->camera, body_from_right, truth);
-  }
-  write_truth(mav / "state_groundtruth_estimate0", truth);
-
+                           const std::filesystem::path& folder,
+                           const std::function<void(int done, int total)>& progress) {
+  std::vector<Timestamp> times;
+  for (const StampedPose& sample : truth) times.push_back(sample.time);
+  const EurocWriter writer(calibration, times, truth, folder);
   const RenderedCameras cameras(calibration);
   const int total = static_cast<int>(truth.size());
   for (int i = 0; i < total; ++i) {
     const auto& [time, world_from_body] = truth[static_cast<std::size_t>(i)];
-    const ImageFrame frame = room.render(cameras, world_from_body, time);
-    write_image(mav / "cam0", frame.left, time);
-    if (frame.right) write_image(mav / "cam1", *frame.right, time);
+    writer.write(room.render(cameras, world_from_body, time));
     if (progress) progress(i + 1, total);
   }
 }

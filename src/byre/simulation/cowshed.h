@@ -1,0 +1,96 @@
+#pragma once
+
+#include "byre/simulation/barn_light.h"
+#include "byre/simulation/scene_renderer.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+enum class BarnTime : std::uint8_t { day, dusk };
+enum class BarnGate : std::uint8_t { closed, open };  // of the feed store, in the eastern gable
+
+// A cowshed and one visit to it. World frame: x along the feed alley from the western gable, y to the north from the
+// middle of the alley, z up from its floor; metres.
+struct CowshedOptions {
+  std::uint64_t seed = 1;          // of the building
+  int mission = 1;                 // from 1: of what differs from visit to visit
+  double change = 0.25;            // share of the movable things that a later mission finds elsewhere
+  std::optional<BarnTime> time{};  // unless given: dusk in even missions
+  std::optional<int> cows{};       // unless given: 3 in the first mission, 8 in later ones
+  std::optional<BarnGate> gate{};  // unless given: closed in the first mission, open in later ones
+  double dust = 0.0;               // in the air: 0 none, 1 so much that half of the light is lost in 14 m
+};
+
+struct CowshedSize {
+  float length = 30.0f;
+  float half_width = 8.5f;
+  float alley_half_width = 2.5f;  // to the fence
+  float eaves = 3.4f;
+  float ridge = 6.2f;
+  float bay = 5.0f;  // between columns
+  float gate_half_width = 2.0f;
+  float gate_height = 3.05f;
+  float store_length = 10.0f;  // of the feed store behind the eastern gable
+  float store_half_width = 4.5f;
+  float store_height = 3.9f;
+};
+inline constexpr CowshedSize kCowshedSize;
+
+// What a floor plan shows of a thing: its outline on the floor.
+struct PlanOutline {
+  std::vector<Eigen::Vector2d> corners_in_world;
+};
+
+// A point that can be told in images and on the plan.
+struct NamedPoint {
+  std::string name;
+  Eigen::Vector3d point_in_world;
+};
+
+enum class ThingKind : std::uint8_t { bucket, wheelbarrow, pallet, broom, bale, crate };
+inline constexpr int kThingKinds = 6;
+
+// Something that people carry about.
+struct MovableThing {
+  ThingKind kind = ThingKind::bucket;
+  Eigen::Vector3f position;  // of its foot, in the world
+  float yaw = 0.0f;          // radians
+};
+
+struct Cow {
+  bool walks = false;  // up and down along the alley, else it stands and eats
+  Eigen::Vector2f position;
+  float heading = 0.0f;  // radians, of a cow that stands
+  float reach = 0.0f;    // metres between the ends of a walk, which begins at position along x
+  float speed = 0.0f;    // metres per second
+  float phase = 0.0f;    // seconds by which it is ahead
+  float size = 1.0f;
+};
+
+// All that a visit finds, as shapes and lights.
+struct Cowshed {
+  QuadMesh still;
+  BarnLight light;
+  Air air;
+  std::vector<PlanOutline> outlines;  // of what stays where it is
+  std::vector<NamedPoint> marks;
+  std::vector<MovableThing> things;
+  std::vector<Cow> cows;
+};
+
+// What the visit finds unless the options say otherwise.
+BarnTime time_of(const CowshedOptions& options);
+BarnGate gate_of(const CowshedOptions& options);
+
+// Throws InputError when a number makes no sense: a mission before the first, a share beyond 0 to 1, dust or a number
+// of cows that is negative or too large.
+Cowshed build_cowshed(const CowshedOptions& options);
+
+// The cows at a time in seconds from the start of the recording, in the world.
+QuadMesh cows_at(const std::vector<Cow>& cows, double time_s);
+
+}  // namespace byre

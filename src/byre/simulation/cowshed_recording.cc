@@ -1,0 +1,257 @@
+#include "byre/simulation/cowshed_recording.h"
+
+#include "byre/input/input_error.h"
+#include "byre/simulation/euroc_writer.h"
+#include "byre/simulation/seeded_draws.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <future>
+#include <numbers>
+
+namespace byre {
+namespace {
+
+constexpr double kIntoStore = 9.0;  // metres by which the robot goes farther where the gate is open
+
+// How missions differ in where the robot drives: on the same course, a hand's breadth aside, begun elsewhere; and where
+// the gate is open, it turns round in the feed store.
+FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
+  FeedingCourseOptions course;
+  course.duration_s = options.duration_s;
+  if (gate_of(options.barn) == BarnGate::open) {
+    course.far_x += kIntoStore;
+    course.max_straight += kIntoStore;
+  }
+  const auto mission = static_cast<std::uint64_t>(options.barn.mission);
+  course.seed = hash(options.barn.seed, mission, 3);
+  if (options.barn.mission == 1) return course;
+  SeededDraws draws(course.seed, 51);
+  course.shift_y = draws.between(-0.15f, 0.15f);
+  course.lane_distance += draws.between(-0.12f, 0.12f);
+  course.start = draws.between(0.04f, 0.16f);
+  course.cruise_speed *= draws.between(0.93f, 1.07f);
+  return course;
+}
+
+const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
+  const auto require = [](bool holds, const char* reason) {
+    if (!holds) throw InputError("simulated cowshed", reason);
+  };
+  require(options.duration_s > 0.0 && options.duration_s <= 36000.0, "the duration must be from 0 to 36000 seconds");
+  require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
+  require(options.image_divisor >= 1 && options.image_divisor <= 16, "images can be divided by 1 to 16");
+  require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");
+  return options;
+}
+
+// The clocks of missions do not overlap.
+std::vector<Timestamp> frame_times(const CowshedRecordingOptions& options) {
+  const Timestamp start = std::chrono::seconds(100'000) * options.barn.mission;
+  std::vector<Timestamp> times;
+  for (int i = 0; i / options.frame_rate_hz < options.duration_s; ++i) {
+    times.push_back(start + from_seconds(i / options.frame_rate_hz));
+  }
+  return times;
+}
+
+// One of the instants of an exposure of so many parts; each lies at another place within the pixel.
+ExposureInstant instant_of(int i, int count) {
+  if (count == 1) return {};
+  constexpr float kRadius = 0.3f;  // pixels
+  const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(count) + 0.4f;
+  return {{kRadius * std::cos(angle), kRadius * std::sin(angle)}, false};
+}
+
+// Geometries that rays tell apart.
+constexpr unsigned kStill = 0;
+constexpr unsigned kMoving = 1;
+
+LitMesh lit(const Cowshed& barn, int threads) {
+  const RayScene rays(barn.still, kStill);
+  return {barn.still, light_at_vertices(barn.still, rays, barn.light, threads), kStill};
+}
+
+}  // namespace
+
+// What stays the same for all frames.
+struct CowshedRecording::Scene {
+  struct RobotCamera {
+    PixelRays pixels;
+    ImageSensor sensor;
+    Pose body_from_camera;
+  };
+
+  explicit Scene(const CowshedRecordingOptions& options)
+      : barn(build_cowshed(options.barn)),
+        pictures(draw_barn_pictures(options.barn.seed, options.threads)),
+        still(lit(barn, options.threads)),
+        renderer(still, pictures, barn.air, options.threads),
+        calibration(feeding_robot_calibration(options.image_divisor)) {
+    const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
+    add_camera(options, calibration.left, calibration.body_from_left);
+    add_camera(options, calibration.right->camera, body_from_right);
+  }
+
+  void add_camera(const CowshedRecordingOptions& options, const Camera& camera, const Pose& body_from_camera) {
+    const std::uint64_t seed =
+        hash(options.barn.seed, static_cast<std::uint64_t>(options.barn.mission), 100 + cameras.size());
+    const ImageSensorOptions sensor{.dirt = static_cast<float>(options.dirt), .seed = seed};
+    cameras.push_back({PixelRays(camera), ImageSensor(camera, sensor), body_from_camera});
+  }
+
+  LitMesh moving_at(double time_s) const {
+    const QuadMesh cows = cows_at(barn.cows, time_s);
+    return {cows, plain_light_at_vertices(cows, still.mean_light()), kMoving, RayScene::Build::quick};
+  }
+
+  const Cowshed barn;
+  const BarnPictures pictures;
+  const LitMesh still;
+  const SceneRenderer renderer;
+  const Calibration calibration;
+  std::vector<RobotCamera> cameras;  // left, right
+};
+
+CowshedRecording::CowshedRecording(const CowshedRecordingOptions& options)
+    : options_(checked(options)),
+      noise_seed_(hash(options.barn.seed, static_cast<std::uint64_t>(options.barn.mission), 4)),
+      course_(course_of(options)),
+      times_(frame_times(options)),
+      scene_(std::make_unique<const Scene>(options)) {}
+
+CowshedRecording::~CowshedRecording() = default;
+
+const Calibration& CowshedRecording::calibration() const {
+  return scene_->calibration;
+}
+
+const Cowshed& CowshedRecording::barn() const {
+  return scene_->barn;
+}
+
+const std::vector<Timestamp>& CowshedRecording::times() const {
+  return times_;
+}
+
+Pose CowshedRecording::world_from_body(Timestamp time) const {
+  return course_.world_from_body(seconds_since_start(time));
+}
+
+Trajectory CowshedRecording::truth() const {
+  constexpr Timestamp kStep = std::chrono::milliseconds(5);
+  std::vector<Timestamp> all = times_;
+  for (Timestamp time = times_.front(); time < times_.back(); time += kStep) all.push_back(time);
+  std::ranges::sort(all);
+  const auto repeated = std::ranges::unique(all);
+  all.erase(repeated.begin(), repeated.end());
+  Trajectory truth;
+  for (const Timestamp time : all) truth.push_back({time, world_from_body(time)});
+  return truth;
+}
+
+// Pixels by which what is 1.5 m away moves in the image.
+double CowshedRecording::motion_during_exposure(double time_s) const {
+  const double half = 0.5 * static_cast<double>(exposure_.time_s);
+  const Pose begin = course_.world_from_body(time_s - half);
+  const Pose end = course_.world_from_body(time_s + half);
+  const double travelled = (end.translation - begin.translation).norm();
+  return scene_->calibration.left.fx * (angle_between(begin.rotation, end.rotation) + travelled / 1.5);
+}
+
+// The mean of what both cameras see in the course of an exposure, left and right.
+std::array<std::vector<float>, 2> CowshedRecording::exposed_radiance(double middle_s) const {
+  constexpr double kPixelsPerInstant = 1.6;
+  constexpr int kMostInstants = 4;
+  const int count = std::min(1 + static_cast<int>(motion_during_exposure(middle_s) / kPixelsPerInstant), kMostInstants);
+  std::array<std::vector<float>, 2> mean;
+  for (int i = 0; i < count; ++i) {
+    const double instant_s = middle_s + ((i + 0.5) / count - 0.5) * static_cast<double>(exposure_.time_s);
+    const LitMesh moving = scene_->moving_at(instant_s);
+    for (std::size_t camera = 0; camera < 2; ++camera) {
+      const auto& [pixels, sensor, body_from_camera] = scene_->cameras[camera];
+      const SceneView view{pixels, course_.world_from_body(instant_s) * body_from_camera};
+      const std::vector<float> radiance = scene_->renderer.radiance(view, moving, instant_of(i, count));
+      mean[camera].resize(radiance.size(), 0.0f);
+      const float share = 1.0f / static_cast<float>(count);
+      for (std::size_t k = 0; k < radiance.size(); ++k) mean[camera][k] += share * radiance[k];
+    }
+  }
+  return mean;
+}
+
+ImageFrame CowshedRecording::render_next() {
+  assert(next_ < times_.size());
+  const Timestamp time = times_[next_];
+  const std::array<std::vector<float>, 2> radiance = exposed_radiance(seconds_since_start(time));
+  const auto image_of = [&](std::size_t camera) {
+    const std::uint64_t noise_seed = hash(noise_seed_, static_cast<std::uint64_t>(time.count()), camera);
+    return scene_->cameras[camera].sensor.expose(radiance[camera], exposure_, noise_seed, options_.threads);
+  };
+  if (next_ == 0) {  // the camera was on before the recording
+    constexpr int kFramesToSettle = 12;
+    for (int i = 0; i < kFramesToSettle; ++i) exposure_ = next_exposure(exposure_, mean_grey(image_of(0)), {});
+  }
+  ImageFrame frame{time, image_of(0), image_of(1)};
+  exposure_ = next_exposure(exposure_, mean_grey(frame.left), {});
+  ++next_;
+  return frame;
+}
+
+std::vector<float> CowshedRecording::left_depths(Timestamp time) const {
+  const Scene::RobotCamera& left = scene_->cameras.front();
+  return scene_->renderer.depths({left.pixels, world_from_body(time) * left.body_from_camera},
+                                 scene_->moving_at(seconds_since_start(time)));
+}
+
+std::optional<MarkSighting> CowshedRecording::best_sighting(const NamedPoint& mark) const {
+  constexpr std::size_t kStride = 5;  // frames
+  constexpr double kNearest = 1.0;    // metres
+  constexpr double kRim = 0.06;       // of the image's width
+  const Camera& camera = scene_->calibration.left;
+  double nearest = 9.0;  // metres: what is farther is too small to pick
+  std::optional<MarkSighting> best;
+  for (std::size_t i = 0; i < times_.size(); i += kStride) {
+    const Pose world_from_camera = world_from_body(times_[i]) * scene_->calibration.body_from_left;
+    const Eigen::Vector3d point_in_camera = inverse(world_from_camera) * mark.point_in_world;
+    const std::optional<Eigen::Vector2d> pixel = camera.project(point_in_camera);
+    const double depth = point_in_camera.z();
+    if (!pixel || depth < kNearest || depth >= nearest) continue;
+    const Eigen::Vector2d rim = Eigen::Vector2d::Constant(kRim * camera.width);
+    if (!camera.contains(*pixel - rim) || !camera.contains(*pixel + rim)) continue;
+    const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
+    if (!scene_->still.rays().is_free(origin, mark.point_in_world.cast<float>())) continue;
+    nearest = depth;
+    best = MarkSighting{mark.name, times_[i], *pixel};
+  }
+  return best;
+}
+
+std::vector<MarkSighting> CowshedRecording::sightings() const {
+  std::vector<MarkSighting> sightings;
+  for (const NamedPoint& mark : scene_->barn.marks) {
+    if (const auto sighting = best_sighting(mark)) sightings.push_back(*sighting);
+  }
+  return sightings;
+}
+
+void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
+                             const std::function<bool(int frames_done)>& go_on) {
+  const EurocWriter writer(recording.calibration(), recording.times(), recording.truth(), folder);
+  const Pose world_from_first_body = recording.world_from_body(recording.times().front());
+  write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
+                   recording.sightings(), folder / "plan");
+  const int total = static_cast<int>(recording.times().size());
+  std::future<void> writing;  // of the frame before, beside rendering
+  for (int i = 0; i < total; ++i) {
+    ImageFrame frame = recording.render_next();
+    if (writing.valid()) writing.get();
+    writing = std::async(std::launch::async, [&writer, rendered = std::move(frame)] { writer.write(rendered); });
+    if (!go_on(i + 1)) break;
+  }
+  if (writing.valid()) writing.get();
+}
+
+}  // namespace byre

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "byre/simulation/cowshed.h"
+#include "byre/simulation/cowshed_plan.h"
+#include "byre/simulation/feeding_robot.h"
+#include "byre/simulation/image_sensor.h"
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+namespace byre {
+
+struct CowshedRecordingOptions {
+  CowshedOptions barn;
+  double duration_s = 40.0;
+  double frame_rate_hz = 20.0;
+  int image_divisor = 1;  // 1: 752 x 480 pixels
+  double dirt = 0.0;      // on the lenses: 0 none, 1 a dozen of soft spots each
+  int threads = 0;        // 0: as many as the machine has; changes no byte
+};
+
+// A visit of a feeding robot to a cowshed, rendered frame by frame. Even missions find it at dusk, and each drives a
+// little differently.
+class CowshedRecording {
+ public:
+  // Builds and lights the barn: takes a second or two. Throws InputError when an option makes no sense.
+  explicit CowshedRecording(const CowshedRecordingOptions& options);
+  ~CowshedRecording();
+
+  const Calibration& calibration() const;
+  const Cowshed& barn() const;
+  const std::vector<Timestamp>& times() const;
+
+  // world_from_body at 200 Hz, frames included.
+  Trajectory truth() const;
+  Pose world_from_body(Timestamp time) const;
+
+  // The frame after the last one rendered: frames follow one another, as automatic exposure learns from each.
+  // Precondition: there is one.
+  ImageFrame render_next();
+
+  // Depth along the left camera's axis at each pixel centre, row-major, metres.
+  std::vector<float> left_depths(Timestamp time) const;
+
+  // For each mark that the left camera sees unhidden, the frame that sees it best: large, and not at the rim.
+  std::vector<MarkSighting> sightings() const;
+
+ private:
+  struct Scene;
+
+  double seconds_since_start(Timestamp time) const { return to_seconds(time - times_.front()); }
+  double motion_during_exposure(double time_s) const;
+  std::array<std::vector<float>, 2> exposed_radiance(double middle_s) const;
+  std::optional<MarkSighting> best_sighting(const NamedPoint& mark) const;
+
+  CowshedRecordingOptions options_;
+  std::uint64_t noise_seed_;
+  FeedingCourse course_;
+  std::vector<Timestamp> times_;
+  std::unique_ptr<const Scene> scene_;
+  Exposure exposure_;     // of the next frame
+  std::size_t next_ = 0;  // frame
+};
+
+// Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points to register a map
+// on it. Asks go_on after each frame, and stops where that gives false: the rest of the images is missing then. Throws
+// InputError when a file cannot be written. Precondition: no frame has been rendered yet.
+void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
+                             const std::function<bool(int frames_done)>& go_on);
+
+}  // namespace byre

@@ -1,0 +1,284 @@
+#include "byre/simulation/cowshed_recording.h"
+
+#include "byre/dataset/recording.h"
+#include "byre/evaluation/trajectory_file.h"
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/input/input_error.h"
+#include "byre/input/text_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+CowshedRecordingOptions small_visit(int mission, int threads) {
+  CowshedRecordingOptions options;
+  options.barn.mission = mission;
+  options.duration_s = 9.0;
+  options.frame_rate_hz = 1.0;
+  options.image_divisor = 4;
+  options.threads = threads;
+  return options;
+}
+
+std::vector<ImageFrame> first_frames(CowshedRecording& recording, int count) {
+  std::vector<ImageFrame> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(recording.render_next());
+  return frames;
+}
+
+std::uint8_t grey_at(const Image& image, double u, double v) {
+  return image.pixels[static_cast<std::size_t>(std::lround(v) * image.width + std::lround(u))];
+}
+
+// Mean difference of grey values between 5 x 5 pixels of both images.
+double difference(const Image& left, const Vector2d& in_left, const Image& right, const Vector2d& in_right) {
+  double sum = 0.0;
+  for (int dv = -2; dv <= 2; ++dv) {
+    for (int du = -2; du <= 2; ++du) {
+      sum += std::abs(grey_at(left, in_left.x() + du, in_left.y() + dv) -
+                      grey_at(right, in_right.x() + du, in_right.y() + dv));
+    }
+  }
+  return sum / 25.0;
+}
+
+// Rendered once for all tests, which only read what was rendered.
+class CowshedVisit : public ::testing::Test {
+ protected:
+  struct Rendered {
+    CowshedRecording recording{small_visit(1, 0)};
+    std::vector<ImageFrame> frames = first_frames(recording, 2);
+  };
+  static const Rendered& rendered() {
+    static const Rendered visit;
+    return visit;
+  }
+
+  const CowshedRecording& recording = rendered().recording;
+  const std::vector<ImageFrame>& frames = rendered().frames;
+};
+
+TEST_F(CowshedVisit, HasTheSameBytesWithOtherNumbersOfThreads) {
+  CowshedRecording again(small_visit(1, 3));
+  for (const ImageFrame& frame : frames) {
+    const ImageFrame repeated = again.render_next();
+    EXPECT_EQ(repeated.time, frame.time);
+    EXPECT_EQ(repeated.left.pixels, frame.left.pixels);
+    EXPECT_EQ(repeated.right->pixels, frame.right->pixels);
+  }
+}
+
+TEST_F(CowshedVisit, LooksDifferentInAnotherMission) {
+  CowshedRecording later(small_visit(2, 0));
+  EXPECT_NE(later.render_next().left.pixels, frames.front().left.pixels);
+  EXPECT_GT(later.times().front(), recording.times().back());
+}
+
+TEST_F(CowshedVisit, IsWellExposedFromItsFirstFrameOn) {
+  for (const ImageFrame& frame : frames) EXPECT_NEAR(mean_grey(frame.left), ExposureLimits{}.wanted_grey, 12.0);
+}
+
+TEST_F(CowshedVisit, ShowsInTheRightImageWhatDepthSaysOfTheLeft) {
+  const Calibration& calibration = recording.calibration();
+  const std::vector<float> depths = recording.left_depths(frames[1].time);
+  const Image& left = frames[1].left;
+  int looked_at = 0;
+  int best_where_predicted = 0;
+  for (int row = 20; row < left.height - 20; row += 4) {
+    for (int column = 30; column < left.width - 20; column += 4) {
+      const Vector2d pixel(column, row);
+      const Vector3d bearing = calibration.left.bearing(pixel).value();
+      const double depth = depths[static_cast<std::size_t>(row * left.width + column)];
+      if (depth > 4.0 || difference(left, pixel, left, pixel + Vector2d(2.0, 0.0)) < 12.0) continue;  // far or flat
+      const Vector3d point_in_left = bearing * (depth / bearing.z());
+      const auto predicted = calibration.right->camera.project(calibration.right->right_from_left * point_in_left);
+      if (!predicted || predicted->x() < 6.0) continue;
+      const auto with_offset = [&](double offset) {
+        return difference(left, pixel, *frames[1].right, *predicted + Vector2d(offset, 0.0));
+      };
+      ++looked_at;
+      best_where_predicted += with_offset(0.0) < std::min(with_offset(-2.0), with_offset(2.0)) ? 1 : 0;
+    }
+  }
+  ASSERT_GT(looked_at, 30);
+  EXPECT_GT(best_where_predicted, 0.8 * looked_at);
+}
+
+TEST_F(CowshedVisit, SeesItsMarksAtTheirDepth) {
+  const std::vector<MarkSighting> sightings = recording.sightings();
+  ASSERT_FALSE(sightings.empty());
+  for (const MarkSighting& sighting : sightings) {
+    const auto mark = std::ranges::find(recording.barn().marks, sighting.name, &NamedPoint::name);
+    ASSERT_NE(mark, recording.barn().marks.end());
+    const Pose world_from_camera = recording.world_from_body(sighting.time) * recording.calibration().body_from_left;
+    const Vector3d in_camera = inverse(world_from_camera) * mark->point_in_world;
+    const std::vector<float> depths = recording.left_depths(sighting.time);
+    const auto i =
+        std::lround(sighting.pixel.y()) * recording.calibration().left.width + std::lround(sighting.pixel.x());
+    EXPECT_NEAR(depths[static_cast<std::size_t>(i)], in_camera.z(), 0.05) << sighting.name;
+  }
+}
+
+TEST_F(CowshedVisit, KnowsItsTruthAtEachFrameAndBetween) {
+  const Trajectory truth = recording.truth();
+  EXPECT_THAT(truth, SizeIs(8 * 200 + 1));
+  for (const Timestamp time : recording.times()) {
+    const auto sample = std::ranges::find(truth, time, &StampedPose::time);
+    ASSERT_NE(sample, truth.end());
+    EXPECT_THAT(sample->world_from_body, PoseNear(recording.world_from_body(time), 0.0, 1e-12));
+  }
+}
+
+TEST_F(CowshedVisit, GivesPicksInTheFrameOfAMapThatBeginsWithItsFirstFrame) {
+  const Pose world_from_first_body = recording.world_from_body(recording.times().front());
+  const std::vector<PlanPick> picks = picks_of(recording.barn().marks, world_from_first_body);
+  ASSERT_EQ(picks.size(), recording.barn().marks.size());
+  for (std::size_t i = 0; i < picks.size(); ++i) {
+    const Vector3d in_world = world_from_first_body * picks[i].point_in_map;
+    EXPECT_LT((in_world - recording.barn().marks[i].point_in_world).norm(), 1e-9);
+    EXPECT_LT((in_world.head<2>() - picks[i].point_in_plan).norm(), 1e-9);
+  }
+}
+
+// Whether nothing stands between two places of the robot, whose body is so wide and high.
+bool is_clear(const RayScene& rays, const Pose& before, const Pose& after) {
+  for (const double side : {-0.35, 0.0, 0.35}) {
+    for (const double height : {0.15, 0.5, 1.0}) {
+      const Vector3d corner(0.4, side, height);
+      if (!rays.is_free((before * corner).cast<float>(), (after * corner).cast<float>())) return false;
+    }
+  }
+  return true;
+}
+
+TEST(CowshedVisits, DriveThroughNothing) {
+  for (const int mission : {1, 2, 3}) {
+    CowshedRecordingOptions options = small_visit(mission, 0);
+    options.duration_s = 60.0;
+    const CowshedRecording recording(options);
+    const RayScene rays(recording.barn().still, 0);
+    const Timestamp step = from_seconds(0.1);
+    for (Timestamp time = recording.times().front(); time < recording.times().back(); time += step) {
+      const Pose here = recording.world_from_body(time);
+      EXPECT_TRUE(is_clear(rays, here, recording.world_from_body(time + step)))
+          << "mission " << mission << " at " << here.translation.transpose();
+    }
+  }
+}
+
+TEST(CowshedVisits, LeadIntoTheFeedStoreWhereItsGateIsOpen) {
+  const auto farthest = [](BarnGate gate) {
+    CowshedRecordingOptions options = small_visit(2, 0);
+    options.barn.gate = gate;
+    options.duration_s = 60.0;
+    const CowshedRecording recording(options);
+    double x = 0.0;
+    for (const StampedPose& sample : recording.truth()) x = std::max(x, sample.world_from_body.translation.x());
+    return x;
+  };
+  EXPECT_LT(farthest(BarnGate::closed), kCowshedSize.length - 2.0);
+  EXPECT_GT(farthest(BarnGate::open), kCowshedSize.length + 5.0);
+}
+
+TEST(CowshedPlan, ShowsColumnsWhereTheyStandAndTheAlleyFree) {
+  const FloorPlanImage plan = draw_floor_plan(build_cowshed({}).outlines);
+  const auto grey = [&](double x, double y) {
+    const Vector2d cell = (Vector2d(x, y) - plan.origin) / plan.resolution;
+    const int row = plan.image.height - 1 - static_cast<int>(cell.y());
+    return plan.image.pixels[static_cast<std::size_t>(row * plan.image.width + static_cast<int>(cell.x()))];
+  };
+  EXPECT_EQ(grey(7.5, 3.0), 0);
+  EXPECT_EQ(grey(7.5, -3.0), 0);
+  EXPECT_EQ(grey(7.5, 3.3), 254);
+  EXPECT_EQ(grey(15.0, 0.0), 254);
+  EXPECT_EQ(grey(15.0, 2.5), 0);  // the curb
+  EXPECT_EQ(grey(-0.5, 0.0), 254);
+  EXPECT_EQ(grey(30.0, 0.0), 254);  // the gate
+  EXPECT_EQ(grey(30.0, 2.5), 0);
+  EXPECT_EQ(grey(40.0, 0.0), 0);  // the store's far wall
+}
+
+class WrittenCowshed : public ::testing::Test {
+ protected:
+  ~WrittenCowshed() override { fs::remove_all(folder); }
+
+  static std::string text_of(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+
+  const fs::path folder = fs::path(::testing::TempDir()) / "byre_written_cowshed";
+};
+
+TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndHasAFloorPlan) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  options.duration_s = 0.1;
+  options.frame_rate_hz = 20.0;
+  CowshedRecording recording(options);
+  std::vector<int> progress;
+  write_cowshed_recording(recording, folder, [&](int done) {
+    progress.push_back(done);
+    return true;
+  });
+  EXPECT_THAT(progress, ElementsAre(1, 2));
+
+  const auto read = open_recording(folder, {});
+  ASSERT_EQ(read->size(), 2);
+  EXPECT_EQ(read->times(), recording.times());
+  EXPECT_TRUE(read->calibration().right);
+  EXPECT_EQ(read->calibration().left.distortion, recording.calibration().left.distortion);
+  const std::optional<ImageFrame> frame = read->read(1);
+  ASSERT_TRUE(frame && frame->right);
+  CowshedRecording again(options);
+  EXPECT_EQ(frame->left.pixels, first_frames(again, 2)[1].left.pixels);
+  EXPECT_THAT(read_trajectory(folder), SizeIs(11));
+
+  EXPECT_THAT(text_of(folder / "plan" / "plan.yaml"), HasSubstr("image: plan.png\nresolution: 0.02"));
+  EXPECT_TRUE(fs::exists(folder / "plan" / "plan.png"));
+  const std::vector<TextLine> picks = read_lines(folder / "plan" / "picks.csv");
+  ASSERT_EQ(picks.size(), recording.barn().marks.size());
+  EXPECT_THAT(split_fields(picks.front().text), SizeIs(6));
+}
+
+TEST_F(WrittenCowshed, StopsWhenItIsTold) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  options.image_divisor = 8;
+  CowshedRecording recording(options);
+  write_cowshed_recording(recording, folder, [](int done) { return done < 2; });
+  int images = 0;
+  for (const Timestamp time : recording.times()) {
+    images += fs::exists(folder / "mav0" / "cam0" / "data" / (std::to_string(time.count()) + ".png")) ? 1 : 0;
+  }
+  EXPECT_EQ(images, 2);
+}
+
+TEST_F(WrittenCowshed, IsRefusedWhenItsOptionsMakeNoSense) {
+  CowshedRecordingOptions options;
+  options.duration_s = 0.0;
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+  options = {};
+  options.image_divisor = 0;
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+  options = {};
+  options.dirt = -1.0;
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,138 @@
+// The feed store behind the eastern gable: bales, a heap of silage, barrels and shelves around free floor.
+
+#include "byre/simulation/cowshed_parts.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace byre {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kWest = kCowshedSize.length + 0.15f;
+constexpr float kEast = kCowshedSize.length + kCowshedSize.store_length;
+constexpr float kHalfWidth = kCowshedSize.store_half_width;
+constexpr float kHeight = kCowshedSize.store_height;
+constexpr float kPlinth = 1.2f;  // metres: the height of concrete walls
+
+const SurfaceLook kConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
+const SurfaceLook kPlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
+const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.1f};
+
+// A wall between two points on the floor, seen from its right; concrete up to the plinth, planks above.
+void add_wall(QuadMesh& mesh, const Vector3f& from, const Vector3f& to) {
+  add_panel(mesh, from, to - from, {0.0f, 0.0f, kPlinth}, kConcrete);
+  add_panel(mesh, from + Vector3f(0.0f, 0.0f, kPlinth), to - from, {0.0f, 0.0f, kHeight - kPlinth}, kPlanks);
+}
+
+void add_walls(Cowshed& barn) {
+  QuadMesh& mesh = barn.still;
+  constexpr float kGate = kCowshedSize.gate_half_width;
+  add_wall(mesh, {kEast, -kHalfWidth, 0.0f}, {kWest, -kHalfWidth, 0.0f});
+  add_wall(mesh, {kWest, -kHalfWidth, 0.0f}, {kWest, -kGate, 0.0f});
+  add_wall(mesh, {kWest, kGate, 0.0f}, {kWest, kHalfWidth, 0.0f});
+  add_wall(mesh, {kWest, kHalfWidth, 0.0f}, {kEast, kHalfWidth, 0.0f});
+  add_wall(mesh, {kEast, kHalfWidth, 0.0f}, {kEast, -kHalfWidth, 0.0f});
+  const float lintel = kCowshedSize.gate_height;
+  add_panel(mesh, {kWest, -kGate, lintel}, {0.0f, 2.0f * kGate, 0.0f}, {0.0f, 0.0f, kHeight - lintel}, kPlanks);
+  const float middle = 0.5f * (kWest + kEast);
+  add_outline_of_box(barn, placed({kEast, 0.0f, 0.0f}), {0.1f, kHalfWidth, 1.0f});
+  for (const float y : {-kHalfWidth, kHalfWidth}) {
+    add_outline_of_box(barn, placed({middle, y, 0.0f}), {0.5f * (kEast - kWest), 0.1f, 1.0f});
+  }
+}
+
+// With a strip along the middle through which daylight comes in.
+void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
+  constexpr float kStrip = 0.5f;  // metres: half of its width
+  const float length = kEast - kWest;
+  const auto add_part = [&](float from_y, float to_y, const SurfaceLook& look) {
+    add_panel(barn.still, {kWest, to_y, kHeight}, {length, 0.0f, 0.0f}, {0.0f, from_y - to_y, 0.0f}, look);
+  };
+  const SurfaceLook sheet{.picture = BarnPicture::roof_sheet, .picture_width = 2.2f};
+  add_part(-kHalfWidth, -kStrip, sheet);
+  add_part(kStrip, kHalfWidth, sheet);
+  SurfaceLook sky = sheet;
+  sky.glow = daylight;
+  add_part(-kStrip, kStrip, sky);
+  for (float x = kWest + 1.2f; x < kEast; x += 2.1f) {
+    add_box(barn.still, placed({x, 0.0f, kHeight - 0.13f}), {0.07f, kHalfWidth, 0.12f}, varied(kTimber, draws));
+  }
+  barn.light.windows.push_back({{0.5f * (kWest + kEast), 0.0f, kHeight},
+                                {0.5f * length, 0.0f, 0.0f},
+                                {0.0f, kStrip, 0.0f},
+                                -Vector3f::UnitZ(),
+                                daylight});
+}
+
+// Bales piled up along the northern wall, each a little askew.
+void add_bales(Cowshed& barn, SeededDraws& draws) {
+  const Vector3f half_size(0.45f, 0.24f, 0.21f);
+  const SurfaceLook straw{.picture = BarnPicture::straw, .brightness = 0.9f, .picture_width = 1.0f};
+  for (float x = kWest + 3.0f; x < kEast - 0.6f; x += 2.05f * half_size.x()) {
+    const int layers = 2 + draws.below(5);
+    for (int layer = 0; layer < layers; ++layer) {
+      const float z = (2.0f * static_cast<float>(layer) + 1.0f) * half_size.z();
+      const Vector3f place(x + draws.between(-0.05f, 0.05f), kHalfWidth - 0.4f - draws.between(0.0f, 0.3f), z);
+      add_box(barn.still, placed(place, draws.between(-0.12f, 0.12f)), half_size, varied(straw, draws));
+    }
+    add_outline_of_box(barn, placed({x, kHalfWidth - 0.5f, 0.0f}), half_size);
+  }
+}
+
+// Silage against the southern wall, steepest there.
+void add_heap(QuadMesh& mesh, float x, float length, SeededDraws& draws) {
+  const float phases[] = {draws.between(0.0f, 6.0f), draws.between(0.0f, 6.0f)};
+  const auto point_at = [&](float u, float v) -> Vector3f {
+    const float end = std::sin(std::numbers::pi_v<float> * u);
+    const float slope = std::cos(0.5f * std::numbers::pi_v<float> * v);
+    const float uneven = 1.0f + 0.13f * std::sin(11.0f * u + phases[0]) + 0.1f * std::sin(7.0f * v + 17.0f * u) +
+                         0.06f * std::sin(31.0f * u + 19.0f * v + phases[1]);
+    return {x + u * length, -kHalfWidth + v * (0.6f + 1.4f * end), 1.7f * end * slope * uneven + 0.004f};
+  };
+  const SurfaceLook feed{.picture = BarnPicture::feed, .brightness = 0.9f, .picture_width = 1.1f};
+  add_grid(
+      mesh, 40, 16, [&](float u, float v) { return point_at(1.0f - u, 1.0f - v); }, {length, 2.0f}, feed);
+}
+
+// Barrels and crates before the eastern wall, and boards above them.
+void add_stock(Cowshed& barn, SeededDraws& draws) {
+  const SurfaceLook plastic{.picture = BarnPicture::plastic, .brightness = 0.7f, .picture_width = 1.0f};
+  const SurfaceLook wood{.picture = BarnPicture::planks, .picture_width = 1.3f};
+  for (float y = -2.2f; y < 3.0f; y += 0.85f) {
+    const Vector3f foot(kEast - draws.between(0.4f, 0.7f), y, 0.0f);
+    if (draws.below(2) == 0) {
+      add_drum(barn.still, foot, foot + Vector3f(0.0f, 0.0f, 0.9f), 0.29f, 0.29f, varied(plastic, draws));
+    } else {
+      add_box(barn.still, placed(foot + Vector3f(0.0f, 0.0f, 0.35f), draws.between(-0.2f, 0.2f)), {0.3f, 0.33f, 0.35f},
+              varied(wood, draws));
+    }
+    add_outline_of_box(barn, placed(foot), {0.29f, 0.29f, 0.9f});
+  }
+  for (const float z : {1.5f, 2.1f}) {
+    add_box(barn.still, placed({kEast - 0.2f, 0.4f, z}), {0.2f, 2.8f, 0.02f}, varied(kTimber, draws));
+    for (float y = -2.2f; y < 3.0f; y += 0.3f) {
+      const float height = draws.between(0.05f, 0.2f);
+      add_box(barn.still, placed({kEast - 0.2f, y, z + height}, draws.between(-0.4f, 0.4f)), {0.1f, 0.1f, height},
+              varied(draws.below(2) == 0 ? plastic : wood, draws));
+    }
+  }
+}
+
+}  // namespace
+
+void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed) {
+  SeededDraws draws(seed, 25);
+  add_panel(barn.still, {kCowshedSize.length, -kHalfWidth, 0.0f}, {kEast - kCowshedSize.length, 0.0f, 0.0f},
+            {0.0f, 2.0f * kHalfWidth, 0.0f}, kConcrete, 0.4f);
+  add_walls(barn);
+  add_ceiling(barn, time == BarnTime::day ? 3.0f : 0.12f, draws);
+  add_bales(barn, draws);
+  add_heap(barn.still, kWest + 1.5f, 3.2f, draws);
+  add_heap(barn.still, kWest + 5.0f, 4.2f, draws);
+  add_stock(barn, draws);
+  for (const float x : {kWest + 2.6f, kWest + 6.8f}) add_lamp(barn, {x, 0.0f, 3.3f}, kHeight, time);
+}
+
+}  // namespace byre

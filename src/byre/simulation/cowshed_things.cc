@@ -1,0 +1,125 @@
+// What people carry about in a cowshed: buckets, wheelbarrows, pallets, brooms, bales, crates.
+
+#include "byre/simulation/cowshed_parts.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace byre {
+namespace {
+
+using Eigen::Isometry3f;
+using Eigen::Vector3f;
+
+constexpr int kThings = 32;
+
+SurfaceLook look_of(BarnPicture picture, float picture_width, std::uint64_t variant) {
+  SeededDraws draws(variant, 31);
+  return {.picture = picture,
+          .brightness = draws.between(0.5f, 1.1f),
+          .picture_width = picture_width,
+          .picture_offset = {draws.between(0.0f, 1.0f), draws.between(0.0f, 1.0f)}};
+}
+
+void add_bucket(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
+  add_drum(mesh, world_from_thing.translation(), world_from_thing * Vector3f(0.0f, 0.0f, 0.32f), 0.12f, 0.17f, look);
+}
+
+void add_wheelbarrow(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
+  const SurfaceLook steel = look_of(BarnPicture::rust, 0.7f, 7);
+  const Isometry3f tray = world_from_thing * placed({0.1f, 0.0f, 0.48f});
+  add_box(mesh, tray * Eigen::AngleAxisf(0.12f, Vector3f::UnitY()), {0.42f, 0.3f, 0.14f}, look);
+  add_drum(mesh, world_from_thing * Vector3f(0.62f, -0.05f, 0.19f), world_from_thing * Vector3f(0.62f, 0.05f, 0.19f),
+           0.19f, 0.19f, look_of(BarnPicture::plastic, 0.5f, 9));
+  for (const float y : {-0.25f, 0.25f}) {
+    const Vector3f handle = world_from_thing * Vector3f(-0.8f, y, 0.62f);
+    add_bar(mesh, world_from_thing * Vector3f(0.62f, 0.2f * y, 0.19f), handle, 0.02f, steel);
+    add_bar(mesh, world_from_thing * Vector3f(-0.3f, y, 0.0f), world_from_thing * Vector3f(-0.2f, y, 0.48f), 0.02f,
+            steel);
+  }
+}
+
+void add_pallet(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
+  for (int i = 0; i < 6; ++i) {
+    const float x = -0.5f + 0.2f * static_cast<float>(i);
+    add_box(mesh, world_from_thing * placed({x, 0.0f, 0.13f}), {0.07f, 0.4f, 0.012f}, look);
+  }
+  for (const float y : {-0.35f, 0.0f, 0.35f}) {
+    add_box(mesh, world_from_thing * placed({0.0f, y, 0.06f}), {0.58f, 0.05f, 0.055f}, look);
+  }
+}
+
+// Leans back.
+void add_broom(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
+  add_bar(mesh, world_from_thing * Vector3f(0.0f, 0.0f, 0.1f), world_from_thing * Vector3f(-0.4f, 0.05f, 1.4f), 0.016f,
+          look);
+  add_box(mesh, world_from_thing * placed({0.0f, 0.0f, 0.06f}), {0.05f, 0.22f, 0.06f},
+          look_of(BarnPicture::straw, 0.8f, 3));
+}
+
+void add_crate(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
+  add_box(mesh, world_from_thing * placed({0.0f, 0.0f, 0.22f}), {0.3f, 0.22f, 0.22f}, look);
+  for (const float z : {0.08f, 0.36f}) {
+    add_box(mesh, world_from_thing * placed({0.0f, 0.0f, z}), {0.315f, 0.235f, 0.03f}, look);
+  }
+}
+
+// A place along the fences or before the western gate, out of the robot's way.
+MovableThing draw_thing(ThingKind kind, SeededDraws& draws) {
+  const float side = draws.below(2) == 0 ? -1.0f : 1.0f;
+  const float yaw = draws.between(-0.6f, 0.6f) + (draws.below(2) == 0 ? 0.0f : 1.5708f);
+  switch (draws.below(5)) {
+    case 0:  // before the western gate
+      return {kind, {draws.between(1.0f, 1.6f), side * draws.between(0.2f, 1.4f), 0.0f}, yaw};
+    case 1:  // between fence and cubicles
+      return {kind, {draws.between(2.0f, 28.0f), side * draws.between(4.7f, 5.1f), 0.0f}, yaw};
+    default:  // along the fence
+      return {kind, {draws.between(2.0f, 28.0f), side * draws.between(1.98f, 2.12f), 0.0f}, yaw};
+  }
+}
+
+// Numbers of the things in an order drawn for a mission: the first ones are those that were moved.
+std::vector<std::size_t> shuffled(std::size_t count, SeededDraws& draws) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t i = count; i > 1; --i) {
+    std::swap(order[i - 1], order[static_cast<std::size_t>(draws.below(static_cast<int>(i)))]);
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<MovableThing> things_of(const CowshedOptions& options) {
+  SeededDraws first(options.seed, 32);
+  std::vector<MovableThing> things;
+  for (int i = 0; i < kThings; ++i) things.push_back(draw_thing(static_cast<ThingKind>(i % kThingKinds), first));
+  if (options.mission == 1) return things;
+  SeededDraws later(hash(options.seed, static_cast<std::uint64_t>(options.mission), 1), 33);
+  const auto moved = static_cast<std::size_t>(std::lround(options.change * kThings));
+  const std::vector<std::size_t> order = shuffled(things.size(), later);
+  for (std::size_t i = 0; i < moved; ++i) things[order[i]] = draw_thing(things[order[i]].kind, later);
+  return things;
+}
+
+void add_thing(QuadMesh& mesh, const MovableThing& thing) {
+  const Isometry3f world_from_thing = placed(thing.position, thing.yaw);
+  const auto variant = static_cast<std::uint64_t>(std::lround(1000.0f * std::abs(thing.yaw)));
+  switch (thing.kind) {
+    case ThingKind::bucket:
+      return add_bucket(mesh, world_from_thing, look_of(BarnPicture::plastic, 0.6f, variant));
+    case ThingKind::wheelbarrow:
+      return add_wheelbarrow(mesh, world_from_thing, look_of(BarnPicture::rust, 0.9f, variant));
+    case ThingKind::pallet:
+      return add_pallet(mesh, world_from_thing, look_of(BarnPicture::timber, 0.9f, variant));
+    case ThingKind::broom:
+      return add_broom(mesh, world_from_thing, look_of(BarnPicture::timber, 0.6f, variant));
+    case ThingKind::bale:
+      return add_box(mesh, world_from_thing * placed({0.0f, 0.0f, 0.21f}), {0.42f, 0.23f, 0.21f},
+                     look_of(BarnPicture::straw, 0.9f, variant));
+    case ThingKind::crate:
+      return add_crate(mesh, world_from_thing, look_of(BarnPicture::planks, 1.4f, variant));
+  }
+}
+
+}  // namespace byre

@@ -1,0 +1,23 @@
+#include "byre/simulation/divided_camera.h"
+
+namespace byre {
+namespace {
+
+// u of a pixel's centre when n x n pixels become one: the image's edge, at -0.5, stays where it is.
+double divided_centre(double centre, int divisor) {
+  return (centre + 0.5) / divisor - 0.5;
+}
+
+}  // namespace
+
+Camera divided_camera(Camera camera, int divisor) {
+  camera.width /= divisor;
+  camera.height /= divisor;
+  camera.fx /= divisor;
+  camera.fy /= divisor;
+  camera.cx = divided_centre(camera.cx, divisor);
+  camera.cy = divided_centre(camera.cy, divisor);
+  return camera;
+}
+
+}  // namespace byre

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "byre/features/image.h"
+#include "byre/geometry/camera.h"
+#include "byre/geometry/trajectory.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace byre {
+
+// Writes a recording into an EuRoC ASL folder: mav0/cam0 and, of a stereo pair, cam1, with their calibrations and lists
+// of images; state_groundtruth_estimate0.
+class EurocWriter {
+ public:
+  // Writes all but the images. times: of the images that will follow; truth: as dense as it is to be written, biases
+  // are zero. Throws InputError when a file cannot be written.
+  EurocWriter(const Calibration& calibration, const std::vector<Timestamp>& times, const Trajectory& truth,
+              const std::filesystem::path& folder);
+
+  // The images of one of the times. Several threads may write different frames at once. Throws InputError when a file
+  // cannot be written.
+  void write(const ImageFrame& frame) const;
+
+ private:
+  std::filesystem::path mav_;  // constant after construction
+};
+
+}  // namespace byre

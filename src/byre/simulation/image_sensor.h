@@ -1,0 +1,56 @@
+#pragma once
+
+#include "byre/features/image.h"
+#include "byre/geometry/camera.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace byre {
+
+// How long the sensor gathers light, and how much it amplifies.
+struct Exposure {
+  float time_s = 0.003f;
+  float gain = 1.0f;
+};
+
+struct ExposureLimits {
+  float min_time_s = 0.0002f;
+  float max_time_s = 0.010f;
+  float max_gain = 8.0f;
+  float wanted_grey = 105.0f;  // mean of the image
+};
+
+// What an automatic exposure chooses for the next frame, given the mean grey value of this one: half of the way, time
+// before gain.
+Exposure next_exposure(const Exposure& exposure, float mean_grey, const ExposureLimits& limits);
+
+float mean_grey(const Image& image);
+
+struct ImageSensorOptions {
+  float vignetting = 0.35f;  // share of the light lost in the corners
+  float dirt = 0.0f;         // on the lens: 0 none, 1 a dozen of soft spots
+  float noise = 1.0f;        // times that of a usual sensor
+  std::uint64_t seed = 1;
+};
+
+// A lens and the sensor behind it: light in, grey values out.
+class ImageSensor {
+ public:
+  ImageSensor(const Camera& camera, const ImageSensorOptions& options);
+
+  // radiance: of each pixel, row-major. The same arguments give the same bytes, whatever the number of threads.
+  Image expose(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
+               int threads) const;
+
+ private:
+  void add_spot(float x, float y, float radius, float strength, std::uint64_t seed);
+
+  int width_;
+  int height_;
+  float noise_;
+  std::vector<float> transmission_;  // share of the light that comes through, of each pixel
+  std::vector<float> veil_;          // share of the image's mean light that dirt scatters there
+};
+
+}  // namespace byre

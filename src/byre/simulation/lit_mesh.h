@@ -1,0 +1,38 @@
+#pragma once
+
+#include "byre/simulation/ray_scene.h"
+
+#include <array>
+#include <vector>
+
+namespace byre {
+
+// A mesh ready to be seen: what rays find, and what a facet looks like.
+class LitMesh {
+ public:
+  // light: of each vertex, what a white surface sends out there; id: see RayScene.
+  LitMesh(const QuadMesh& mesh, const std::vector<float>& light, unsigned id,
+          RayScene::Build build = RayScene::Build::careful);
+
+  // By corner where it is an array, in the order of the mesh.
+  struct Facet {
+    std::array<Eigen::Vector2f, 4> picture_places;
+    std::array<float, 4> light;
+    Eigen::Vector3f normal;            // unit length
+    Eigen::Vector3f u_slope, v_slope;  // of the picture's place over the surface, pictures per metre
+    std::uint32_t surface = 0;
+  };
+
+  const RayScene& rays() const { return rays_; }
+  const Facet& facet(unsigned index) const { return facets_[index]; }
+  const SurfaceLook& look(const Facet& facet) const { return looks_[facet.surface]; }
+  float mean_light() const { return mean_light_; }  // over all vertices
+
+ private:
+  RayScene rays_;
+  std::vector<Facet> facets_;
+  std::vector<SurfaceLook> looks_;
+  float mean_light_;
+};
+
+}  // namespace byre

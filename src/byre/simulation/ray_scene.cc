@@ -1,0 +1,66 @@
+#include "byre/simulation/ray_scene.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace byre {
+namespace {
+
+template <typename Value>
+Value* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+  return static_cast<Value*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Value), count));
+}
+
+RTCGeometry geometry_of(RTCDevice device, const QuadMesh& mesh) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
+  std::ranges::copy(mesh.vertices, new_buffer<Eigen::Vector3f>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                                               mesh.vertices.size()));
+  std::ranges::copy(mesh.quads, new_buffer<std::array<std::uint32_t, 4>>(geometry, RTC_BUFFER_TYPE_INDEX,
+                                                                         RTC_FORMAT_UINT4, mesh.quads.size()));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace
+
+RayScene::RayScene(const QuadMesh& mesh, unsigned id, Build build) {
+  device_.reset(rtcNewDevice("threads=1"));  // built by one thread, so that it is built the same each time
+  if (!device_) throw std::runtime_error("Embree cannot be started");
+  scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneBuildQuality(scene_.get(), build == Build::careful ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW);
+  if (!mesh.quads.empty()) {
+    const RTCGeometry geometry = geometry_of(device_.get(), mesh);
+    rtcAttachGeometryByID(scene_.get(), geometry, id);
+    rtcReleaseGeometry(geometry);  // the scene keeps it
+  }
+  rtcCommitScene(scene_.get());
+  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot hold the scene");
+}
+
+void RayScene::intersect(const int* valid, RTCRayHit8& rays) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene_.get(), &context, &rays);
+}
+
+bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
+  constexpr float kEnd = 1e-3f;  // of the way: what the points themselves lie on
+  const Eigen::Vector3f way = to - from;
+  RTCRay ray{};
+  ray.org_x = from.x();
+  ray.org_y = from.y();
+  ray.org_z = from.z();
+  ray.dir_x = way.x();
+  ray.dir_y = way.y();
+  ray.dir_z = way.z();
+  ray.tnear = kEnd;
+  ray.tfar = 1.0f - kEnd;
+  ray.mask = ~0u;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene_.get(), &context, &ray);
+  return ray.tfar >= 0.0f;  // Embree sets it to minus infinity
+}
+
+}  // namespace byre

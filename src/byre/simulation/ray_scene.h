@@ -1,0 +1,35 @@
+#pragma once
+
+#include "byre/simulation/quad_mesh.h"
+
+#include <memory>
+
+#include <embree3/rtcore.h>
+
+namespace byre {
+
+// Finds where rays meet a mesh, with Embree (Wald 2014). The same rays give the same hits, whichever thread asks.
+class RayScene {
+ public:
+  enum class Build : std::uint8_t { careful, quick };  // for many frames; for one
+
+  // id: what hits on this scene have as geomID. The mesh is copied.
+  RayScene(const QuadMesh& mesh, unsigned id, Build build = Build::careful);
+
+  // Makes the rays of a packet end at this scene where it is nearer than where they end so far. valid: -1 for the rays
+  // that count, 0 for the others; both are aligned as Embree asks.
+  void intersect(const int* valid, RTCRayHit8& rays) const;
+
+  // Whether nothing lies between two points, both of them left out.
+  bool is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+
+ private:
+  struct Release {
+    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+  };
+  std::unique_ptr<RTCDeviceTy, Release> device_;
+  std::unique_ptr<RTCSceneTy, Release> scene_;  // constant after construction
+};
+
+}  // namespace byre
