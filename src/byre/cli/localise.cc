@@ -97,7 +97,7 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
   LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
                               : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);
   progress.close();
-  LocaliseProtocol protocol{options.map.string(), recording ? options.inputs.front().string() : "images", frames, {}};
+  LocaliseProtocol protocol{options.map.string(), recording ? options.inputs.front().string() : "images", frames};
   if (options.frame == PoseFrame::plan) protocol.plan = stored.plan;
   return {std::move(run), std::move(protocol)};
 }

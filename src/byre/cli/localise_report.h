@@ -23,9 +23,9 @@ LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored
 // How the run was made.
 struct LocaliseProtocol {
   std::string map;
-  std::string input;                     // recording, or number of images
-  int frames = 0;                        // asked for
-  std::optional<PlanRegistration> plan;  // of the map, when poses are wanted on it too
+  std::string input;                          // recording, or number of images
+  int frames = 0;                             // asked for
+  std::optional<PlanRegistration> plan = {};  // of the map, when poses are wanted on it too
 };
 
 std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
