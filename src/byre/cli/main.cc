@@ -31,6 +31,7 @@ constexpr std::array kCommands = {
     Command{"register", "Find where a map lies on a floor plan", declare_register},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
     Command{"scale", "Give the map of one camera its size, by a distance that is known", declare_scale},
+    Command{"draw", "Draw a map on its floor plan, what the camera saw, and videos of missions", declare_draw},
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},
     Command{"validate", "Check that a map is sound", declare_validate},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},

@@ -9,13 +9,13 @@ namespace byre {
 
 void for_each_row(int rows, int threads, const std::function<void(int row)>& work) {
   const int available = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
-  const int helpers = std::min(threads > 0 ? threads : available, rows) - 1;
+  const int others = std::min(threads > 0 ? threads : available, rows) - 1;
   std::atomic<int> next = 0;
   const auto work_on = [&] {
     for (int row = next++; row < rows; row = next++) work(row);
   };
   std::vector<std::jthread> workers;
-  for (int i = 0; i < helpers; ++i) workers.emplace_back(work_on);
+  for (int i = 0; i < others; ++i) workers.emplace_back(work_on);
   work_on();
 }
 

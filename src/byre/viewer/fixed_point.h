@@ -1,0 +1,16 @@
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <string>
+
+namespace byre {
+
+// A number with so many decimals, whatever the locale. Precondition: at most a hundred characters long.
+inline std::string fixed_point(double value, int decimals) {
+  std::array<char, 128> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr;
+  return {text.data(), end};
+}
+
+}  // namespace byre

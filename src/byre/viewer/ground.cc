@@ -1,0 +1,69 @@
+#include "byre/viewer/ground.h"
+
+#include "byre/dataset/image_file.h"
+#include "byre/input/input_error.h"
+#include "byre/map/driving_plane.h"
+
+#include <cassert>
+
+#include <Eigen/Eigenvalues>
+
+namespace byre {
+namespace {
+
+// The path may be rough by so much of its length before heights above it mean nothing: it was flown, or carried about.
+constexpr double kRoughest = 0.1;
+
+// Unit vector in the plane along which the path is longest, the way it was gone.
+Eigen::Vector3d direction_of(const DrivingPlane& plane) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d onto_plane = Eigen::Matrix3d::Identity() - plane.up_in_map * plane.up_in_map.transpose();
+  for (const Eigen::Vector3d& position : plane.path_in_map) {
+    const Eigen::Vector3d offset = onto_plane * (position - plane.point_in_map);
+    spread += offset * offset.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const bool has_length = solver.eigenvalues()[2] > 1e-12;
+  const Eigen::Vector3d along = has_length ? solver.eigenvectors().col(2).eval() : plane.up_in_map.unitOrthogonal();
+  const Eigen::Vector3d gone = plane.path_in_map.back() - plane.path_in_map.front();
+  return along.dot(gone) < 0.0 ? (-along).eval() : along;
+}
+
+// With the world's z up, where the cameras do not tell.
+DrivingPlane plane_of_places(const Map& map) {
+  std::vector<Eigen::Vector3d> path;
+  for (const KeyframeId id : map.keyframe_ids()) path.push_back(body_at(map, *map.find_keyframe(id)));
+  return fit_driving_plane(std::move(path), Eigen::Vector3d::UnitZ());
+}
+
+Similarity ground_from(const DrivingPlane& plane) {
+  Eigen::Matrix3d rotation;
+  rotation.row(2) = plane.up_in_map;
+  rotation.row(0) = direction_of(plane);
+  rotation.row(1) = plane.up_in_map.cross(rotation.row(0).transpose());
+  const Eigen::Quaterniond ground_from_map(rotation);
+  return {1.0, {ground_from_map, -(ground_from_map * plane.point_in_map)}};
+}
+
+std::shared_ptr<const Image> read_plan_image(const FloorPlan& plan) {
+  std::optional<Image> image = read_image(plan.image);
+  if (!image) throw InputError(plan.image.string(), "is no image that can be read", "check the file of the floor plan");
+  return std::make_shared<const Image>(std::move(*image));
+}
+
+}  // namespace
+
+Ground ground_of(const StoredMap& stored, const std::optional<FloorPlan>& plan) {
+  assert(stored.map.keyframe_count() > 0 && (!plan || stored.plan));
+  const std::optional<DrivingPlane> driven = fit_driving_plane(stored.map);
+  const DrivingPlane plane = driven ? *driven : plane_of_places(stored.map);
+  Ground ground;
+  ground.is_level = driven && plane.thickness <= kRoughest * plane.length;
+  ground.ground_from_map = stored.plan ? stored.plan->plan_from_map : ground_from(plane);
+  ground.is_metric = stored.plan || stored.scale == MapScale::metric;
+  ground.plan = plan;
+  if (plan) ground.image = read_plan_image(*plan);
+  return ground;
+}
+
+}  // namespace byre

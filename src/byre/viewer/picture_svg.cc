@@ -1,0 +1,227 @@
+// A picture as SVG. Thousands of equal symbols are one path, so that a map of a building stays a small file.
+
+#include "byre/viewer/fixed_point.h"
+#include "byre/viewer/picture_shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace byre {
+namespace {
+
+using std::string;
+
+string joined(std::initializer_list<std::string_view> parts) {
+  string all;
+  for (const std::string_view part : parts) all += part;
+  return all;
+}
+
+string px(double value) {
+  return fixed_point(value, 1);
+}
+
+string px(const Eigen::Vector2d& point) {
+  return joined({px(point.x()), " ", px(point.y())});
+}
+
+string px(const std::vector<Eigen::Vector2d>& points) {
+  string all;
+  for (const Eigen::Vector2d& point : points) all += joined({all.empty() ? "" : " ", px(point)});
+  return all;
+}
+
+// Attributes by name; those without a value are left out.
+using Attributes = std::vector<std::pair<std::string_view, string>>;
+
+string begun(std::string_view name, const Attributes& attributes) {
+  string tag = joined({"<", name});
+  for (const auto& [key, value] : attributes) {
+    if (!value.empty()) tag += joined({" ", key, "=\"", value, "\""});
+  }
+  return tag;
+}
+
+string empty_element(std::string_view name, const Attributes& attributes) {
+  return joined({begun(name, attributes), "/>\n"});
+}
+
+string element(std::string_view name, const Attributes& attributes, std::string_view content) {
+  return joined({begun(name, attributes), ">", content, "</", name, ">\n"});
+}
+
+string hex(const Colour& colour) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  string text = "#";
+  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
+    text += kDigits[part / 16];
+    text += kDigits[part % 16];
+  }
+  return text;
+}
+
+string opacity_text(double opacity) {
+  return opacity < 1.0 ? fixed_point(opacity, 2) : "";
+}
+
+string escaped(std::string_view text) {
+  constexpr std::string_view kSpecial = "&<>\"";
+  constexpr std::array<std::string_view, 4> kNames = {"&amp;", "&lt;", "&gt;", "&quot;"};
+  string safe;
+  for (const char c : text) {
+    const std::size_t found = kSpecial.find(c);
+    if (found == std::string_view::npos) safe += c;
+    if (found != std::string_view::npos) safe += kNames[found];
+  }
+  return safe;
+}
+
+string base64(const std::vector<unsigned char>& bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63u] : '=';
+  }
+  return text;
+}
+
+// As PNG or JPEG, whichever is smaller: drawings are the one, photographs the other.
+string data_address(const Image& image) {
+  constexpr int kJpegQuality = 90;
+  const cv::Mat pixels(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  std::vector<unsigned char> png;
+  std::vector<unsigned char> jpeg;
+  cv::imencode(".png", pixels, png);
+  cv::imencode(".jpg", pixels, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  const bool is_drawing = png.size() <= jpeg.size();
+  return joined({"data:image/", is_drawing ? "png" : "jpeg", ";base64,", base64(is_drawing ? png : jpeg)});
+}
+
+// A centre of a pixel is half a pixel from where SVG has the image begin.
+string matrix_of(const Eigen::Matrix<double, 2, 3>& pane_from_image) {
+  Eigen::Matrix<double, 2, 3> pane_from_corner = pane_from_image;
+  pane_from_corner.col(2) = pane_from_image * Eigen::Vector3d(-0.5, -0.5, 1.0);
+  string text;
+  for (const double value : pane_from_corner.reshaped()) {
+    text += joined({text.empty() ? "matrix(" : " ", fixed_point(value, 6)});
+  }
+  return joined({text, ")"});
+}
+
+string svg_of(const PictureImage& mark) {
+  return empty_element("image", {{"width", std::to_string(mark.image->width)},
+                                 {"height", std::to_string(mark.image->height)},
+                                 {"transform", matrix_of(mark.pane_from_image)},
+                                 {"opacity", opacity_text(mark.opacity)},
+                                 {"href", data_address(*mark.image)}});
+}
+
+string svg_of(const PictureArea& mark) {
+  return empty_element(
+      "polygon", {{"fill", hex(mark.colour)}, {"opacity", opacity_text(mark.opacity)}, {"points", px(mark.corners)}});
+}
+
+string dashes_of(const PictureLine& mark) {
+  if (mark.stroke == Stroke::solid) return "";
+  if (mark.stroke == Stroke::dotted) return joined({"0 ", px(kDotGap * mark.width)});
+  return joined({px(kDash * mark.width), " ", px(kDashGap * mark.width)});
+}
+
+string svg_of(const PictureLine& mark) {
+  return empty_element("polyline", {{"fill", "none"},
+                                    {"stroke", hex(mark.colour)},
+                                    {"stroke-width", px(mark.width)},
+                                    {"stroke-linejoin", "round"},
+                                    {"stroke-linecap", mark.stroke == Stroke::dashed ? "butt" : "round"},
+                                    {"stroke-dasharray", dashes_of(mark)},
+                                    {"points", px(mark.points)}});
+}
+
+bool is_dot(Symbol symbol) {
+  return symbol == Symbol::disc || symbol == Symbol::square;
+}
+
+// One symbol as a piece of a path: a dot is a line without length, whose ends are its shape.
+string path_of(Symbol symbol, const Eigen::Vector2d& centre, double size) {
+  if (is_dot(symbol)) return joined({"M", px(centre), "h0"});
+  string path;
+  if (is_stroked(symbol)) {
+    for (const auto& [from, to] : strokes_of(symbol, size)) {
+      path += joined({"M", px(centre + from), "L", px(centre + to)});
+    }
+    return path;
+  }
+  for (const Eigen::Vector2d& corner : corners_of(symbol, size)) {
+    path += joined({path.empty() ? "M" : "L", px(centre + corner)});
+  }
+  return joined({path, "Z"});
+}
+
+// All of them, each wider by the rim at either side.
+string path_of(const PictureSymbols& mark, double rim, const Colour& colour) {
+  const bool is_filled = !is_dot(mark.symbol) && !is_stroked(mark.symbol);
+  const double pen = is_filled ? 0.0 : is_stroked(mark.symbol) ? stroke_width(mark.size) : mark.size;
+  string path;
+  for (const Eigen::Vector2d& centre : mark.centres) path += path_of(mark.symbol, centre, mark.size);
+  return empty_element("path", {{"fill", is_filled ? hex(colour) : "none"},
+                                {"stroke", pen + rim > 0.0 ? hex(colour) : ""},
+                                {"stroke-width", pen + rim > 0.0 ? px(pen + 2.0 * rim) : ""},
+                                {"stroke-linecap", mark.symbol == Symbol::square ? "square" : "round"},
+                                {"d", path}});
+}
+
+string svg_of(const PictureSymbols& mark) {
+  if (mark.centres.empty()) return "";
+  const string rims = mark.rim ? path_of(mark, kRim, *mark.rim) : "";
+  return element("g", {{"class", escaped(mark.name)}, {"opacity", opacity_text(mark.opacity)}},
+                 joined({rims, path_of(mark, 0.0, mark.colour)}));
+}
+
+string svg_of(const PictureText& mark) {
+  constexpr std::array kAnchors = {"", "middle", "end"};
+  return element("text",
+                 {{"x", px(mark.at.x())},
+                  {"y", px(mark.at.y())},
+                  {"font-size", px(mark.size)},
+                  {"font-weight", mark.bold ? "bold" : ""},
+                  {"text-anchor", kAnchors[static_cast<std::size_t>(mark.align)]},
+                  {"fill", hex(mark.colour)}},
+                 escaped(mark.text));
+}
+
+string svg_of(const Pane& pane) {
+  const string width = std::to_string(pane.width);
+  const string height = std::to_string(pane.height);
+  string content =
+      joined({"\n", empty_element("rect", {{"width", width}, {"height", height}, {"fill", hex(pane.background)}})});
+  for (const PictureMark& mark : pane.marks) content += std::visit([](const auto& one) { return svg_of(one); }, mark);
+  return element(
+      "svg", {{"x", std::to_string(pane.left)}, {"y", std::to_string(pane.top)}, {"width", width}, {"height", height}},
+      content);
+}
+
+}  // namespace
+
+string to_svg(const Picture& picture) {
+  const string width = std::to_string(picture.width);
+  const string height = std::to_string(picture.height);
+  string content = joined({"\n", empty_element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}})});
+  for (const Pane& pane : picture.panes) content += svg_of(pane);
+  return element("svg",
+                 {{"xmlns", "http://www.w3.org/2000/svg"},
+                  {"width", width},
+                  {"height", height},
+                  {"viewBox", joined({"0 0 ", width, " ", height})},
+                  {"font-family", "Helvetica, Arial, sans-serif"}},
+                 content);
+}
+
+}  // namespace byre

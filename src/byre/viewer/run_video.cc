@@ -1,0 +1,63 @@
+#include "byre/viewer/run_video.h"
+
+#include "byre/input/input_error.h"
+#include "byre/viewer/picture_shapes.h"
+
+#include <cassert>
+#include <utility>
+
+#include <opencv2/videoio.hpp>
+
+namespace byre {
+namespace {
+
+int even(int length) {
+  return length + length % 2;
+}
+
+std::unique_ptr<cv::VideoWriter> open(const std::filesystem::path& file, const char* codec, double frame_rate_hz,
+                                      const cv::Size& size) {
+  const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
+  return std::make_unique<cv::VideoWriter>(file.string(), cv::CAP_FFMPEG, fourcc, frame_rate_hz, size);
+}
+
+}  // namespace
+
+Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& camera_options, const PlanScene& plan,
+                       PlanPictureOptions plan_options) {
+  constexpr double kWide = 1.5;
+  constexpr int kLegend = 100;  // pixels, more or less
+  assert(plan_options.shown);
+  Picture camera = camera_picture(frame, camera_options);
+  const Eigen::Vector2d size = plan_options.shown->sizes();
+  const bool is_wide = size.x() > kWide * size.y();
+  plan_options.width = camera.width;
+  plan_options.height = is_wide ? camera.height : camera.height - kLegend;
+  plan_options.whole_legend = true;
+  const Picture ground = plan_picture(plan, plan_options);
+  return is_wide ? below(std::move(camera), ground) : beside(std::move(camera), ground);
+}
+
+RunVideo::RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height)
+    : width_(even(width)), height_(even(height)) {
+  const cv::Size size(width_, height_);
+  writer_ = open(file, "avc1", frame_rate_hz, size);
+  is_h264_ = writer_->isOpened();
+  if (!is_h264_) writer_ = open(file, "mp4v", frame_rate_hz, size);
+  if (writer_->isOpened()) return;
+  throw InputError(file.string(), "cannot be written as a video",
+                   "name it .mp4 in a folder that exists, and have OpenCV with FFmpeg");
+}
+
+RunVideo::~RunVideo() = default;
+
+void RunVideo::add(const Picture& picture) {
+  const cv::Mat drawn = rasterised(picture);
+  if (drawn.cols == width_ && drawn.rows == height_) return writer_->write(drawn);
+  cv::Mat frame(height_, width_, CV_8UC3, cv::Scalar::all(255));
+  const cv::Rect part(0, 0, std::min(width_, drawn.cols), std::min(height_, drawn.rows));
+  drawn(part).copyTo(frame(part));
+  writer_->write(frame);
+}
+
+}  // namespace byre
