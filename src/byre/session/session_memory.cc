@@ -103,8 +103,8 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   if (correction) waiting_correction_ = {last_held_keyframe_, *correction, CorrectionShape::spread};
 }
 
-// A pose found from nothing is believed once the frames that follow have been tracked on it; the more of them, the less
-// the robot can have come there by itself.
+// A pose found from nothing is believed once the frames that follow have been tracked on it and see much of what should
+// be there; the more of them, the less the robot can have come there by itself.
 void Session::begin_confirmation(const Frame& frame, const TrackedFrame& tracked) {
   if (!mission_) return;
   const RegistrationOptions& options = options_.mission.registration;
@@ -119,7 +119,8 @@ void Session::begin_confirmation(const Frame& frame, const TrackedFrame& tracked
 bool Session::is_still_confirming(const HybridTrack& track) {
   if (is_pose_confirmed()) return true;
   if (reason_to_doubt(track.tracked, rig_, map(), options_.relocalise) != LocalisationFailure::none) return false;
-  --confirmations_left_;
+  const double min_share = options_.mission.registration.min_share;
+  if (track.offline_inliers >= min_share * track.offline_expected) --confirmations_left_;
   return true;
 }
 

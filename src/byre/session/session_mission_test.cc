@@ -52,6 +52,19 @@ Frame without_features(const Frame& frame) {
   return {frame.time, std::make_shared<const Features>()};
 }
 
+// A third of its features.
+Frame thinned(const Frame& frame) {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  for (int i = 0; i < frame.features->size(); i += 3) {
+    keypoints.push_back(frame.features->keypoint(i));
+    descriptors.push_back(frame.features->descriptor(i));
+  }
+  const Rig rig = simulated_rig();
+  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
+                                                       std::move(descriptors), std::vector<Patch>{})};
+}
+
 // The frames of other, at the times of mission.
 Frame at_time_of(const Frame& frame, const Frame& now) {
   return {now.time, frame.features};
@@ -105,6 +118,22 @@ TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
   EXPECT_TRUE(reports[3].has(SessionEvent::localised));
   EXPECT_EQ(count_trusted(reports), static_cast<int>(reports.size()) - 3);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, IsNotConfirmedByFramesThatSeeLittleOfWhatShouldBeThere) {
+  const SimulatedMission mission = circling(0.5, 2);
+  SessionOptions options;
+  options.mission.registration.min_share = 0.4;
+  options.map_online = false;
+  Session session = session_on(mapped(1.0), options);
+  std::vector<Frame> frames = mission.frames;
+  for (std::size_t i = 0; i < 20; ++i) frames[i] = thinned(frames[i]);
+  const auto reports = run(session, frames);
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_TRUE(reports[i].map_from_body) << i;
+    EXPECT_EQ(reports[i].health.doubt, Doubt::unconfirmed) << i;
+  }
+  EXPECT_EQ(reports[30].health.verdict, Verdict::trusted);
 }
 
 TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
