@@ -183,6 +183,7 @@ class Session {
   void remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report);
   void begin_confirmation(const Frame& frame, const TrackedFrame& tracked);
   bool is_still_confirming(const HybridTrack& track);
+  void look_for_proof(const HybridTrack& track);
   void lose_pose(const Frame& frame, FrameReport& report);
   bool may_map(const Frame& frame, const HybridTrack& track) const;
   void search_beside(const Frame& frame);
@@ -196,6 +197,7 @@ class Session {
   ImageFault image_fault(const Frame& frame) const;  // none where its condition is not known
   bool is_registered() const { return !segments_.empty() && segments_[segment_].is_registered; }
   bool is_pose_confirmed() const { return confirmations_left_ == 0; }
+  bool is_pose_proven() const { return proofs_left_ == 0; }
   std::uint32_t next_keyframe_number() const { return last_keyframe_ ? last_keyframe_->number + 1 : 0; }
   std::size_t segment_of(KeyframeId online) const;
   void enter_registered_segment();
@@ -226,10 +228,12 @@ class Session {
   std::vector<Segment> segments_;
   std::size_t segment_ = 0;                  // the present one
   bool has_pose_ = false;                    // the last frame had one
-  int confirmations_left_ = 0;               // frames until a pose found from nothing is believed
+  int confirmations_left_ = 0;               // frames until a pose found from nothing is believed,
+  int proofs_left_ = 0;                      // and frames that see much of the map, until it is trusted
   std::size_t confirmed_end_ = 0;            // of anchored_, those before are of believed poses
   std::optional<Pose> offset_from_online_;   // of the last body pose, from where online points alone have it
-  std::optional<Timestamp> last_confirmed_;  // time of the last believed pose in the reports' frame
+  std::optional<Timestamp> last_confirmed_;  // time of the last believed pose in the reports' frame,
+  std::optional<Timestamp> last_proven_;     // and of the last one beyond doubt
   std::optional<Timestamp> first_frame_;
   bool navigation_error_told_ = false;
   Odometry odometry_;

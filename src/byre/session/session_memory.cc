@@ -70,6 +70,7 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   last_body_ = body;
   has_pose_ = true;
   if (mission_ && is_registered()) remember_mission(frame, track, step, report);
+  if (!without_prediction) look_for_proof(track);
   if (!is_pose_confirmed()) return;
   confirmed_end_ = anchored_.size();
   if (!is_registered()) return;
@@ -79,6 +80,7 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
     report.events.push_back(SessionEvent::relocalised);
   }
   last_confirmed_ = frame.time;
+  if (is_pose_proven()) last_proven_ = frame.time;
 }
 
 void Session::remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report) {
@@ -103,25 +105,34 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   if (correction) waiting_correction_ = {last_held_keyframe_, *correction, CorrectionShape::spread};
 }
 
-// A pose found from nothing is believed once the frames that follow have been tracked on it and see much of what should
-// be there; the more of them, the less the robot can have come there by itself.
+// A pose found from nothing is believed once the frames that follow have been tracked on it; the more of them, the less
+// the robot can have come there by itself. It is trusted once some frames see much of what should be there.
 void Session::begin_confirmation(const Frame& frame, const TrackedFrame& tracked) {
   if (!mission_) return;
   const RegistrationOptions& options = options_.mission.registration;
   confirmations_left_ = options.confirmations;
+  proofs_left_ = options.confirmations;
   if (!last_confirmed_ || anchored_.empty()) return;
   constexpr double kSlack = 0.5;  // metres
   const double reach = kSlack + options.max_speed * to_seconds(frame.time - *last_confirmed_);
   const double shift = (body_pose(tracked.camera_from_world).translation - last_body_.translation).norm();
-  if (shift > reach) confirmations_left_ = options.confirmations_of_jump;
+  if (shift > reach) {
+    confirmations_left_ = options.confirmations_of_jump;
+  } else if (last_proven_ && to_seconds(frame.time - *last_proven_) <= options.without_proof) {
+    proofs_left_ = 0;
+  }
 }
 
 bool Session::is_still_confirming(const HybridTrack& track) {
   if (is_pose_confirmed()) return true;
   if (reason_to_doubt(track.tracked, rig_, map(), options_.relocalise) != LocalisationFailure::none) return false;
-  const double min_share = options_.mission.registration.min_share;
-  if (track.offline_inliers >= min_share * track.offline_expected) --confirmations_left_;
+  --confirmations_left_;
   return true;
+}
+
+void Session::look_for_proof(const HybridTrack& track) {
+  const double share = options_.mission.registration.proving_share;
+  if (!is_pose_proven() && track.offline_inliers >= share * track.offline_expected) --proofs_left_;
 }
 
 void Session::lose_pose(const Frame& frame, FrameReport& report) {
@@ -202,7 +213,7 @@ Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {
   Health health;
   health.image = frame.condition;
-  HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed()};
+  HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed() && is_pose_proven()};
   evidence.maps_disagree = located.track && located.track->maps_disagree;
   evidence.image_fault = image_fault(frame);
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());

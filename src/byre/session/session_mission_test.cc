@@ -120,10 +120,10 @@ TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, IsNotConfirmedByFramesThatSeeLittleOfWhatShouldBeThere) {
+TEST(Mission, IsNotTrustedBeforeFramesSeeMuchOfWhatShouldBeThere) {
   const SimulatedMission mission = circling(0.5, 2);
   SessionOptions options;
-  options.mission.registration.min_share = 0.4;
+  options.mission.registration.proving_share = 0.4;
   options.map_online = false;
   Session session = session_on(mapped(1.0), options);
   std::vector<Frame> frames = mission.frames;

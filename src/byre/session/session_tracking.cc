@@ -205,6 +205,7 @@ void Session::begin_segment(const Frame& frame) {
   reference_.reset();
   has_pose_ = true;
   confirmations_left_ = 0;
+  proofs_left_ = 0;
   confirmed_end_ = anchored_.size();
   if (mission_) mission_->forget_reference();
 }
