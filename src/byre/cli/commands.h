@@ -16,6 +16,7 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 
 // Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
 // the command line is parsed.
+Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
 Action declare_refine(CLI::App& command);

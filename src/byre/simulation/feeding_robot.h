@@ -16,7 +16,7 @@ Calibration feeding_robot_calibration(int divisor);
 // The course of a feeding robot: along one side of the feed alley, a turn to the left, back along the other side, and
 // a turn again. World frame: x along the alley, y to its left, z up.
 struct FeedingCourseOptions {
-  double far_x = 24.0;         // metres: where the way there ends and its turn begins
+  double far_x = 26.5;         // metres: where the way there ends and its turn begins
   double lane_distance = 2.0;  // metres between the way there and the way back
   double max_straight = 18.0;  // metres: longer missions drive several laps
   double cruise_speed = 0.75;  // metres per second

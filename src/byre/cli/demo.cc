@@ -1,0 +1,80 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/demo_page.h"
+#include "byre/cli/demo_run.h"
+#include "byre/cli/demo_table.h"
+#include "byre/cli/formatted.h"
+#include "byre/cli/output_file.h"
+#include "byre/input/input_error.h"
+
+#include <memory>
+#include <ostream>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter = R"(Examples:
+  byre demo
+  byre demo -o ~/demo --seed 7
+
+Shows the main job on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the first is
+mapped and its map laid on the floor plan, and the second is run on it in three ways. FOLDER gets index.html, one page
+that needs neither server nor network, and beside it the recordings, the map, the trajectories and both pictures.
+Ctrl-C leaves what is done until then, but no page. docs/demo.md explains what the page shows.)";
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw InputError(folder.string(), "cannot be made a folder", "name another with -o");
+  }
+  if (fs::exists(folder / "first_visit" / "mav0") || fs::exists(folder / "second_visit" / "mav0")) {
+    throw InputError(folder.string(), "already holds a demonstration", "name another folder, or remove that one first");
+  }
+}
+
+ExitCode run_demo_command(const DemoOptions& options, std::ostream& result) {
+  make_folder(options.output);
+  const fs::path page = options.output / "index.html";
+  const InterruptCatcher interrupt({page});
+  const std::optional<DemoFindings> findings = run_demo(options, interrupt);
+  if (!findings) return ExitCode::interrupted;
+  write_whole(options.output / "plan.svg", findings->plan_picture);
+  if (findings->camera_s) write_whole(options.output / "camera.svg", findings->camera_picture);
+  write_whole(page, demo_page(*findings));
+  result << to_text(demo_table(findings->arms), findings->arms) << "\n" << row("page", page.string());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_demo(CLI::App& command) {
+  const auto options = std::make_shared<DemoOptions>();
+  command.add_option("-o,--output", options->output, "Folder for the page and what it is made of (byre_demo)")
+      ->type_name("FOLDER");
+  command.add_option("--seed", options->seed, "Which barn")->type_name("N")->capture_default_str();
+  command.add_option("--duration", options->duration_s, "Of the first visit; the second takes a quarter longer")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.0, 3600.0).description(""))
+      ->capture_default_str();
+  command.add_option("--rate", options->frame_rate_hz, "Stereo pairs in a second")
+      ->type_name("HZ")
+      ->check(CLI::Range(1.0, 60.0).description(""))
+      ->capture_default_str();
+  command.add_option("--divide", options->image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
+      ->type_name("N")
+      ->check(CLI::Range(1, 8).description(""))
+      ->capture_default_str();
+  command
+      .add_option("--vocabulary", options->vocabulary, "Vocabulary to recognise places with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.footer(kFooter);
+  return [options](std::ostream& result) { return run_demo_command(*options, result); };
+}
+
+}  // namespace byre::cli
