@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Shows byre at work: maps a stereo recording, keeps the map, tells what it holds, finds frames in it and, where the
-# recording holds ground truth, says how exact the result is.
+# Shows byre at work. Without a recording: two visits to a simulated cowshed, as a page to look at (byre demo). With one:
+# maps it, keeps the map, tells what it holds, finds frames in it and, where the recording holds ground truth, says how
+# exact the result is.
 # Usage: demo.sh [RECORDING]
-# RECORDING is a folder in EuRoC or KITTI format; without one a small recording of a made-up room is rendered first.
-# Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
+# RECORDING is a folder in EuRoC or KITTI format. Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
 set -euo pipefail
 
 if (($# > 1)) || [[ ${1:-} == -* ]]; then
@@ -20,14 +20,12 @@ mkdir -p "$results"
 results=$(cd "$results" && pwd)
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-scripts/build.sh release byre_cli render_room
+scripts/build.sh release byre_cli
 byre=build/release/src/byre/cli/byre
 
 if [[ -z $recording ]]; then
-  recording=$results/room
-  rm -rf "$recording" # always ours: rendered below
-  echo "Rendering a recording of a made-up room"
-  build/release/examples/render_room "$recording"
+  rm -rf "$results/cowshed" # always ours: made below
+  exec "$byre" demo --output "$results/cowshed"
 fi
 
 echo "Mapping $recording"

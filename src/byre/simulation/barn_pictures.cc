@@ -230,7 +230,7 @@ TilingCanvas draw_picture(BarnPicture picture, SeededDraws draws) {
     case BarnPicture::straw:
       return draw_stalks(7500, 130.0f, 0.2f, 0.8f, draws);
     case BarnPicture::feed:
-      return draw_stalks(13000, 46.0f, 0.06f, 0.6f, draws);
+      return draw_stalks(13000, 46.0f, 0.1f, 0.46f, draws);
     case BarnPicture::rust:
       return draw_rust(draws);
     case BarnPicture::roof_sheet:

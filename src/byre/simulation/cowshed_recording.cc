@@ -31,7 +31,7 @@ FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
   SeededDraws draws(course.seed, 51);
   course.shift_y = draws.between(-0.15f, 0.15f);
   course.lane_distance += draws.between(-0.12f, 0.12f);
-  course.start = draws.between(0.04f, 0.16f);
+  course.start = draws.between(0.02f, 0.08f);
   course.cruise_speed *= draws.between(0.93f, 1.07f);
   return course;
 }
