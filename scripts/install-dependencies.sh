@@ -7,12 +7,17 @@ packages=(
   # building
   g++ cmake ninja-build ccache git
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
-  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev
+  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev libboost-dev
   # the program
   libcli11-dev
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev clang libbenchmark-dev clang-format python3
 )
+# Of tests in a browser, which are skipped without. Node may come from anywhere: Debian's npm does not go together with
+# another's Node.
+browser_packages=(chromium)
+command -v node >/dev/null || browser_packages+=(nodejs)
+command -v npm >/dev/null || browser_packages+=(npm)
 
 is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
@@ -27,18 +32,28 @@ missing=()
 for package in "${packages[@]}"; do
   is_installed "$package" || missing+=("$package")
 done
-((${#missing[@]})) || exit 0
+missing_for_browser=()
+for package in "${browser_packages[@]}"; do
+  is_installed "$package" || missing_for_browser+=("$package")
+done
+((${#missing[@]} + ${#missing_for_browser[@]})) || exit 0
 
 as_root=()
 if ((EUID != 0)); then
   command -v sudo >/dev/null || {
-    echo "install-dependencies: neither root nor sudo at hand; ask an administrator for: ${missing[*]}" >&2
-    exit 1
+    echo "install-dependencies: neither root nor sudo at hand; ask an administrator for:" \
+      "${missing[@]}" "${missing_for_browser[@]}" >&2
+    ((${#missing[@]})) && exit 1 || exit 0
   }
   as_root=(sudo)
 fi
 
-echo "Installing: ${missing[*]}"
+install() {
+  echo "Installing: $*"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --quiet --yes --no-install-recommends "$@"
+}
+
 "${as_root[@]}" apt-get update --quiet
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-  apt-get install --quiet --yes --no-install-recommends "${missing[@]}"
+((${#missing[@]} == 0)) || install "${missing[@]}"
+((${#missing_for_browser[@]} == 0)) || install "${missing_for_browser[@]}" ||
+  echo "install-dependencies: going on without ${missing_for_browser[*]}: tests in a browser will be skipped" >&2

@@ -26,6 +26,7 @@ Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
 Action declare_register(CLI::App& command);
 Action declare_draw(CLI::App& command);
+Action declare_view(CLI::App& command);
 Action declare_inspect(CLI::App& command);
 Action declare_validate(CLI::App& command);
 Action declare_vocabulary(CLI::App& command);

@@ -14,6 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::SizeIs;
 using testing::StartsWith;
 
 class DemoProgram : public ProgramTest {};
@@ -27,14 +28,13 @@ TEST_F(DemoProgram, WritesAPageAndWhatItIsMadeOf) {
 
   const std::string page = read("out/index.html");
   EXPECT_THAT(page, AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("<table id=\"arms\">")));
-  EXPECT_THAT(page, AllOf(HasSubstr("<figure id=\"plan\">"), HasSubstr("<figure id=\"camera\">")));
-  EXPECT_THAT(page, AllOf(HasSubstr("class=\"line offline\""), HasSubstr("class=\"line hybrid\"")));
+  EXPECT_THAT(page, AllOf(HasSubstr("<figure id=\"plan\">"), HasSubstr("<svg class=\"timeline\"")));
   EXPECT_THAT(page, Not(HasSubstr("http://")));
 
   const StoredMap stored = load_map(folder_ / "out" / "barn.byre");
   ASSERT_TRUE(stored.plan);
   EXPECT_EQ(stored.plan->plan, "plan.yaml");
-  EXPECT_THAT(read_trajectory(folder_ / "out" / "trajectories" / "hybrid.published.txt"), Not(IsEmpty()));
+  EXPECT_THAT(read_trajectory(folder_ / "out" / "trajectories" / "first_visit.final.txt"), SizeIs(32));
   EXPECT_THAT(read("out/plan.svg"), StartsWith("<svg"));
 }
 

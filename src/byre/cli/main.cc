@@ -33,6 +33,7 @@ constexpr std::array kCommands = {
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
     Command{"scale", "Give the map of one camera its size, by a distance that is known", declare_scale},
     Command{"draw", "Draw a map on its floor plan, what the camera saw, and videos of missions", declare_draw},
+    Command{"view", "Show a map in a browser, and find it on a floor plan there", declare_view},
     Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},
     Command{"validate", "Check that a map is sound", declare_validate},
     Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},

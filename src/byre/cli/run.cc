@@ -9,6 +9,7 @@
 #include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
+#include "byre/cli/view_run.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
@@ -79,12 +80,13 @@ std::ofstream open_events(const fs::path& path) {
   return file;
 }
 
-MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options,
+MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options, RunViewer* viewer,
                    const InterruptCatcher& interrupt) {
-  if (!options.events) return run_with_progress(recording, protocol.options, {}, interrupt, options.quiet);
+  MapRunHooks hooks;
+  if (viewer != nullptr) hooks.look = shown_in(*viewer);
+  if (!options.events) return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
   std::ofstream file = open_events(*options.events);
   EventLog log(file);
-  MapRunHooks hooks;
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     log.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
   };
@@ -131,8 +133,13 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   protocol.is_metric = opened.is_metric;
 
   limit_image_threads(1);
+  const std::unique_ptr<RunViewer> viewer =
+      options.view.is_wanted
+          ? start_viewer(options.view, {options.recording, *opened.recording, options.map, protocol.options.offline})
+          : nullptr;
   const InterruptCatcher interrupt(options.outputs());
-  MapRun run = run_and_log(*opened.recording, protocol, options, interrupt);
+  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), interrupt);
+  if (viewer) viewer->end_run();
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
@@ -147,6 +154,10 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   write_results(options, run, protocol, mission, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
   if (interrupt.caught()) return ExitCode::interrupted;
+  if (viewer) {
+    result.flush();
+    serve_until_interrupted(interrupt, options.quiet);
+  }
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -23,6 +23,7 @@ constexpr const char* kFooter = R"(Examples:
   byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
   byre run evening_round --map barn.byre --camera left --events events.jsonl
   byre run evening_round --map barn-plan.byre --frame plan --trajectory plan.txt
+  byre run evening_round --map barn.byre --pace live --view
   byre run evening_round --truth evening_round --stats without_map.json
 
 With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
@@ -32,6 +33,7 @@ beside the map; with --frame plan poses in the map become poses on the floor pla
 Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C; docs/viewer.md says more.
 Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
 a pose. docs/mission.md describes the events and what health means.)";
 
@@ -90,6 +92,9 @@ void require_consistent(const RunOptions& options) {
   if (options.localise_only && options.online_map) {
     throw CLI::ValidationError("--localise-only", "maps nothing, so there is nothing to --save-online");
   }
+  if (options.view.plan && !options.map) {
+    throw CLI::ValidationError("--plan", "lies under a map: name one that was found on it with --map");
+  }
   require_distinct(options.outputs());
   for (const fs::path& output : options.outputs()) {
     if (options.map && is_same_file(output, *options.map)) {
@@ -135,6 +140,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
   declare_tracking(command, options.track);
+  declare_watching(command, options.view);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.parse_complete_callback([&options] { require_consistent(options); });
   command.footer(kFooter);

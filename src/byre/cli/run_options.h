@@ -2,6 +2,7 @@
 
 #include "byre/cli/map_run.h"
 #include "byre/cli/pose_frame.h"
+#include "byre/cli/view_options.h"
 
 #include <filesystem>
 #include <optional>
@@ -32,6 +33,7 @@ struct RunOptions {
   OpenOptions open;  // how to take the recording
   Pace pace = Pace::paced;
   TrackOptions track;
+  ViewOptions view;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

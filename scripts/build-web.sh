@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Builds the viewer's page, web/dist/index.html, from its source in web/src: needed only when that was changed, as the
+# page is kept in the repository. Needs Node 20.19 or newer with npm.
+# Usage: build-web.sh [--check]        --check changes nothing and fails when the page is not what its source gives
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../web"
+
+check=false
+case ${1:-} in
+  "") ;;
+  --check) check=true ;;
+  *) echo "usage: build-web.sh [--check]" >&2; exit 2 ;;
+esac
+
+npm ci --no-audit --no-fund
+npm run check
+if $check; then
+  built=$(mktemp -d)
+  trap 'rm -rf "$built"' EXIT
+  npm run build -- --outDir "$built" --emptyOutDir
+  cmp "$built/index.html" dist/index.html || { echo "build-web.sh: run it, and commit web/dist" >&2; exit 1; }
+else
+  npm run build
+fi

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "byre/viewer/web_server.h"
+
+#include <filesystem>
+#include <optional>
+
+#include <CLI/App.hpp>
+
+namespace byre::cli {
+
+// How a command takes the viewer.
+struct ViewOptions {
+  bool is_wanted = false;
+  WebServerOptions server;
+  std::optional<std::filesystem::path> plan;
+};
+
+// For each: the options must outlive the parsing of the command line.
+
+// --view [PORT], --bind and --plan: for a command that may be watched.
+void declare_watching(CLI::App& command, ViewOptions& options);
+
+// --port, --bind and --plan: for the command that is there to view.
+void declare_viewing(CLI::App& command, ViewOptions& options);
+
+}  // namespace byre::cli

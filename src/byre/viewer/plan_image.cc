@@ -1,0 +1,26 @@
+#include "byre/viewer/plan_image.h"
+
+#include "byre/input/input_error.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace byre {
+
+std::string plan_png(const FloorPlan& plan, int max_side) {
+  cv::Mat image = cv::imread(plan.image.string(), cv::IMREAD_COLOR);
+  if (image.empty()) throw InputError(plan.image.string(), "is no image that can be read", "name a PNG, JPEG or PGM");
+  const int longest = std::max(image.cols, image.rows);
+  if (longest > max_side) {
+    const double scale = static_cast<double>(max_side) / longest;
+    cv::resize(image, image, {}, scale, scale, cv::INTER_AREA);
+  }
+  std::vector<unsigned char> png;
+  cv::imencode(".png", image, png);
+  return {png.begin(), png.end()};
+}
+
+}  // namespace byre

@@ -1,0 +1,118 @@
+#include "byre/viewer/web_map.h"
+
+#include "byre/input/binary_file.h"
+#include "byre/input/input_error.h"
+#include "byre/viewer/plan_image.h"
+#include "byre/viewer/plan_picks.h"
+#include "byre/viewer/scene.h"
+#include "byre/viewer/web_bytes.h"
+#include "byre/viewer/web_json.h"
+
+#include <span>
+#include <utility>
+
+namespace byre {
+namespace {
+
+using Json = nlohmann::json;
+
+Json fit_fields(const PlanFit& fit) {
+  Json fields = {{"registration", registration_fields(fit.registration)},
+                 {"rms_m", fit.rms},
+                 {"residuals", Json::array()},
+                 {"doubts", Json::array()}};
+  for (const PlanResidual& residual : fit.residuals) {
+    fields["residuals"].push_back(
+        {{"error_m", {residual.error_in_plan.x(), residual.error_in_plan.y()}}, {"is_outlier", residual.is_outlier}});
+  }
+  for (const PlanDoubt doubt : fit.doubts) fields["doubts"].push_back(to_string(doubt));
+  return fields;
+}
+
+WebResponse json_response(const Json& fields) {
+  return {200, "application/json", dumped(fields)};
+}
+
+class MapSite : public WebSite {
+ public:
+  explicit MapSite(ViewedMap map)
+      : map_(std::move(map)),
+        driving_plane_(fit_driving_plane(map_.stored.map)),
+        points_(map_bytes(scene_of(map_.stored.map))),
+        plan_(map_.plan ? plan_png(*map_.plan) : "") {}
+
+  WebResponse answer(const WebRequest& request) override {
+    const bool is_post = request.method == WebRequest::Method::post;
+    if (request.path == "/registration" && is_post) return json_response(fit_fields(fit(picks_of(request))));
+    if (request.path == "/save" && is_post) return json_response({{"written", save(picks_of(request))}});
+    if (request.path == "/") return page_response();
+    if (request.path == "/scene") return json_response(scene_fields());
+    if (request.path == "/map/offline") return bytes_response(points_);
+    if (request.path == "/plan.png" && map_.plan) return bytes_response(plan_, "image/png");
+    return not_found(request);
+  }
+
+ private:
+  Json scene_fields() const {
+    const auto up_of = [](const DrivingPlane& plane) { return vector_fields(plane.up_in_map); };
+    const auto text_of = [](const std::filesystem::path& path) { return path.string(); };
+    return {{"mode", "map"},
+            {"name", map_.name},
+            {"is_metric", map_.stored.scale == MapScale::metric},
+            {"up_in_map", fields_or_null(driving_plane_, up_of)},
+            {"plan", fields_or_null(map_.plan, plan_fields)},
+            {"registration", fields_or_null(map_.stored.plan, registration_fields)},
+            {"output", fields_or_null(map_.output, text_of)}};
+  }
+
+  std::vector<PlanPick> picks_of(const WebRequest& request) const {
+    if (!map_.plan) throw InputError(map_.name, "has no plan to be found on", "start \"byre view\" with --plan");
+    return parse_plan_picks(request.body, map_.stored.map);
+  }
+
+  PlanFit fit(const std::vector<PlanPick>& picks) const {
+    if (!driving_plane_) {
+      throw InputError(map_.name, "does not tell which way is up: its keyframes are none, or held in all directions",
+                       "map a recording of a camera that stays upright");
+    }
+    const Scale scale = map_.stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
+    const std::vector<PlanCorrespondence> correspondences = correspondences_of(picks, map_.stored, map_.pick_sigma);
+    std::optional<PlanFit> found = register_on_plan(correspondences, *driving_plane_, scale, map_.registration);
+    if (!found) {
+      throw InputError("picks", "do not tell where the map lies on the plan",
+                       "pick three places or more that lie far apart, and look for a wrong one");
+    }
+    found->registration.plan = map_.plan->name;
+    return *found;
+  }
+
+  // Gives the names of the files written.
+  std::vector<std::string> save(const std::vector<PlanPick>& picks) {
+    if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
+    map_.stored.plan = fit(picks).registration;
+    save_map(map_.stored, *map_.output);
+    const std::string csv = picks_csv(picks);
+    const std::filesystem::path csv_path = picks_path(*map_.output);
+    replace_file(csv_path, std::as_bytes(std::span(csv)));
+    return {map_.output->string(), csv_path.string()};
+  }
+
+  ViewedMap map_;  // of it only the registration changes, when it is saved
+
+  // Constant after construction.
+  std::optional<DrivingPlane> driving_plane_;
+  std::string points_;
+  std::string plan_;  // PNG, empty without a plan
+};
+
+}  // namespace
+
+std::filesystem::path picks_path(const std::filesystem::path& map) {
+  std::filesystem::path path = map;
+  return path.replace_extension(".picks.csv");
+}
+
+MapViewer::MapViewer(ViewedMap map, const WebServerOptions& server)
+    : server_(server, std::make_unique<MapSite>(std::move(map))) {}
+
+}  // namespace byre

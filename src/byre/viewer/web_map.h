@@ -1,0 +1,39 @@
+#pragma once
+
+#include "byre/dataset/floor_plan.h"
+#include "byre/map/floor_plan.h"
+#include "byre/map/map_file.h"
+#include "byre/viewer/web_server.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// A map to look at and, with a plan, to find on it.
+struct ViewedMap {
+  std::string name;
+  StoredMap stored;
+  std::optional<FloorPlan> plan;
+  std::optional<std::filesystem::path> output;     // where its registered copy goes; empty: it cannot be saved
+  double pick_sigma = PlanCorrespondence{}.sigma;  // metres
+  PlanRegistrationOptions registration;
+};
+
+// Where picks are kept that a map was registered by: beside it, with the extension ".picks.csv".
+std::filesystem::path picks_path(const std::filesystem::path& map);
+
+// Shows a map in a browser, and registers it on a plan by what is picked there.
+class MapViewer {
+ public:
+  // Throws InputError as WebServer does, and when the plan's image cannot be read.
+  MapViewer(ViewedMap map, const WebServerOptions& server);
+
+  const std::string& url() const { return server_.url(); }
+
+ private:
+  WebServer server_;  // constant after construction
+};
+
+}  // namespace byre

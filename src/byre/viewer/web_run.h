@@ -1,0 +1,66 @@
+#pragma once
+
+#include "byre/dataset/floor_plan.h"
+#include "byre/geometry/camera.h"
+#include "byre/map/plan_registration.h"
+#include "byre/viewer/run_mailbox.h"
+#include "byre/viewer/web_server.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// What is known of a run before its first frame.
+struct RunDescription {
+  std::string name;                          // of the recording
+  Calibration calibration;                   // of its cameras
+  int frames = 0;                            // that it has
+  Timestamp last_time{};                     // of its last frame
+  std::string map_name;                      // of the offline map, empty without one
+  MapScene offline;                          // its points and keyframes
+  std::optional<Eigen::Vector3d> up_in_map;  // unit length, where the offline map tells
+  std::optional<FloorPlan> plan;
+  std::optional<PlanRegistration> registration;  // of the offline map on a plan
+};
+
+struct RunViewerOptions {
+  WebServerOptions server;
+  std::size_t max_image_bytes = 200'000'000;     // kept to scrub through; older images are thinned out
+  int jpeg_quality = 80;                         // percent
+  std::chrono::milliseconds map_interval{1000};  // between copies of the online map, or more, see RunViewer
+};
+
+// Shows a run in a browser while it goes on, and afterwards as long as it lives. The run's thread only copies: the left
+// image and the points seen in it after each frame, the online map now and then. Rectifying, compressing and sending is
+// done by the viewer's thread, which leaves images out when they come too fast, but no report.
+class RunViewer {
+ public:
+  // Throws InputError as WebServer does, when the plan's image cannot be read, and when the calibration cannot be
+  // rectified.
+  RunViewer(RunDescription description, const RunViewerOptions& options);
+
+  const std::string& url() const { return server_.url(); }
+
+  // Call it after each frame, from the thread that runs the session.
+  void show(const Image& recorded_left, const FrameReport& report, const Session& session);
+
+  // No more frames will come.
+  void end_run();
+
+ private:
+  void hand_over_map(const Map& online);
+
+  // Constant after construction.
+  std::chrono::milliseconds map_interval_;
+  Timestamp last_time_;
+  std::shared_ptr<RunMailbox> mailbox_;
+  WebServer server_;
+
+  // Owned by the calling thread.
+  std::chrono::steady_clock::time_point next_map_{};  // when a copy of the online map is due
+};
+
+}  // namespace byre

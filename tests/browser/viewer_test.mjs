@@ -1,0 +1,250 @@
+// What a person does with the viewer, done by a browser. Screenshots stay in the folder "screenshots".
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, afterEach, before, describe, test } from "node:test";
+import { eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
+import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
+import { writePlan } from "./plan.mjs";
+
+const kStage = "#stage canvas";
+const kTrack = "[role=slider]";
+
+let browser;
+let viewer;
+before(async () => (browser = await startBrowser()));
+after(() => browser.close());
+afterEach(async () => {
+  for (const context of browser.contexts()) await context.close();
+  viewer?.end();
+});
+
+function screenshot(page, name) {
+  return page.screenshot({ path: `screenshots/${name}.png` });
+}
+
+/** Attribute of the timeline: valuenow and valuemax are numbers of frames. */
+async function frameOf(page, attribute) {
+  return Number(await page.locator(kTrack).getAttribute(`aria-${attribute}`));
+}
+
+async function pointCount(page) {
+  return Number(await page.locator("#stage").getAttribute("data-points"));
+}
+
+async function openMap(options, ...commandLine) {
+  viewer = await Viewer.start("view", "room.byre", "--port", "0", ...commandLine);
+  const page = await openPage(browser, viewer.url, options);
+  await eventually(async () => (await pointCount(page)) > 0, () => "points of the map");
+  return page;
+}
+
+describe("A map", () => {
+  test("is drawn without a word in the console", async () => {
+    const page = await openMap();
+    assert.ok((await pointCount(page)) > 500);
+    const withPoints = await settledPictureOf(page, kStage);
+    await page.getByRole("button", { name: "Offline map" }).click();
+    const without = await settledPictureOf(page, kStage);
+    assert.ok((await differentPixels(page, withPoints, without)) > 500, "hiding the points changes the picture");
+    await page.getByRole("button", { name: "Offline map" }).click();
+    assert.equal(await differentPixels(page, withPoints, await settledPictureOf(page, kStage)), 0);
+    await screenshot(page, "map");
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("turns by keys and is seen from above", async () => {
+    const page = await openMap();
+    const before = await settledPictureOf(page, kStage);
+    await page.locator(kStage).focus();
+    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("+");
+    assert.ok((await differentPixels(page, before, await settledPictureOf(page, kStage))) > 500);
+    await page.keyboard.press("t");
+    await settledPictureOf(page, kStage);
+    await screenshot(page, "map_from_above");
+  });
+
+  test("is drawn dark and narrow too", async () => {
+    const page = await openMap({ colorScheme: "dark", viewport: { width: 420, height: 860 } });
+    assert.equal(await page.locator("html").getAttribute("data-theme"), "dark");
+    await screenshot(page, "map_dark_narrow");
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("is told to be missing where the browser draws nothing in three dimensions", async () => {
+    viewer = await Viewer.start("view", "room.byre", "--port", "0");
+    const plain = await startBrowser({ webgl: false });
+    const page = await openPage(plain, viewer.url);
+    await page.getByText("cannot draw in three dimensions").waitFor();
+    await screenshot(page, "without_webgl");
+    await plain.close();
+  });
+
+  test("is shown elsewhere only with the token", async () => {
+    viewer = await Viewer.start("view", "room.byre", "--port", "0", "--bind", "0.0.0.0");
+    const page = await openPage(browser, viewer.url);
+    await eventually(async () => (await pointCount(page)) > 0, () => "points of the map");
+    const stranger = await browser.newPage();
+    assert.equal((await stranger.goto(viewer.url.replace(/token=.*/, ""))).status(), 403);
+  });
+
+  test("can be left by Ctrl-C while it is looked at", async () => {
+    await openMap();
+    assert.equal(await viewer.interrupt(), 0);
+  });
+});
+
+describe("A run", () => {
+  async function openRun() {
+    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0");
+    return openPage(browser, viewer.url);
+  }
+
+  const hasEnded = (page) => () => page.getByRole("button", { name: "Live" }).isHidden();
+
+  test("moves while it goes on", async () => {
+    const page = await openRun();
+    await eventually(async () => (await frameOf(page, "valuenow")) > 5, () => "frames");
+    const [early, image, frame] = await viewer.whileStopped(async () => [
+      await pictureOf(page, kStage),
+      await pictureOf(page, "canvas.image"),
+      await frameOf(page, "valuenow"),
+    ]);
+    await eventually(async () => (await frameOf(page, "valuenow")) > frame + 5, () => "later frames");
+    assert.ok((await differentPixels(page, early, await pictureOf(page, kStage))) > 100, "the map's picture moves");
+    const later = await pictureOf(page, "canvas.image");
+    assert.ok((await differentPixels(page, image, later)) > 1000, "the camera's picture moves");
+    await screenshot(page, "run_live");
+    await eventually(hasEnded(page), () => "the end");
+    assert.equal(await frameOf(page, "valuemax"), 59);
+    assert.match(await page.locator(".verdict").innerText(), /trusted/i);
+    await screenshot(page, "run_ended");
+    assert.deepEqual(page.problems, []);
+    assert.equal(await viewer.interrupt(), 0);
+  });
+
+  test("can be paused and scrubbed through while it goes on", async () => {
+    const page = await openRun();
+    await eventually(async () => (await frameOf(page, "valuenow")) > 10, () => "frames");
+    const [paused, picture] = await viewer.whileStopped(async () => {
+      await page.getByRole("button", { name: "Pause" }).click();
+      await page.locator(".timeline[data-state=paused]").waitFor();
+      return [await frameOf(page, "valuenow"), await settledPictureOf(page, "canvas.image")];
+    });
+    await eventually(async () => (await frameOf(page, "valuemax")) > paused + 5, () => "frames behind the pause");
+    assert.equal(await frameOf(page, "valuenow"), paused);
+    await page.locator(kTrack).click({ position: { x: 3, y: 20 } });
+    await eventually(async () => (await frameOf(page, "valuenow")) < 3, () => "the first frame");
+    await eventually(
+      async () => (await differentPixels(page, picture, await pictureOf(page, "canvas.image"))) > 1000,
+      () => "the image of the first frame",
+    );
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("l");
+    await eventually(async () => (await frameOf(page, "valuenow")) > paused + 5, () => "the newest frame");
+    await eventually(hasEnded(page), () => "the end");
+    await page.keyboard.press("Home");
+    await eventually(async () => (await frameOf(page, "valuenow")) === 0, () => "the first frame");
+    await page.keyboard.press(" ");
+    await eventually(async () => (await frameOf(page, "valuenow")) > 20, () => "frames that are played");
+    await screenshot(page, "run_played");
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("is told from its start to a page that is opened late, dark and narrow", async () => {
+    const first = await openRun();
+    await eventually(hasEnded(first), () => "the end");
+    await first.close();
+    const page = await openPage(browser, viewer.url, { colorScheme: "dark", viewport: { width: 420, height: 860 } });
+    await eventually(hasEnded(page), () => "the end");
+    assert.equal(await frameOf(page, "valuemax"), 59);
+    await eventually(async () => /fit/.test(await page.locator("figcaption").innerText()), () => "an image");
+    await page.screenshot({ path: "screenshots/run_dark_narrow.png", fullPage: true });
+  });
+});
+
+describe("Picking", () => {
+  /** Clicks here and there until a point of the map is hit. */
+  async function pickInMap(page, { x, y }) {
+    const box = await page.locator(kStage).boundingBox();
+    for (let turn = 0; turn < 40; ++turn) {
+      const [dx, dy] = [8 * turn * Math.cos(2.4 * turn), 5 * turn * Math.sin(2.4 * turn)];
+      await page.mouse.click(box.x + x * box.width + dx, box.y + y * box.height + dy);
+      if (await page.getByText("Now click the same place on the plan").isVisible()) return;
+    }
+    throw new Error("no point was hit");
+  }
+
+  test("three points puts the map on the plan, and saving keeps it there", async () => {
+    const plan = writePlan("room-plan");
+    const page = await openMap({}, "--plan", plan.file, "-o", "room-plan.byre");
+    const map = await page.evaluate(async () => {
+      const [scene, bytes] = await Promise.all([
+        fetch("/scene").then((response) => response.json()),
+        fetch("/map/offline").then((response) => response.arrayBuffer()),
+      ]);
+      const count = new Uint32Array(bytes, 0, 1)[0];
+      return { up: scene.up_in_map, points: Array.from(new Float32Array(bytes, 8, 3 * count)) };
+    });
+    const canvas = await page.locator("canvas.plan").boundingBox();
+    for (const place of [{ x: 0.2, y: 0.5 }, { x: 0.8, y: 0.6 }, { x: 0.35, y: 0.3 }]) {
+      await pickInMap(page, place);
+      const point = Number(await page.locator(".label.pending").getAttribute("data-point"));
+      const [x, y] = plan.pixelOf(map, point, canvas);
+      await page.mouse.click(canvas.x + x, canvas.y + y);
+    }
+    await page.getByText(/3 picks fit to/).waitFor();
+    await screenshot(page, "picking");
+    const [, centimetres] = /fit to ([\d.]+) cm/.exec(await page.locator(".fit").innerText());
+    assert.ok(Number(centimetres) < 10, `fits to ${centimetres} cm`);
+    await page.getByRole("button", { name: "Save the map" }).click();
+    await page.getByText(/Written: .*room-plan.byre/).waitFor();
+    assert.equal(JSON.parse(outputOf("inspect", "room-plan.byre", "--json")).plan.plan, "room-plan.yaml");
+    assert.match(readFileSync("room-plan.picks.csv", "utf8"), /^name,point,plan_x_m,plan_y_m\nplace 1,\d+,/);
+    const registered = outputOf("register", "room.byre", "--plan", plan.file, "--points", "room-plan.picks.csv");
+    assert.match(registered, /3/);
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("can be taken back", async () => {
+    const plan = writePlan("room-plan");
+    const page = await openMap({ colorScheme: "dark" }, "--plan", plan.file);
+    await pickInMap(page, { x: 0.4, y: 0.5 });
+    await page.locator("canvas.plan").click({ position: { x: 150, y: 120 } });
+    await page.getByRole("textbox", { name: "Name of pick 1" }).waitFor();
+    await screenshot(page, "picking_dark");
+    await page.getByRole("button", { name: "Remove place 1" }).click();
+    assert.equal(await page.getByRole("textbox").count(), 0);
+    assert.ok(await page.locator("#save").isDisabled());
+  });
+});
+
+describe("Figures", () => {
+  test("of drawing 100,000 points and of the first paint", async (context) => {
+    const page = await openMap();
+    const paintTime = () => performance.getEntriesByName("first-contentful-paint")[0]?.startTime;
+    await page.waitForFunction(paintTime);
+    const paint = await page.evaluate(paintTime);
+    context.diagnostic(`first contentful paint after ${paint.toFixed(0)} ms`);
+    const crowded = await browser.newPage();
+    await crowded.route("**/map/offline", (route) => route.fulfill({ body: crowdOf(100_000) }));
+    await crowded.goto(viewer.url);
+    await eventually(async () => (await pointCount(crowded)) === 100_000, () => "100,000 points");
+    const rate = await crowded.evaluate(() => window.byreFramesPerSecond(3));
+    context.diagnostic(`${rate.toFixed(1)} frames a second with 100,000 points, drawn without a graphics card`);
+    await screenshot(crowded, "crowd");
+    assert.ok(rate > 0);
+  });
+
+  /** Bytes of a map of so many points on the walls of a hall. */
+  function crowdOf(count) {
+    const bytes = Buffer.alloc(8 + 13 * count);
+    bytes.writeUInt32LE(count, 0);
+    for (let i = 0; i < count; ++i) {
+      const along = (i / count) * 2 * Math.PI;
+      const place = [20 * Math.cos(along), 4 * ((i * 0.618) % 1), 8 * Math.sin(along)]; // y is up
+      place.forEach((value, axis) => bytes.writeFloatLE(value, 8 + 12 * i + 4 * axis));
+    }
+    return bytes;
+  }
+});

@@ -1,0 +1,35 @@
+import "./style.css";
+import { byId } from "./dom";
+import { startMapPage } from "./map_page";
+import { MapSpace } from "./map_space";
+import { startRunPage } from "./run_page";
+import { loadScene } from "./server";
+import { listenToKeys } from "./shortcuts";
+import { startTheme } from "./theme";
+
+declare global {
+  interface Window {
+    /** For measurements: draws for so many seconds as often as can be, and gives the frames a second. */
+    byreFramesPerSecond?: (seconds: number) => number;
+  }
+}
+
+async function start(): Promise<void> {
+  startTheme();
+  const scene = await loadScene();
+  document.title = `${scene.name} – byre`;
+  byId("name").textContent = scene.name;
+  const space = new MapSpace(scene);
+  window.byreFramesPerSecond = (seconds) => space.stage?.measure(seconds) ?? 0;
+  if (scene.mode === "run") {
+    await startRunPage(scene, space);
+    return;
+  }
+  space.addButtons();
+  listenToKeys({ a: () => space.stage?.showAll(), t: () => space.stage?.showFromAbove() });
+  await startMapPage(scene, space);
+}
+
+start().catch((error: Error) => {
+  byId("notice").textContent = `This page cannot be shown: ${error.message}`;
+});

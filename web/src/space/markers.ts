@@ -1,0 +1,112 @@
+import {
+  BufferGeometry,
+  Color,
+  Float32BufferAttribute,
+  Points,
+  ShaderMaterial,
+  type BufferAttribute,
+} from "three";
+import { colour, onThemeChange } from "../theme";
+
+/** Forms that can be told apart without their colours. */
+export const kDisc = 0;
+export const kDiamond = 1;
+export const kCross = 2;
+
+const kVertexShader = `
+  attribute float kind;
+  uniform float size;
+  uniform vec3 colours[3];
+  uniform float forms[3];
+  varying vec3 colour;
+  varying float form;
+  void main() {
+    int index = int(kind + 0.5);
+    colour = colours[index];
+    form = forms[index];
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    gl_PointSize = size;
+  }`;
+
+const kFragmentShader = `
+  uniform float opacity;
+  varying vec3 colour;
+  varying float form;
+  void main() {
+    vec2 p = abs(2.0 * gl_PointCoord - 1.0);
+    bool inside = form < 0.5 ? dot(p, p) <= 1.0 : form < 1.5 ? p.x + p.y <= 1.0 : abs(p.x - p.y) < 0.35;
+    if (!inside) discard;
+    gl_FragColor = vec4(colour, opacity);
+  }`;
+
+/** What markers of one kind look like: the name of a colour in style.css, and a form. */
+export interface MarkerKind {
+  colour: string;
+  form: number;
+}
+
+/** Points drawn as marks of a few pixels, of up to three kinds. */
+export class Markers {
+  readonly points: Points<BufferGeometry, ShaderMaterial>;
+  readonly #kinds: MarkerKind[];
+
+  constructor(kinds: MarkerKind[], pixels: number, opacity = 1) {
+    this.#kinds = kinds;
+    const forms = [0, 1, 2].map((i) => kinds[Math.min(i, kinds.length - 1)].form);
+    const material = new ShaderMaterial({
+      vertexShader: kVertexShader,
+      fragmentShader: kFragmentShader,
+      transparent: opacity < 1,
+      uniforms: {
+        size: { value: pixels * Math.min(window.devicePixelRatio, 2) },
+        opacity: { value: opacity },
+        colours: { value: [new Color(), new Color(), new Color()] },
+        forms: { value: forms },
+      },
+    });
+    this.points = new Points(new BufferGeometry(), material);
+    this.points.frustumCulled = false;
+    this.#recolour();
+    onThemeChange(() => this.#recolour());
+  }
+
+  /** x, y, z of each, and the number of its kind; all are of the first without numbers. */
+  set(positions: Float32Array | number[], kinds?: Uint8Array | number[]): void {
+    const count = positions.length / 3;
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
+    geometry.setAttribute("kind", new Float32BufferAttribute(kinds ?? new Float32Array(count), 1));
+    this.points.geometry.dispose();
+    this.points.geometry = geometry;
+  }
+
+  /** Room for so many, none of which is drawn yet. */
+  reserve(count: number): void {
+    this.set(new Float32Array(3 * count));
+    this.limit(0);
+  }
+
+  /** Changes one that there is room for. */
+  put(index: number, position: [number, number, number], kind: number): void {
+    const { position: positions, kind: kinds } = this.points.geometry.attributes as Record<string, BufferAttribute>;
+    positions.setXYZ(index, ...position);
+    positions.addUpdateRange(3 * index, 3);
+    positions.needsUpdate = true;
+    kinds.setX(index, kind);
+    kinds.addUpdateRange(index, 1);
+    kinds.needsUpdate = true;
+  }
+
+  /** Draws only the first so many. */
+  limit(count: number): void {
+    this.points.geometry.setDrawRange(0, count);
+  }
+
+  #recolour(): void {
+    this.points.material.uniforms.colours.value.forEach((value: Color, i: number) => {
+      const kind = this.#kinds[Math.min(i, this.#kinds.length - 1)];
+      // Colours are put out as they are, without a conversion from linear light.
+      value.set(colour(kind.colour)).convertLinearToSRGB();
+    });
+  }
+}

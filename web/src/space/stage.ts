@@ -1,0 +1,207 @@
+import {
+  Box3,
+  Group,
+  Matrix4,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+  type Object3D,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { onceAFrame } from "../dom";
+import { onThemeChange } from "../theme";
+
+const kUp = new Vector3(0, 0, 1);
+const kOrbitStep = 0.12; // radians a key press
+const kZoomStep = 1.15;
+
+/** Without a graphics card smooth edges take most of the time. */
+function isDrawnInSoftware(): boolean {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const names = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? String(context?.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+/** The picture in three dimensions, drawn anew only when something has changed. */
+export class Stage {
+  readonly camera = new PerspectiveCamera(50, 1, 0.05, 5000);
+  /** In the view's frame. */
+  readonly room = new Group();
+  /** In the map's frame. */
+  readonly map = new Group();
+  readonly canvas: HTMLCanvasElement;
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #controls: OrbitControls;
+  readonly #afterDrawing: (() => void)[] = [];
+  readonly redraw = onceAFrame(() => this.#draw());
+  #isOwnView = false; // somebody has turned to what he wants to see
+  #home = new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 2));
+
+  /** Throws when the browser gives no WebGL. */
+  constructor(host: HTMLElement) {
+    this.#renderer = new WebGLRenderer({ antialias: !isDrawnInSoftware(), alpha: true });
+    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.canvas = this.#renderer.domElement;
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", "The map. Arrow keys turn it, plus and minus zoom, Home shows all of it.");
+    host.prepend(this.canvas);
+    this.camera.up.copy(kUp);
+    this.map.matrixAutoUpdate = false;
+    this.#scene.add(this.room);
+    this.room.add(this.map);
+    this.#controls = this.#makeControls();
+    this.canvas.addEventListener("keydown", (event) => this.#key(event));
+    new ResizeObserver(() => this.#resize(host)).observe(host);
+    onThemeChange(this.redraw);
+    this.showAll();
+  }
+
+  #makeControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.zoomToCursor = true;
+    controls.maxPolarAngle = 0.98 * Math.PI;
+    controls.addEventListener("change", this.redraw);
+    controls.addEventListener("start", () => (this.#isOwnView = true));
+    return controls;
+  }
+
+  /** Places everything that is in the map's frame. */
+  placeMap(viewFromMap: Matrix4): void {
+    this.map.matrix.copy(viewFromMap);
+    this.map.updateMatrixWorld(true);
+    this.redraw();
+  }
+
+  get viewFromMap(): Matrix4 {
+    return this.map.matrix;
+  }
+
+  add(thing: Object3D): void {
+    this.room.add(thing);
+  }
+
+  /** What "show all" shows, in the view's frame: at once, unless something else is being looked at. */
+  setExtent(extent: Box3): void {
+    this.#home = extent.clone();
+    if (!this.#isOwnView) this.showAll();
+  }
+
+  showAll(): void {
+    this.#isOwnView = false;
+    this.#look(new Vector3(-0.55, -0.85, 0.75));
+  }
+
+  showFromAbove(): void {
+    this.#isOwnView = true;
+    this.#look(new Vector3(0, -0.001, 1));
+  }
+
+  #look(direction: Vector3): void {
+    const centre = this.#home.getCenter(new Vector3());
+    const radius = Math.max(this.#home.getSize(new Vector3()).length() / 2, 0.5);
+    const half = (this.camera.fov * Math.PI) / 360;
+    const distance = (0.8 * radius) / Math.tan(half * Math.min(1, this.camera.aspect));
+    this.#controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction.clone().normalize(), distance);
+    this.#controls.update();
+    this.redraw();
+  }
+
+  /** Moves along with something, so that it comes to lie in the middle, from the side it is looked at from. */
+  follow(pointInView: Vector3): void {
+    this.#isOwnView = true;
+    const step = pointInView.clone().sub(this.#controls.target);
+    this.#controls.target.add(step);
+    this.camera.position.add(step);
+    this.#controls.update();
+    this.redraw();
+  }
+
+  /** Calls back after each drawing, for what lies over the picture. */
+  afterDrawing(callback: () => void): void {
+    this.#afterDrawing.push(callback);
+  }
+
+  /** Pixels of the canvas on the page; null for what lies behind the camera. */
+  onPage(pointInMap: Vector3): { x: number; y: number } | null {
+    const { x, y, z } = pointInMap.clone().applyMatrix4(this.map.matrixWorld).project(this.camera);
+    if (z > 1) return null;
+    return { x: ((x + 1) / 2) * this.canvas.clientWidth, y: ((1 - y) / 2) * this.canvas.clientHeight };
+  }
+
+  /** From the map's frame to the frustum as a cube from -1 to 1. */
+  clipFromMap(): Matrix4 {
+    this.camera.updateMatrixWorld();
+    return new Matrix4()
+      .multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse)
+      .multiply(this.map.matrixWorld);
+  }
+
+  /** Draws as often as can be, and gives the number of frames a second. */
+  measure(seconds: number): number {
+    const context = this.#renderer.getContext();
+    const pixel = new Uint8Array(4);
+    const start = performance.now();
+    let frames = 0;
+    while (performance.now() - start < 1000 * seconds) {
+      this.#draw();
+      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel); // waits until it is drawn
+      ++frames;
+    }
+    return (1000 * frames) / (performance.now() - start);
+  }
+
+  #draw(): void {
+    this.#renderer.render(this.#scene, this.camera);
+    for (const callback of this.#afterDrawing) callback();
+  }
+
+  #resize(host: HTMLElement): void {
+    const { clientWidth, clientHeight } = host;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.#renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.#draw();
+  }
+
+  #key(event: KeyboardEvent): void {
+    const turns: Record<string, [number, number]> = {
+      ArrowLeft: [-kOrbitStep, 0],
+      ArrowRight: [kOrbitStep, 0],
+      ArrowUp: [0, -kOrbitStep],
+      ArrowDown: [0, kOrbitStep],
+    };
+    if (event.key in turns) this.#orbit(...turns[event.key]);
+    else if (event.key === "+" || event.key === "=") this.#zoom(1 / kZoomStep);
+    else if (event.key === "-") this.#zoom(kZoomStep);
+    else if (event.key === "Home") this.showAll();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  #orbit(azimuth: number, polar: number): void {
+    this.#isOwnView = true;
+    const offset = this.camera.position.clone().sub(this.#controls.target);
+    offset.applyAxisAngle(kUp, azimuth);
+    const angle = Math.min(Math.max(offset.angleTo(kUp) + polar, 0.01), 0.98 * Math.PI) - offset.angleTo(kUp);
+    const axis = kUp.clone().cross(offset).normalize();
+    this.camera.position.copy(this.#controls.target).add(offset.applyAxisAngle(axis, angle));
+    this.#controls.update();
+    this.redraw();
+  }
+
+  #zoom(factor: number): void {
+    this.#isOwnView = true;
+    const { target } = this.#controls;
+    this.camera.position.sub(target).multiplyScalar(factor).add(target);
+    this.#controls.update();
+    this.redraw();
+  }
+}

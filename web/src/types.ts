@@ -1,0 +1,99 @@
+// What byre sends as text: src/byre/viewer/web_json.cc and the sites (web_run.cc, web_map.cc) write these fields.
+
+/** x, y, z in metres and a quaternion x, y, z, w. */
+export type PoseFields = [number, number, number, number, number, number, number];
+export type Vector3Fields = [number, number, number];
+export type Vector2Fields = [number, number];
+
+export type Verdict = "trusted" | "degraded" | "untrusted";
+
+export interface CameraFields {
+  width: number;
+  height: number;
+  focal: number;
+  cx: number;
+  cy: number;
+  body_from_camera: PoseFields;
+}
+
+/** Steps are metres on the plan for a pixel; top_left is the centre of the top left pixel. */
+export interface PlanFields {
+  name: string;
+  width: number;
+  height: number;
+  step_right: Vector2Fields;
+  step_down: Vector2Fields;
+  top_left: Vector2Fields;
+}
+
+/** plan_from_map: scales first, then the pose. */
+export interface RegistrationFields {
+  plan: string;
+  scale: number;
+  pose: PoseFields;
+}
+
+interface SceneBase {
+  name: string;
+  up_in_map: Vector3Fields | null;
+  plan: PlanFields | null;
+  registration: RegistrationFields | null;
+}
+
+export interface RunScene extends SceneBase {
+  mode: "run";
+  map: string | null;
+  frames: number;
+  camera: CameraFields;
+}
+
+export interface MapScene extends SceneBase {
+  mode: "map";
+  is_metric: boolean;
+  output: string | null;
+}
+
+export type SceneFields = RunScene | MapScene;
+
+export interface FrameFields {
+  time_s: number;
+  state: string;
+  verdict: Verdict;
+  doubt: string;
+  pose: PoseFields | null;
+  offline_inliers: number;
+  offline_expected: number;
+  online_inliers: number;
+  expected: number;
+  matches: number;
+  features: number;
+  suspended: number;
+  inlier_share: number;
+  spread: number;
+  sigma_mm: number;
+  since_offline_m: number;
+  track_ms: number;
+  online_keyframes: number;
+  online_points: number;
+  disagreement_mm?: number;
+  events?: string[];
+}
+
+export interface LiveMessage {
+  frames?: FrameFields[];
+  online_map?: number;
+  ended?: boolean;
+}
+
+export interface Pick {
+  name: string;
+  point: number;
+  plan: Vector2Fields;
+}
+
+export interface PlanFit {
+  registration: RegistrationFields;
+  rms_m: number;
+  residuals: { error_m: Vector2Fields; is_outlier: boolean }[];
+  doubts: string[];
+}
