@@ -16,26 +16,6 @@ namespace {
 
 constexpr double kIntoStore = 9.0;  // metres by which the robot goes farther where the gate is open
 
-// How missions differ in where the robot drives: on the same course, a hand's breadth aside, begun elsewhere; and where
-// the gate is open, it turns round in the feed store.
-FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
-  FeedingCourseOptions course;
-  course.duration_s = options.duration_s;
-  if (gate_of(options.barn) == BarnGate::open) {
-    course.far_x += kIntoStore;
-    course.max_straight += kIntoStore;
-  }
-  const auto mission = static_cast<std::uint64_t>(options.barn.mission);
-  course.seed = hash(options.barn.seed, mission, 3);
-  if (options.barn.mission == 1) return course;
-  SeededDraws draws(course.seed, 51);
-  course.shift_y = draws.between(-0.15f, 0.15f);
-  course.lane_distance += draws.between(-0.12f, 0.12f);
-  course.start = draws.between(0.02f, 0.08f);
-  course.cruise_speed *= draws.between(0.93f, 1.07f);
-  return course;
-}
-
 const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   const auto require = [](bool holds, const char* reason) {
     if (!holds) throw InputError("simulated cowshed", reason);
@@ -75,6 +55,24 @@ LitMesh lit(const Cowshed& barn, int threads) {
 }
 
 }  // namespace
+
+FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
+  FeedingCourseOptions course;
+  course.duration_s = options.duration_s;
+  if (gate_of(options.barn) == BarnGate::open) {
+    course.far_x += kIntoStore;
+    course.max_straight += kIntoStore;
+  }
+  const auto mission = static_cast<std::uint64_t>(options.barn.mission);
+  course.seed = hash(options.barn.seed, mission, 3);
+  if (options.barn.mission == 1) return course;
+  SeededDraws draws(course.seed, 51);
+  course.shift_y = draws.between(-0.15f, 0.15f);
+  course.lane_distance += draws.between(-0.12f, 0.12f);
+  course.start = draws.between(0.02f, 0.08f);
+  course.cruise_speed *= draws.between(0.93f, 1.07f);
+  return course;
+}
 
 // What stays the same for all frames.
 struct CowshedRecording::Scene {

@@ -21,6 +21,10 @@ struct CowshedRecordingOptions {
   int threads = 0;        // 0: as many as the machine has; changes no byte
 };
 
+// Where the robot drives. Missions keep to the same course, a hand's breadth aside and begun elsewhere; where the gate
+// is open, it reaches into the feed store.
+FeedingCourseOptions course_of(const CowshedRecordingOptions& options);
+
 // A visit of a feeding robot to a cowshed, rendered frame by frame. Even missions find it at dusk, and each drives a
 // little differently.
 class CowshedRecording {

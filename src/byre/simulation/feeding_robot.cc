@@ -139,7 +139,7 @@ FeedingCourse::PathPoint FeedingCourse::path_point(double along_lap) const {
   }
   point.position -= Eigen::Vector2d(0.5 * straight_, 0.5 * options_.lane_distance);
   if (is_way_back) point = {-point.position, point.heading + kPi};
-  point.position += Eigen::Vector2d(options_.far_x - 0.5 * straight_, options_.shift_y);
+  point.position += Eigen::Vector2d(far_x() - 0.5 * straight_, options_.shift_y);
   return point;
 }
 

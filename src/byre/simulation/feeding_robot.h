@@ -3,6 +3,7 @@
 #include "byre/geometry/camera.h"
 #include "byre/geometry/trajectory.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -16,15 +17,16 @@ Calibration feeding_robot_calibration(int divisor);
 // The course of a feeding robot: along one side of the feed alley, a turn to the left, back along the other side, and
 // a turn again. World frame: x along the alley, y to its left, z up.
 struct FeedingCourseOptions {
-  double far_x = 26.5;         // metres: where the way there ends and its turn begins
-  double lane_distance = 2.0;  // metres between the way there and the way back
-  double max_straight = 18.0;  // metres: longer missions drive several laps
-  double cruise_speed = 0.75;  // metres per second
-  double turn_speed = 0.5;     // metres per second
-  double duration_s = 40.0;    // one lap and a metre more, or several
-  double shift_y = 0.0;        // metres by which all of it lies to the left
-  double start = 0.0;          // where on the lap to begin, 0 to 1
-  std::uint64_t seed = 1;      // of the vibration
+  double far_x = 26.5;          // metres: where the way there ends and its turn begins, at the most
+  double latest_near_x = 22.0;  // metres: where it begins at the latest: shorter laps do not reach far_x
+  double lane_distance = 2.0;   // metres between the way there and the way back
+  double max_straight = 18.0;   // metres: longer missions drive several laps
+  double cruise_speed = 0.75;   // metres per second
+  double turn_speed = 0.5;      // metres per second
+  double duration_s = 40.0;     // one lap and a metre more, or several
+  double shift_y = 0.0;         // metres by which all of it lies to the left
+  double start = 0.0;           // where on the lap to begin, 0 to 1
+  std::uint64_t seed = 1;       // of the vibration
 };
 
 // Where the robot is at any time.
@@ -46,6 +48,7 @@ class FeedingCourse {
     Eigen::Vector2d position;
     double heading = 0.0;  // radians to the left of the world's x axis
   };
+  double far_x() const { return std::min(options_.far_x, options_.latest_near_x + straight_); }  // metres
   PathPoint turn_point(double along_turn) const;
   PathPoint path_point(double along_lap) const;
   std::vector<double> drive(double straight) const;

@@ -64,16 +64,26 @@ TEST(FeedingCourse, ComesBackOnTheOtherSideInTheOtherDirection) {
   EXPECT_TRUE(came_back);
 }
 
-TEST(FeedingCourse, TurnsAtItsFarEndHoweverLongItIs) {
-  for (const double duration_s : {40.0, 60.0}) {
-    const FeedingCourse course({.far_x = 24.0, .duration_s = duration_s});
-    double farthest = 0.0;
-    for (double time_s = 0.0; time_s < duration_s; time_s += 0.1) {
-      farthest = std::max(farthest, course.world_from_body(time_s).translation.x());
-    }
-    EXPECT_GT(farthest, 25.0) << duration_s;
-    EXPECT_LT(farthest, 26.5) << duration_s;
+double farthest_x(const FeedingCourse& course, double duration_s) {
+  double farthest = 0.0;
+  for (double time_s = 0.0; time_s < duration_s; time_s += 0.1) {
+    farthest = std::max(farthest, course.world_from_body(time_s).translation.x());
   }
+  return farthest;
+}
+
+TEST(FeedingCourse, TurnsAtItsFarEndWhenItIsLongEnough) {
+  constexpr double kTurn = 2.1;  // metres that it reaches beyond
+  for (const double duration_s : {50.0, 70.0}) {
+    const FeedingCourse course({.far_x = 24.0, .latest_near_x = 18.0, .duration_s = duration_s});
+    EXPECT_NEAR(farthest_x(course, duration_s), 24.0 + kTurn, 0.1) << duration_s;
+  }
+}
+
+TEST(FeedingCourse, BeginsInTimeWhenItIsShort) {
+  const FeedingCourse course({.far_x = 24.0, .latest_near_x = 18.0, .duration_s = 10.0});
+  EXPECT_LT(course.world_from_body(0.0).translation.x(), 18.1);
+  EXPECT_LT(farthest_x(course, 10.0), 24.0);
 }
 
 TEST(FeedingCourse, DrivesGently) {

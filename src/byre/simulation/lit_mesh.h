@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/simulation/ray_scene.h"
+#include "byre/simulation/ray_casting.h"
 
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "byre/simulation/ray_scene.h"
+#include "byre/simulation/ray_casting.h"
 
 #include <algorithm>
 #include <stdexcept>
