@@ -128,7 +128,7 @@ TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
   ASSERT_TRUE(read.plan.has_value());
   EXPECT_EQ(read.plan->plan, "barn 3, ground floor");
   EXPECT_EQ(read.plan->plan_from_map.scale, 1.25);
-  const Pose& expected = scene.stored_with_plan().plan->plan_from_map.target_from_source;
+  const Pose expected = scene.stored_with_plan().plan->plan_from_map.target_from_source;
   EXPECT_EQ(read.plan->plan_from_map.target_from_source.rotation.coeffs(), expected.rotation.coeffs());
   EXPECT_EQ(read.plan->plan_from_map.target_from_source.translation, expected.translation);
   EXPECT_EQ(read.plan->covariance, scene.stored_with_plan().plan->covariance);
