@@ -43,7 +43,6 @@ struct DemoFindings {
   int map_points = 0;
   double map_ate = 0.0;  // metres RMSE, final poses
   int picks = 0;
-  double pick_rms = 0.0;  // metres, on the plan
   std::vector<DemoArm> arms;
   std::vector<TimeSpan> off_the_map;  // while the robot was where the first visit never was
   std::string plan_picture;           // SVG

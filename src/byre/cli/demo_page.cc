@@ -84,8 +84,8 @@ holds. Behind the gate there is nothing of that, and where it searches from noth
 the next: what it then takes for its place may be another. <b>Hybrid</b> localisation holds on to the map&rsquo;s points
 (green) where they still are, maps what is new beside them (purple), and leaves those out that have moved. Off the map
 the new points carry it; when known ones come into view again, it is back on them without a jump.</p>
-<p>With each pose byre says whether to steer by it. Trusted means that it expects to be within 20 cm of the truth.
-Nothing of what is drawn here was known to it: the truth comes from the simulation, and is only compared with.</p>
+<p>With each pose byre says whether to steer by it. Trusted means that it expects to be within 20 cm of the truth. The
+truth comes from the simulation and is only compared with: byre never saw it.</p>
 )";
 
 std::string element(const std::string& name, const std::string& content) {
@@ -189,8 +189,7 @@ std::string plan_section(const DemoFindings& findings) {
              "Map points of the first visit are green, those of the second purple. The hybrid&rsquo;s way is drawn by "
              "its verdicts. " +
                  formatted("The map has %d keyframes and %d points; ", findings.map_keyframes, findings.map_points) +
-                 formatted("%d picks lay it on the plan to %.1f cm (root mean square). ", findings.picks,
-                           1e2 * findings.pick_rms) +
+                 formatted("%d signs, picked exactly, lay it on the plan. ", findings.picks) +
                  formatted("The path it was made on is off by %.1f cm (ATE, %d frames).", 1e2 * findings.map_ate,
                            findings.map_frames));
 }

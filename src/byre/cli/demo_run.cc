@@ -160,7 +160,6 @@ class DemoRunner {
     findings_.map_keyframes = barn_.stored.map.keyframe_count();
     findings_.map_points = barn_.stored.map.point_count();
     findings_.picks = static_cast<int>(registering.correspondences.size());
-    findings_.pick_rms = registering.fit.rms;
   }
 
   void run_arm(Arm arm) {

@@ -54,16 +54,20 @@ RowKind time_row() {
           }};
 }
 
+// Of verdicts: without a map they are about a frame of the run's own, and say nothing of the place on the plan.
+std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*figure) {
+  return [figure](const DemoArm& arm) { return arm.arm == Arm::no_map ? Figure() : arm.measures.behaviour.*figure; };
+}
+
 std::vector<RowKind> row_kinds() {
-  const auto wrong = [](const DemoArm& arm) { return arm.measures.behaviour.trusted_wrong; };
+  const auto wrong = on_the_plan(&BehaviourMeasures::trusted_wrong);
   return {share_row("Frames with a position, %", [](const DemoArm& arm) { return arm.measures.causal_poses.coverage; }),
           share_row("Frames with a position within 10 cm of the truth, %",
                     [](const DemoArm& arm) { return Figure(arm.close_share); }),
           error_row("Error of published positions (RMSE), cm", &RunMeasures::causal_poses),
           error_row("Error of final positions (RMSE), cm", &RunMeasures::final_poses),
           shape_row(),
-          share_row("Frames reported as trusted, %",
-                    [](const DemoArm& arm) { return arm.measures.behaviour.trusted_share; }),
+          share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
           {"Trusted and yet off by more than 20 cm, frames", wrong,
            [wrong](const DemoArm& arm) { return formatted("%.0f", *wrong(arm)); }},
           time_row()};

@@ -54,9 +54,16 @@ TEST_F(DemoTable, MarksTheLeastErrorAndThoseThatReadTheSame) {
 TEST_F(DemoTable, HasADashWhereAnArmHasNoFigure) {
   arm(Arm::hybrid).measures.behaviour.trusted_wrong = 0.0;
   const DemoRow wrong = row("Trusted and yet");
-  EXPECT_EQ(wrong.cells[0].text, "-");
-  EXPECT_FALSE(wrong.cells[0].is_best);
+  EXPECT_EQ(wrong.cells[1].text, "-");
+  EXPECT_FALSE(wrong.cells[1].is_best);
   EXPECT_EQ(wrong.cells[2].text, "0");
+}
+
+TEST_F(DemoTable, LeavesOutTheTrustOfARunWithoutAMap) {
+  for (DemoArm& each : arms) each.measures.behaviour.trusted_share = 0.9;
+  const DemoRow trusted = row("Frames reported as trusted");
+  EXPECT_EQ(trusted.cells[0].text, "-");
+  EXPECT_EQ(trusted.cells[1].text, "90.0");
 }
 
 TEST_F(DemoTable, MarksNothingInARowWithoutFigures) {

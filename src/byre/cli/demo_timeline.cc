@@ -17,7 +17,7 @@ namespace {
 constexpr double kWidth = 1000.0, kLeft = 96.0, kRight = 16.0;
 constexpr double kTitle = 30.0;  // above a panel
 constexpr double kBand = 16.0, kBandGap = 6.0;
-constexpr double kBandsTop = kTitle, kPointsTop = 138.0, kErrorsTop = 328.0;
+constexpr double kBandsTop = kTitle, kPointsTop = 116.0, kErrorsTop = 306.0;
 constexpr double kPointsHeight = 150.0, kErrorsHeight = 190.0;
 constexpr double kBottom = kErrorsTop + kErrorsHeight;
 constexpr double kHeight = kBottom + 44.0;
@@ -74,6 +74,7 @@ std::string verdicts_panel(const DemoFindings& findings, const TimeAxis& axis) {
   std::string svg = text_at(kLeft, kBandsTop - 12.0, "Verdict on each frame", "title");
   double top = kBandsTop;
   for (const DemoArm& arm : findings.arms) {
+    if (arm.arm == Arm::no_map) continue;  // its verdicts are not about the plan
     svg += verdict_band(arm, top, axis);
     top += kBand + kBandGap;
   }
@@ -159,7 +160,7 @@ std::string background(const DemoFindings& findings, const TimeAxis& axis) {
     const double x = axis.x(span.begin_s);
     const double width = axis.x(span.end_s) - x;
     svg += rectangle(x, kBandsTop - 8.0, width, kBottom - kBandsTop + 8.0, "off");
-    svg += text_at(x + 0.5 * width, kBottom - 8.0, "off the map", "middle faint");
+    svg += text_at(x + 0.5 * width, kErrorsTop + 18.0, "off the map", "middle faint");
   }
   for (const double tick : round_ticks(0.0, axis.duration_s)) {
     const double x = axis.x(tick);
