@@ -47,12 +47,15 @@ export function outputOf(...commandLine) {
   return stdout;
 }
 
-/** Chromium that draws without a graphics card; with "webgl: false" it draws nothing in three dimensions. */
+/**
+ * Chromium that draws without a graphics card; with "webgl: false" it draws nothing in three dimensions. No watchdog ends
+ * it where that takes long.
+ */
 export function startBrowser({ webgl = true } = {}) {
   const drawing = webgl ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
   return chromium.launch({
     executablePath: process.env.BROWSER,
-    args: ["--no-sandbox", "--use-gl=angle", ...drawing],
+    args: ["--no-sandbox", "--use-gl=angle", "--disable-gpu-watchdog", ...drawing],
   });
 }
 

@@ -1,7 +1,7 @@
 // What a person does with the viewer, done by a browser. Screenshots stay in the folder "screenshots".
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { after, afterEach, before, describe, test } from "node:test";
+import { afterEach, beforeEach, describe, test } from "node:test";
 import { eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
 import { writePlan } from "./plan.mjs";
@@ -11,10 +11,9 @@ const kTrack = "[role=slider]";
 
 let browser;
 let viewer;
-before(async () => (browser = await startBrowser()));
-after(() => browser.close());
+beforeEach(async () => (browser = await startBrowser()));
 afterEach(async () => {
-  for (const context of browser.contexts()) await context.close();
+  await browser.close();
   viewer?.end();
 });
 

@@ -36,7 +36,7 @@ TEST(RunMailbox, KeepsEveryReportAndTheNewestImage) {
 TEST(RunMailbox, KeepsTheNewestMap) {
   RunMailbox mailbox;
   mailbox.put(MapScene{});
-  mailbox.put(MapScene{{ScenePoint{}}, {}});
+  mailbox.put(MapScene{{{{1.0f, 2.0f, 3.0f}, Origin::online}}, {}});
   EXPECT_THAT(mailbox.take().online->points, SizeIs(1));
 }
 
