@@ -12,13 +12,14 @@
 namespace byre::cli {
 namespace {
 
-Lanes make_lanes(Pace pace, JobLog& log) {
+// The second lane of a mission looks for places in the offline map.
+Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:
       return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
     case Pace::paced:
       return {make_logged_executor(make_paced_executor(kPacedLatency), log),
-              make_paced_executor(kPacedCorrectionLatency)};
+              make_paced_executor(is_mission ? kPacedSearchLatency : kPacedCorrectionLatency)};
     case Pace::live:
       return {make_logged_executor(make_live_executor(), log), make_live_executor()};
   }
@@ -30,8 +31,8 @@ class FrameThread {
  public:
   FrameThread(const Calibration& calibration, const MapRunOptions& options, std::optional<Map> before)
       : extractor_(calibration, options.extract),
-        session_(extractor_.rig(), options.session, make_lanes(options.pace, log_), options.vocabulary,
-                 options.offline) {
+        session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
+                 options.vocabulary, options.offline) {
     if (before) session_.continue_map(std::move(*before));
   }
 

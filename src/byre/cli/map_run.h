@@ -19,8 +19,9 @@ namespace byre::cli {
 
 // Where mapping runs, and how fast frames are fed.
 //   same_thread  on the frame thread ("inline"), frames as fast as possible
-//   paced        on workers, taken over kPacedLatency frames later, and corrections of the whole map
-//                kPacedCorrectionLatency frames later; frames as fast as possible: repeatable
+//   paced        on workers, taken over kPacedLatency frames later, corrections of the whole map
+//                kPacedCorrectionLatency and searches in an offline map kPacedSearchLatency; frames as fast as
+//                possible: repeatable
 //   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
@@ -30,6 +31,7 @@ std::string_view name_of(OfflinePolicy policy);
 
 inline constexpr int kPacedLatency = 4;             // frames
 inline constexpr int kPacedCorrectionLatency = 40;  // frames
+inline constexpr int kPacedSearchLatency = 6;       // frames
 
 struct MapRunOptions {
   Pace pace = Pace::paced;

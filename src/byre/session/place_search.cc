@@ -2,6 +2,7 @@
 
 #include "byre/slam/keyframes.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -15,7 +16,8 @@ void PlaceSearch::look_for(const Frame& frame, const Rig& rig, std::size_t numbe
     if (found.tracked) {
       const Map nothing_online(Origin::online);
       const double depth = median_depth(*found.tracked, MapView(&offline->map(), nothing_online));
-      *result = FoundPlace{number, found.tracked->camera_from_world, depth};
+      const double seen = static_cast<double>(found.tracked->features.size()) / std::max(1, found.tracked->expected);
+      *result = FoundPlace{number, found.tracked->camera_from_world, depth, seen};
     }
     return MapDelta{};
   });

@@ -14,6 +14,7 @@ struct FoundPlace {
   std::size_t frame = 0;  // the caller's number of the frame
   Pose camera_from_offline;
   double median_depth = 0.0;  // metres, of the points that say so
+  double seen_share = 0.0;    // of those that should be in view there
 };
 
 // Looks for frames in the offline map beside tracking, one at a time, each without a guess.

@@ -36,7 +36,7 @@ void Session::continue_map(Map online) {
   initialiser_.reset();
   for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
   last_keyframe_ = online_.keyframe_ids().back();
-  segments_ = {{0, true}};
+  segments_.begin_in_map_frame(0);
   state_ = State::lost;
 }
 
@@ -70,7 +70,7 @@ FrameReport Session::process(const Frame& frame) {
     if (look_for_loop(frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
     search_beside(frame);
   } else if (!located.is_new_segment) {
-    lose_pose(frame, report);
+    lose_pose(image_fault(frame), report);
   }
   conclude(frame, located, report);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
@@ -84,7 +84,7 @@ void Session::take_over_results(const std::optional<FinishedJob>& finished, Fram
   global_.collect();
   if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
   if (search_) {
-    if (const auto found = search_->collect()) consider_place(*found);
+    if (const auto found = search_->collect()) consider_place(*found, report);
   }
   if (correct_online()) report.events.push_back(SessionEvent::online_corrected);
   if (!has_pose_) return;
@@ -122,8 +122,12 @@ void Session::follow(const LengthChanges& changes) {
 bool Session::correct_online() {
   if (!waiting_correction_ || !executor_->idle()) return false;
   const WaitingCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
-  apply(correction_of(online_, correction.first_keyframe, correction.offline_from_online, correction.shape), online_);
-  segments_[segment_].is_registered = true;
+  std::vector<KeyframeId> path = online_.keyframe_ids();
+  std::erase_if(path, [&](KeyframeId id) {
+    return id.number < correction.first_keyframe || segments_.frame(id) != correction.frame;
+  });
+  apply(correction_of(online_, path, correction.offline_from_online, correction.shape), online_);
+  segments_.join_map_frame(correction.frame);
   local_points_of_.reset();
   offset_from_online_.reset();
   if (last_keyframe_ && pending_.empty()) pending_.push_back(*last_keyframe_);
@@ -244,7 +248,7 @@ Trajectory Session::final_trajectory() const {
   Trajectory trajectory;
   trajectory.reserve(anchored_.size());
   for (const AnchoredPose& pose : anchored_) {
-    if (!segments_[pose.segment].is_registered) continue;
+    if (segments_.frame(pose.segment) != Segments::kMapFrame) continue;
     trajectory.push_back({pose.time, body_pose(pose.camera_from_keyframe * camera_from_world(pose.keyframe))});
   }
   return trajectory;

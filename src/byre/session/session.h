@@ -7,6 +7,7 @@
 #include "byre/session/mission.h"
 #include "byre/session/odometry.h"
 #include "byre/session/place_search.h"
+#include "byre/session/segments.h"
 #include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/health.h"
@@ -132,15 +133,10 @@ class Session {
     std::size_t segment = 0;
   };
 
-  // A piece of online map that tracking has made without a gap.
-  struct Segment {
-    std::uint32_t first_keyframe = 0;
-    bool is_registered = false;  // its frame is that of the reports: the offline map's, where there is one
-  };
-
   // A correction of the online map that waits for mapping to have nothing in flight.
   struct WaitingCorrection {
-    std::uint32_t first_keyframe = 0;
+    Segments::Frame frame = Segments::kMapFrame;
+    std::uint32_t first_keyframe = 0;  // number: of those in that frame, it and what came later
     Pose offline_from_online;
     CorrectionShape shape = CorrectionShape::spread;
   };
@@ -158,7 +154,8 @@ class Session {
   bool take_over_correction();
   void follow(const LengthChanges& changes);
   bool correct_online();
-  void consider_place(const FoundPlace& found);
+  void consider_place(const FoundPlace& found, FrameReport& report);
+  bool is_refuted_by(const FoundPlace& found, const Agreement& agreement) const;
   void forget_places(const MapDelta& delta);
   void start_job();
   void index_place(KeyframeId id);
@@ -184,7 +181,7 @@ class Session {
   void begin_confirmation(const Frame& frame, const TrackedFrame& tracked);
   bool is_still_confirming(const HybridTrack& track);
   void look_for_proof(const HybridTrack& track);
-  void lose_pose(const Frame& frame, FrameReport& report);
+  void lose_pose(ImageFault fault, FrameReport& report);
   bool may_map(const Frame& frame, const HybridTrack& track) const;
   void search_beside(const Frame& frame);
   void add_keyframe(const Frame& frame, const HybridTrack& track);
@@ -195,12 +192,11 @@ class Session {
   void tell_navigation_error(double seconds_without_pose, FrameReport& report);
 
   ImageFault image_fault(const Frame& frame) const;  // none where its condition is not known
-  bool is_registered() const { return !segments_.empty() && segments_[segment_].is_registered; }
+  bool is_registered() const { return !segments_.empty() && segments_.frame() == Segments::kMapFrame; }
+  bool is_in_present_frame(KeyframeId online) const { return segments_.frame(online) == segments_.frame(); }
   bool is_pose_confirmed() const { return confirmations_left_ == 0; }
   bool is_pose_proven() const { return proofs_left_ == 0; }
   std::uint32_t next_keyframe_number() const { return last_keyframe_ ? last_keyframe_->number + 1 : 0; }
-  std::size_t segment_of(KeyframeId online) const;
-  void enter_registered_segment();
   Pose camera_from_world(KeyframeId id) const;
   Pose last_camera_from_world() const;
   Pose body_pose(const Pose& camera_from_world) const { return inverse(rig_.body_from_camera * camera_from_world); }
@@ -225,8 +221,7 @@ class Session {
   int frames_since_loop_ = 0;                        // frames since one was confirmed
   std::vector<LoopEdge> loops_;                      // confirmed
   State state_ = State::initialising;
-  std::vector<Segment> segments_;
-  std::size_t segment_ = 0;                  // the present one
+  Segments segments_;
   bool has_pose_ = false;                    // the last frame had one
   int confirmations_left_ = 0;               // frames until a pose found from nothing is believed,
   int proofs_left_ = 0;                      // and frames that see much of the map, until it is trusted

@@ -65,8 +65,8 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   if (reference_ != reference) fresh_inliers_ = last_inliers_;
   reference_ = reference;
   if (track.online_reference) online_reference_ = track.online_reference;
-  anchored_.push_back(
-      {frame.time, reference, track.tracked.camera_from_world * inverse(camera_from_world(reference)), segment_});
+  anchored_.push_back({frame.time, reference, track.tracked.camera_from_world * inverse(camera_from_world(reference)),
+                       segments_.present()});
   last_body_ = body;
   has_pose_ = true;
   if (mission_ && is_registered()) remember_mission(frame, track, step, report);
@@ -102,7 +102,7 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const auto correction = mission_->consider(offline_from_online, inverse(*track.from_online).translation,
                                              median_depth(track.tracked, map()));
-  if (correction) waiting_correction_ = {last_held_keyframe_, *correction, CorrectionShape::spread};
+  if (correction) waiting_correction_ = {segments_.frame(), last_held_keyframe_, *correction, CorrectionShape::spread};
 }
 
 // A pose found from nothing is believed once the frames that follow have been tracked on it; the more of them, the less
@@ -135,10 +135,10 @@ void Session::look_for_proof(const HybridTrack& track) {
   if (!is_pose_proven() && track.offline_inliers >= share * track.offline_expected) --proofs_left_;
 }
 
-void Session::lose_pose(const Frame& frame, FrameReport& report) {
+void Session::lose_pose(ImageFault fault, FrameReport& report) {
   if (has_pose_ && state_ == State::tracking) {
     report.events.push_back(SessionEvent::pose_lost);
-    if (image_fault(frame) != ImageFault::none) report.events.push_back(SessionEvent::blinded);
+    if (fault != ImageFault::none) report.events.push_back(SessionEvent::blinded);
   }
   has_pose_ = false;
   confirmations_left_ = 0;
@@ -155,28 +155,41 @@ bool Session::may_map(const Frame& frame, const HybridTrack& track) const {
   return needs_keyframe(track.tracked, keyframe_evidence(track), options_.keyframes);
 }
 
-// Places are looked for in the offline map while its points do not hold the pose.
+// Places are looked for in the offline map while its points do not hold the pose, or may do so by chance.
 void Session::search_beside(const Frame& frame) {
   if (!mission_ || !search_->idle() || waiting_correction_ || !is_pose_confirmed()) return;
-  const bool is_needed = !is_registered() || mission_->distance_since_offline() > options_.mission.search_after;
+  const bool is_needed =
+      !is_registered() || !is_pose_proven() || mission_->distance_since_offline() > options_.mission.search_after;
   if (is_needed) search_->look_for(frame, rig_, anchored_.size() - 1);
 }
 
-void Session::consider_place(const FoundPlace& found) {
+void Session::consider_place(const FoundPlace& found, FrameReport& report) {
   if (!has_pose_ || !is_pose_confirmed() || waiting_correction_ || found.frame >= anchored_.size()) return;
   const AnchoredPose& then = anchored_[found.frame];
-  if (then.segment != segment_) return;
+  if (segments_.frame(then.segment) != segments_.frame()) return;
   const Pose camera_from_online = then.camera_from_keyframe * camera_from_world(then.keyframe);
+  const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
+  if (then.segment == segments_.present() && is_refuted_by(found, agreement)) {
+    segments_.leave_map_frame();
+    lose_pose(ImageFault::none, report);
+    return;
+  }
+  // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
+  if (is_registered() && !is_within(agreement, mission_->drift())) return;
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
   const Eigen::Vector3d camera_in_online = inverse(camera_from_online).translation;
-  // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
-  const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
-  if (is_registered() && !is_within(agreement, mission_->drift())) return;
   const auto correction = mission_->consider(offline_from_online, camera_in_online, found.median_depth);
   if (!correction) return;
   waiting_correction_ =
-      is_registered() ? WaitingCorrection{last_held_keyframe_, *correction, CorrectionShape::spread}
-                      : WaitingCorrection{segments_[segment_].first_keyframe, *correction, CorrectionShape::rigid};
+      is_registered() ? WaitingCorrection{segments_.frame(), last_held_keyframe_, *correction, CorrectionShape::spread}
+                      : WaitingCorrection{segments_.frame(), 0, *correction, CorrectionShape::rigid};
+}
+
+// A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it.
+bool Session::is_refuted_by(const FoundPlace& found, const Agreement& agreement) const {
+  constexpr double kElsewhere = 0.5;  // metres
+  return is_registered() && !is_pose_proven() && agreement.translation > kElsewhere &&
+         found.seen_share >= options_.mission.registration.proving_share;
 }
 
 void Session::conclude(const Frame& frame, const Located& located, FrameReport& report) {

@@ -5,6 +5,7 @@
 #include "byre/slam/mission_scene.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <gmock/gmock.h>
 
@@ -52,14 +53,25 @@ Frame without_features(const Frame& frame) {
   return {frame.time, std::make_shared<const Features>()};
 }
 
-// A third of its features.
-Frame thinned(const Frame& frame) {
+// Every so manieth of its features.
+Frame thinned(const Frame& frame, int step = 3) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
-  for (int i = 0; i < frame.features->size(); i += 3) {
+  for (int i = 0; i < frame.features->size(); i += step) {
     keypoints.push_back(frame.features->keypoint(i));
     descriptors.push_back(frame.features->descriptor(i));
   }
+  const Rig rig = simulated_rig();
+  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
+                                                       std::move(descriptors), std::vector<Patch>{})};
+}
+
+// What both see, as if one place looked like two.
+Frame overlaid(const Frame& frame, const Frame& other) {
+  std::vector<Keypoint> keypoints = frame.features->keypoints();
+  std::vector<Descriptor> descriptors = frame.features->descriptors();
+  std::ranges::copy(other.features->keypoints(), std::back_inserter(keypoints));
+  std::ranges::copy(other.features->descriptors(), std::back_inserter(descriptors));
   const Rig rig = simulated_rig();
   return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
                                                        std::move(descriptors), std::vector<Patch>{})};
@@ -134,6 +146,40 @@ TEST(Mission, IsNotTrustedBeforeFramesSeeMuchOfWhatShouldBeThere) {
     EXPECT_EQ(reports[i].health.doubt, Doubt::unconfirmed) << i;
   }
   EXPECT_EQ(reports[30].health.verdict, Verdict::trusted);
+}
+
+// From the start something looks like the other side of the room, and later what is really there comes into view too.
+void expect_to_leave_the_wrong_place(bool map_online) {
+  const SimulatedMission mission = circling(1.0, 2);
+  SessionOptions options;
+  options.mission.registration.proving_share = 0.4;
+  options.map_online = map_online;
+  Session session = session_on(mapped(1.0), options);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < kLap / 2; ++i) {
+    const Frame elsewhere = thinned(mission.frames[i + kLap / 2]);
+    frames.push_back(at_time_of(i < 20 ? elsewhere : overlaid(mission.frames[i], elsewhere), mission.frames[i]));
+  }
+  const auto reports = run(session, frames);
+  EXPECT_GT((reports[19].map_from_body->translation - mission.truth[19].world_from_body.translation).norm(), 3.0);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+  EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
+  session.finish();
+  const Trajectory final = session.final_trajectory();
+  EXPECT_LT(final.size(), frames.size() - 15) << "poses of the wrong place are withdrawn";
+  for (const StampedPose& pose : final) {
+    const auto truth = std::ranges::find(mission.truth, pose.time, &StampedPose::time);
+    EXPECT_THAT(pose.world_from_body, PoseNear(truth->world_from_body, 0.05, kDegree));
+  }
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+}
+
+TEST(Mission, LeavesAWrongPlaceThatWasNeverProvenForTheRightOne) {
+  expect_to_leave_the_wrong_place(true);
+}
+
+TEST(Mission, LeavesAWrongPlaceAlsoWhereItOnlyLocalises) {
+  expect_to_leave_the_wrong_place(false);
 }
 
 TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {

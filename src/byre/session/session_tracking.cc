@@ -90,14 +90,19 @@ const std::vector<PointId>& Session::local_online_points() {
 }
 
 std::optional<HybridTrack> Session::find_pose(const Frame& frame) {
-  // Mapping may have removed the last frame's keyframe since, but never the newest.
-  if (!online_reference_ || online_.find_keyframe(*online_reference_) == nullptr) online_reference_ = last_keyframe_;
+  // Mapping may have removed the last frame's keyframe since, but never the newest. What lies in another frame, left
+  // when the pose was lost, is not where the pose says.
+  const auto newest = last_keyframe_ && is_in_present_frame(*last_keyframe_) ? last_keyframe_ : std::nullopt;
+  if (!online_reference_ || online_.find_keyframe(*online_reference_) == nullptr ||
+      !is_in_present_frame(*online_reference_)) {
+    online_reference_ = newest;
+  }
   const std::vector<PointId>& online = local_online_points();
   const Pose predicted = has_pose_ ? predict(frame.time) : last_camera_from_world();
   auto best = track_from(frame, predicted, online);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
-  for (const std::optional<KeyframeId>& keyframe : {std::optional(anchored_.back().keyframe), last_keyframe_}) {
+  for (const std::optional<KeyframeId>& keyframe : {std::optional(anchored_.back().keyframe), newest}) {
     const auto pose = keyframe ? pose_from_keyframe(frame, rig_, map(), *keyframe) : std::nullopt;
     if (!pose) continue;
     auto tracked = track_from(frame, *pose, online);
@@ -115,27 +120,15 @@ std::optional<HybridTrack> Session::relocalise(const Frame& frame) {
 std::optional<HybridTrack> Session::relocalise_offline(const Frame& frame) {
   const Localisation found = localise_in(mission_->offline(), frame, rig_, options_.relocalise);
   if (!found.tracked) return std::nullopt;
-  enter_registered_segment();
+  segments_.begin_in_map_frame(next_keyframe_number());
   return found_in(Origin::offline, *found.tracked);
 }
 
 std::optional<HybridTrack> Session::relocalise_online(const Frame& frame) {
   const Localisation found = localise(frame, rig_, map(), *places_, options_.relocalise);
   if (!found.tracked) return std::nullopt;
-  segment_ = segment_of(found.tracked->reference);
+  segments_.begin_beside(found.tracked->reference, next_keyframe_number());
   return found_in(Origin::online, *found.tracked);
-}
-
-// The piece of online map that a keyframe is of: they begin one after the other.
-std::size_t Session::segment_of(KeyframeId online) const {
-  const auto next = std::ranges::upper_bound(segments_, online.number, {}, &Segment::first_keyframe);
-  return static_cast<std::size_t>(std::distance(segments_.begin(), next)) - 1;
-}
-
-void Session::enter_registered_segment() {
-  if (is_registered()) return;
-  segments_.push_back({next_keyframe_number(), true});
-  segment_ = segments_.size() - 1;
 }
 
 bool Session::may_begin_segment(const Frame& frame) const {
@@ -151,7 +144,8 @@ bool Session::may_begin_segment(const Frame& frame) const {
 void Session::begin_stereo(const Frame& frame, Located& located) {
   auto first = initialise_stereo(frame, rig_, options_.min_initial_points);
   if (!first) return;
-  segments_.push_back({next_keyframe_number(), !mission_});
+  mission_ ? segments_.begin_in_own_frame(next_keyframe_number())
+           : segments_.begin_in_map_frame(next_keyframe_number());
   if (online_.keyframe_count() == 0) {
     online_ = std::move(*first);
     last_keyframe_ = online_.keyframe_ids().front();
@@ -174,13 +168,14 @@ void Session::begin_monocular(const Frame& frame, Located& located) {
   if (!attempt.start) return;
   initialiser_.reset();
   online_ = std::move(attempt.start->map);
-  segments_.push_back({0, true});
+  segments_.begin_in_map_frame(0);
   last_keyframe_ = attempt.start->second;
   const KeyframeId reference = attempt.start->first;
   index_place(reference);
   index_place(*last_keyframe_);
   begin_segment(frame);
-  anchored_.insert(anchored_.begin(), {online_.find_keyframe(reference)->frame.time, reference, Pose{}, segment_});
+  anchored_.insert(anchored_.begin(),
+                   {online_.find_keyframe(reference)->frame.time, reference, Pose{}, segments_.present()});
   confirmed_end_ = anchored_.size();
   pending_.push_back(*last_keyframe_);
   located.is_new_segment = true;
@@ -188,7 +183,6 @@ void Session::begin_monocular(const Frame& frame, Located& located) {
 
 // The newest keyframe is that of the frame.
 void Session::begin_segment(const Frame& frame) {
-  segment_ = segments_.size() - 1;
   online_reference_ = last_keyframe_;
   local_points_of_.reset();
   const Pose body = body_pose(online_.camera_from_world(*last_keyframe_));
@@ -197,7 +191,7 @@ void Session::begin_segment(const Frame& frame) {
   } else {
     odometry_.absorb(last_body_, body);
   }
-  anchored_.push_back({frame.time, *last_keyframe_, Pose{}, segment_});
+  anchored_.push_back({frame.time, *last_keyframe_, Pose{}, segments_.present()});
   last_body_ = body;
   offset_from_online_.reset();
   velocity_ = Vector6::Zero();

@@ -12,10 +12,9 @@ struct PathKeyframe {
   double travelled = 0.0;  // metres since the first
 };
 
-std::vector<PathKeyframe> path_since(const Map& online, std::uint32_t first_keyframe) {
+std::vector<PathKeyframe> measured_path(const Map& online, const std::vector<KeyframeId>& keyframes) {
   std::vector<PathKeyframe> path;
-  for (const KeyframeId id : online.keyframe_ids()) {
-    if (id.number < first_keyframe) continue;
+  for (const KeyframeId id : keyframes) {
     PathKeyframe entry{{id.number}, online.find_keyframe(id)->camera_from_world};
     if (!path.empty()) {
       const Eigen::Vector3d before = inverse(path.back().camera_from_world).translation;
@@ -67,15 +66,15 @@ std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHy
   return checked;
 }
 
-MapDelta correction_of(const Map& online, std::uint32_t first_keyframe, const Pose& offline_from_online,
+MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
                        CorrectionShape shape) {
   MapDelta delta;
-  const std::vector<PathKeyframe> path = path_since(online, first_keyframe);
-  if (path.empty()) return delta;
-  const Eigen::Vector3d pivot = inverse(path.back().camera_from_world).translation;
-  const double length = path.back().travelled;
+  const std::vector<PathKeyframe> measured = measured_path(online, path);
+  if (measured.empty()) return delta;
+  const Eigen::Vector3d pivot = inverse(measured.back().camera_from_world).translation;
+  const double length = measured.back().travelled;
   std::map<KeyframeId, Pose> motions;
-  for (const PathKeyframe& keyframe : path) {
+  for (const PathKeyframe& keyframe : measured) {
     const bool whole = shape == CorrectionShape::rigid || length <= 0.0;
     const Pose motion = whole ? offline_from_online : share_of(offline_from_online, keyframe.travelled / length, pivot);
     motions[keyframe.id] = motion;

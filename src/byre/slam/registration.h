@@ -4,6 +4,7 @@
 #include "byre/slam/delta.h"
 
 #include <optional>
+#include <vector>
 
 namespace byre {
 
@@ -30,12 +31,13 @@ std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHy
                                               const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
                                               double median_depth, const RegistrationOptions& options);
 
-// The online map from a keyframe on, moved so that it lies in the offline one at its newest end. What hangs between:
+// A path of online keyframes, in the order of ids, moved so that its newest end lies in the offline map. What comes
+// before:
 //   rigid   goes along as a whole: it had no place in the offline map before
 //   spread  bends by its share of the path: at the first keyframe both maps agreed
 enum class CorrectionShape : std::uint8_t { rigid, spread };
 
-MapDelta correction_of(const Map& online, std::uint32_t first_keyframe, const Pose& offline_from_online,
+MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
                        CorrectionShape shape);
 
 }  // namespace byre

@@ -8,6 +8,8 @@
 namespace byre {
 namespace {
 
+using ::testing::Contains;
+
 const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}};
 constexpr double kDepth = 4.0;  // metres
 
@@ -53,7 +55,7 @@ class CorrectionOf : public ::testing::Test {
 
 TEST_F(CorrectionOf, MovesAllThatHadNoPlaceBeforeAsAWhole) {
   Map after = map_;
-  apply(correction_of(map_, 0, kOfflineFromOnline, CorrectionShape::rigid), after);
+  apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::rigid), after);
   for (const KeyframeId id : map_.keyframe_ids()) {
     EXPECT_THAT(world_motion_of(id, after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
   }
@@ -66,7 +68,7 @@ TEST_F(CorrectionOf, MovesAllThatHadNoPlaceBeforeAsAWhole) {
 
 TEST_F(CorrectionOf, BendsThePathFromNothingWhereMapsAgreedToAllAtItsEnd) {
   Map after = map_;
-  apply(correction_of(map_, 0, kOfflineFromOnline, CorrectionShape::spread), after);
+  apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::spread), after);
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   EXPECT_THAT(world_motion_of(ids.front(), after), PoseNear(Pose{}, 1e-9, 1e-9));
   const auto moved = [&](KeyframeId id) {
@@ -78,17 +80,19 @@ TEST_F(CorrectionOf, BendsThePathFromNothingWhereMapsAgreedToAllAtItsEnd) {
   EXPECT_THAT(world_motion_of(ids.back(), after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
 }
 
-TEST_F(CorrectionOf, LeavesWhatIsOlderThanTheFirstKeyframeWhereItIs) {
-  const KeyframeId first = map_.keyframe_ids()[4];
-  const MapDelta delta = correction_of(map_, first.number, kOfflineFromOnline, CorrectionShape::rigid);
-  for (const MovedKeyframe& moved : delta.moved_keyframes) EXPECT_GE(moved.id.number, first.number);
+TEST_F(CorrectionOf, LeavesWhatIsNotOfThePathWhereItIs) {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  const std::vector<KeyframeId> path(ids.begin() + 4, ids.end() - 1);
+  const MapDelta delta = correction_of(map_, path, kOfflineFromOnline, CorrectionShape::rigid);
+  EXPECT_EQ(delta.moved_keyframes.size(), path.size());
+  for (const MovedKeyframe& moved : delta.moved_keyframes) EXPECT_THAT(path, Contains(KeyframeId(moved.id)));
   for (const UpdatedPoint& updated : delta.updated_points) {
-    EXPECT_GE(map_.find_point(updated.id)->reference.keyframe.number, first.number);
+    EXPECT_THAT(path, Contains(map_.find_point(updated.id)->reference.keyframe));
   }
 }
 
-TEST_F(CorrectionOf, IsEmptyForAPieceWithoutKeyframes) {
-  const MapDelta delta = correction_of(map_, 1000, kOfflineFromOnline, CorrectionShape::rigid);
+TEST_F(CorrectionOf, IsEmptyForAPathWithoutKeyframes) {
+  const MapDelta delta = correction_of(map_, {}, kOfflineFromOnline, CorrectionShape::rigid);
   EXPECT_TRUE(delta.moved_keyframes.empty());
   EXPECT_TRUE(delta.updated_points.empty());
 }

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "byre/map/ids.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace byre {
+
+// The segments of an online map, each tracked without a gap, in the order in which they were begun, and the frames they
+// lie in. Poses can be compared where the frame is the same. One frame is that of the reports: the offline map's where
+// there is one.
+class Segments {
+ public:
+  using Frame = int;
+  static constexpr Frame kMapFrame = 0;
+
+  bool empty() const { return segments_.empty(); }
+  std::size_t size() const { return segments_.size(); }
+  // Of the present segment, the last one. Precondition: not empty.
+  std::size_t present() const { return segments_.size() - 1; }
+  std::uint32_t first_keyframe() const { return segments_.back().first_keyframe; }  // number
+  Frame frame() const { return segments_.back().frame; }
+  Frame frame(std::size_t segment) const { return segments_[segment].frame; }
+  Frame frame(KeyframeId online) const;
+
+  // A new segment, whose keyframes will have this number and higher ones.
+  void begin_in_map_frame(std::uint32_t first_keyframe);
+  void begin_in_own_frame(std::uint32_t first_keyframe);
+  // One that goes on where an older keyframe was found.
+  void begin_beside(KeyframeId online, std::uint32_t first_keyframe);
+
+  // It became known how a frame lies in the map's: what lies in it was moved there.
+  void join_map_frame(Frame frame);
+  // The present segment does not lie in the map's frame as was believed; nobody knows how it does.
+  void leave_map_frame() { segments_.back().frame = next_frame_++; }
+
+ private:
+  struct Segment {
+    std::uint32_t first_keyframe = 0;
+    Frame frame = kMapFrame;
+  };
+
+  std::vector<Segment> segments_;
+  Frame next_frame_ = kMapFrame + 1;
+};
+
+}  // namespace byre
