@@ -1,13 +1,11 @@
-# Precompiled headers of the libraries that most files include. They halve the time of a build from scratch, but compiler
-# caches can do little with them, and a file that lacks an include compiles all the same: for servers that build anew
-# each time, not for daily work.
+# Precompiled headers of the libraries that most files of the rooms include. They make a build from scratch faster, but
+# compiler caches can do little with them, and a file that lacks an include compiles all the same: for servers that
+# build anew each time, not for daily work. Commands have none: theirs would be so large that loading it takes longer.
 option(BYRE_PRECOMPILE "Precompile headers: faster where no compiler cache is at hand" OFF)
 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
     <optional> <random> <string> <string_view> <utility> <vector> <Eigen/Dense>)
 set(BYRE_PRECOMPILED_test ${BYRE_PRECOMPILED_room} <gmock/gmock.h> <gtest/gtest.h>)
-set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <CLI/CLI.hpp> <nlohmann/json.hpp>)
-set(BYRE_PRECOMPILED_command_test ${BYRE_PRECOMPILED_command} <gmock/gmock.h> <gtest/gtest.h>)
 
 # The first target of a kind precompiles, the others of that kind, which must be compiled with the same flags, use what
 # it has made.

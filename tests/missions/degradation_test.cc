@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <functional>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -34,8 +35,8 @@ double mean_difference(const Image& a, const Image& b) {
 }
 
 double share_unchanged(const Image& before, const Image& after) {
-  const auto same = std::ranges::count_if(std::views::iota(std::size_t{0}, before.pixels.size()),
-                                          [&](std::size_t i) { return before.pixels[i] == after.pixels[i]; });
+  const int same = std::transform_reduce(before.pixels.begin(), before.pixels.end(), after.pixels.begin(), 0,
+                                         std::plus<>(), std::equal_to<>());
   return static_cast<double>(same) / static_cast<double>(before.pixels.size());
 }
 

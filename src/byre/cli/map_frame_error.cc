@@ -15,8 +15,8 @@ Trajectory keyframe_trajectory(const Map& map) {
     trajectory.push_back({keyframe.frame.time, inverse(rig.body_from_camera * keyframe.camera_from_world)});
   }
   std::ranges::stable_sort(trajectory, {}, &StampedPose::time);
-  const auto repeated = std::ranges::unique(trajectory, {}, &StampedPose::time);
-  trajectory.erase(repeated.begin(), repeated.end());
+  const auto is_repeated = [](const StampedPose& a, const StampedPose& b) { return a.time == b.time; };
+  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), is_repeated), trajectory.end());
   return trajectory;
 }
 

@@ -95,7 +95,8 @@ template <typename Visitor>
 void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave,
                           Visitor visit) const {
   const auto cell = [this](float coordinate, int count) {
-    return std::min(std::max(static_cast<int>(coordinate) / cell_size_, 0), count - 1);
+    constexpr float kFar = 1e6f;  // beyond any image, yet an int; what is no number counts as zero
+    return std::min(static_cast<int>(std::min(std::max(0.0f, coordinate), kFar)) / cell_size_, count - 1);
   };
   if (columns_ == 0) return;
   const int first_column = cell(pixel.x() - radius, columns_);

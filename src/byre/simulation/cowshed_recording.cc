@@ -143,8 +143,7 @@ Trajectory CowshedRecording::truth() const {
   std::vector<Timestamp> all = times_;
   for (Timestamp time = times_.front(); time < times_.back(); time += kStep) all.push_back(time);
   std::ranges::sort(all);
-  const auto repeated = std::ranges::unique(all);
-  all.erase(repeated.begin(), repeated.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   Trajectory truth;
   for (const Timestamp time : all) truth.push_back({time, world_from_body(time)});
   return truth;

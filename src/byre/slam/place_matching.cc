@@ -80,8 +80,8 @@ std::vector<PointMatch> most_similar(std::vector<PointMatch> matches) {
   const auto keep_first_of_each = [&](auto key) {
     std::ranges::sort(matches, by_similarity);
     std::ranges::stable_sort(matches, {}, key);
-    const auto repeated = std::ranges::unique(matches, {}, key);
-    matches.erase(repeated.begin(), repeated.end());
+    const auto is_repeated = [&](const PointMatch& a, const PointMatch& b) { return a.*key == b.*key; };
+    matches.erase(std::unique(matches.begin(), matches.end(), is_repeated), matches.end());
   };
   keep_first_of_each(&PointMatch::point);
   keep_first_of_each(&PointMatch::feature);
