@@ -54,8 +54,19 @@ of the map's first recording, unless --camera or --calibration say otherwise. Wi
 frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
 another recording name that one's truth too (--map-truth). Exit code 0 also when no frame is found.)";
 
-bool is_recording(const std::vector<fs::path>& inputs) {
-  return inputs.size() == 1 && (fs::is_directory(inputs.front()) || is_video_file(inputs.front()));
+bool is_recording(const fs::path& input) {
+  return fs::is_directory(input) || is_video_file(input);
+}
+
+// One recording, or images that exist.
+void require_inputs(const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    if (!fs::exists(input)) throw InputError(input.string(), "does not exist", "name a recording, or image files");
+    if (inputs.size() > 1 && is_recording(input)) {
+      throw InputError(input.string(), "is a recording, and was named together with something else",
+                       "localise one recording at a time, or image files alone");
+    }
+  }
 }
 
 Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
@@ -82,7 +93,7 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
                   const InterruptCatcher& interrupt) {
   const SearchableMap map(stored, vocabulary);
   std::unique_ptr<Recording> recording;
-  if (is_recording(options.inputs)) {
+  if (is_recording(options.inputs.front())) {
     recording = open_recording(options.inputs.front(), options.range, options.open);
     if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   }
@@ -118,6 +129,7 @@ void write_found(const Work& work, const fs::path& path) {
 }
 
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
+  require_inputs(options.inputs);
   if (options.trajectory) require_writable(*options.trajectory);
   StoredMap stored = load_map(options.map);
   if (options.frame == PoseFrame::plan) require_plan(stored.plan, options.map);

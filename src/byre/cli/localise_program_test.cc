@@ -142,8 +142,13 @@ TEST_F(LocaliseProgram, RefusesAnotherRoomAndSaysWhy) {
 }
 
 TEST_F(LocaliseProgram, NamesBadInput) {
-  EXPECT_EQ(localise("absent").exit_code, 0) << "an image that cannot be read is a warning";
-  EXPECT_THAT(localise("absent").errors, HasSubstr("absent: is not a whole image"));
+  write("torn.png", "torn");
+  EXPECT_EQ(localise("torn.png").exit_code, 0) << "an image that cannot be read is a warning";
+  EXPECT_THAT(localise("torn.png").errors, HasSubstr("torn.png: is not a whole image"));
+  EXPECT_EQ(localise("absent").exit_code, 3);
+  EXPECT_THAT(localise("absent").errors, HasSubstr("absent: does not exist"));
+  EXPECT_EQ(localise(kRoom + " torn.png").exit_code, 3);
+  EXPECT_THAT(localise(kRoom + " torn.png").errors, HasSubstr("one recording at a time"));
   write("torn.byre", read("room.byre").substr(0, 1000));
   const Outcome outcome = run("localise torn.byre " + kRoom);
   EXPECT_EQ(outcome.exit_code, 3);
