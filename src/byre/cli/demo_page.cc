@@ -173,8 +173,8 @@ std::string table(const DemoFindings& findings) {
          "</tbody></table></div>\n<p class=\"note\">Errors are on the floor plan, of the frames that have a position: "
          "nothing is fitted to the truth afterwards, but for the row on the shape of the path, where each path is laid "
          "on the truth as well as it can be. <i>Published</i> is what was known at the time, <i>final</i> what was "
-         "known "
-         "after the last frame.</p>\n";
+         "known after the last frame. Frames were given as fast as they were taken; the time of each counts what it "
+         "waited for mapping.</p>\n";
 }
 
 std::string figure(const char* id, const std::string& svg, const std::string& alternative, const std::string& caption) {
