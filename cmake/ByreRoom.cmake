@@ -11,10 +11,8 @@ if(BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE})
 endif()
-# Debian's Ceres is built for 16-byte alignment and takes Eigen's memory straight from malloc. byre and its consumers must
-# agree with it whatever -march they use: the linker may take either one's copy of an inline function of Eigen for both.
-set(BYRE_EIGEN_DEFINITIONS EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
-target_compile_definitions(byre_flags INTERFACE ${BYRE_EIGEN_DEFINITIONS})
+# Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.
+target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src)
 
 # The sanitizer of undefined behaviour doubles the time of compilation, and is there for the code that is tested. To be
@@ -66,6 +64,6 @@ endfunction()
 # What the library asks of its consumers: C++20, Eigen and the same alignment; see ByreInstall.cmake for its headers.
 function(byre_finish_library)
   target_compile_features(byre PUBLIC cxx_std_20)
-  target_compile_definitions(byre PUBLIC ${BYRE_EIGEN_DEFINITIONS})
+  target_compile_definitions(byre PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
   target_link_libraries(byre PUBLIC Eigen3::Eigen PRIVATE ${BYRE_ROOM_LIBRARIES} $<BUILD_INTERFACE:byre_flags>)
 endfunction()

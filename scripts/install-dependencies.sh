@@ -10,8 +10,8 @@ packages=(
   libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev libboost-dev
   # the program
   libcli11-dev
-  # tests, sanitizers and fuzzing (with Clang; LLVM names the lines of its reports), benchmarks, rules
-  libgtest-dev libgmock-dev clang llvm libbenchmark-dev clang-format python3
+  # tests, fuzzing, benchmarks, rules
+  libgtest-dev libgmock-dev clang libbenchmark-dev clang-format python3
 )
 # Of tests in a browser, which are skipped without. Node may come from anywhere: Debian's npm does not go together with
 # another's Node.

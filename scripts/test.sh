@@ -17,7 +17,7 @@ passed=0
 failed=0
 skipped=0
 
-# The sanitizers of Debian 12 cannot start where the kernel spreads addresses wider than they expect.
+# The sanitizers of GCC 12 cannot start where the kernel spreads addresses wider than they expect.
 runner=()
 ! setarch --addr-no-randomize true 2>/dev/null || runner=(setarch --addr-no-randomize)
 
