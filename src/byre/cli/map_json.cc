@@ -61,8 +61,11 @@ Json protocol_json(const MapProtocol& protocol) {
                {"pace", name_of(protocol.options.pace)}};
   if (protocol.options.pace == Pace::paced) {
     json["mapping_latency_frames"] = kPacedLatency;
-    if (protocol.offline.empty()) json["correction_latency_frames"] = kPacedCorrectionLatency;
-    if (!protocol.offline.empty()) json["search_latency_frames"] = kPacedSearchLatency;
+    if (protocol.offline.empty()) {
+      json["correction_latency_frames"] = kPacedCorrectionLatency;
+    } else {
+      json["search_latency_frames"] = kPacedSearchLatency;
+    }
   }
   if (!protocol.extended.empty()) json["extended"] = protocol.extended;
   if (!protocol.offline.empty()) {

@@ -20,7 +20,6 @@ class Segments {
   std::size_t size() const { return segments_.size(); }
   // Of the present segment, the last one. Precondition: not empty.
   std::size_t present() const { return segments_.size() - 1; }
-  std::uint32_t first_keyframe() const { return segments_.back().first_keyframe; }  // number
   Frame frame() const { return segments_.back().frame; }
   Frame frame(std::size_t segment) const { return segments_[segment].frame; }
   Frame frame(KeyframeId online) const;

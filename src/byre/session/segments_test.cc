@@ -9,10 +9,16 @@ KeyframeId online(std::uint32_t number) {
   return {Origin::online, number};
 }
 
-TEST(Segments, ThatBeginInTheMapFrameShareIt) {
+// One of keyframes 0 to 3, another of those from 4 on.
+Segments two_in_map_frame() {
   Segments segments;
   segments.begin_in_map_frame(0);
   segments.begin_in_map_frame(4);
+  return segments;
+}
+
+TEST(Segments, ThatBeginInTheMapFrameShareIt) {
+  const Segments segments = two_in_map_frame();
   EXPECT_EQ(segments.frame(online(3)), Segments::kMapFrame);
   EXPECT_EQ(segments.frame(online(4)), Segments::kMapFrame);
 }
@@ -37,9 +43,7 @@ TEST(Segments, JoinTheMapFrameTogetherWithAllThatSharesTheirs) {
 }
 
 TEST(Segments, OfWhichThePresentOneLeavesTheMapFrameAlone) {
-  Segments segments;
-  segments.begin_in_map_frame(0);
-  segments.begin_in_map_frame(4);
+  Segments segments = two_in_map_frame();
   segments.leave_map_frame();
   EXPECT_EQ(segments.frame(online(3)), Segments::kMapFrame);
   EXPECT_NE(segments.frame(online(4)), Segments::kMapFrame);

@@ -53,17 +53,21 @@ Frame without_features(const Frame& frame) {
   return {frame.time, std::make_shared<const Features>()};
 }
 
-// Every so manieth of its features.
-Frame thinned(const Frame& frame, int step = 3) {
+Frame frame_of(Timestamp time, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors) {
+  const Rig rig = simulated_rig();
+  return {time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), std::move(descriptors),
+                                                 std::vector<Patch>{})};
+}
+
+// A third of its features.
+Frame thinned(const Frame& frame) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
-  for (int i = 0; i < frame.features->size(); i += step) {
+  for (int i = 0; i < frame.features->size(); i += 3) {
     keypoints.push_back(frame.features->keypoint(i));
     descriptors.push_back(frame.features->descriptor(i));
   }
-  const Rig rig = simulated_rig();
-  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
-                                                       std::move(descriptors), std::vector<Patch>{})};
+  return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
 }
 
 // What both see, as if one place looked like two.
@@ -72,9 +76,7 @@ Frame overlaid(const Frame& frame, const Frame& other) {
   std::vector<Descriptor> descriptors = frame.features->descriptors();
   std::ranges::copy(other.features->keypoints(), std::back_inserter(keypoints));
   std::ranges::copy(other.features->descriptors(), std::back_inserter(descriptors));
-  const Rig rig = simulated_rig();
-  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
-                                                       std::move(descriptors), std::vector<Patch>{})};
+  return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
 }
 
 // The frames of other, at the times of mission.
