@@ -225,7 +225,7 @@ class BenchmarkRunner {
                  align_to_truth(run.final, Scale::fixed, source.truth),
                  run.wall_seconds};
     StoredMap stored;
-    stored.recordings.push_back(describe_source(source.folder, *recording));
+    stored.recordings.push_back(describe_source(source.folder, *recording, run.calibration));
     stored.map = std::move(run.map);
     save_for_use(std::move(stored), vocabulary_, "", made.file);
     write_trajectories(run, file_name_of(name) + ".map", 0);

@@ -1,5 +1,6 @@
 #include "byre/cli/inspect_report.h"
 
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/register_report.h"
 
@@ -112,6 +113,9 @@ std::string origin_text(const StoredMap& stored, const MapCounts& counts) {
   text += wide_row("scale", std::string(name_of(stored.scale)));
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
     text += wide_row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
+    if (!stored.recordings[i].refined) continue;
+    text += wide_row("calibration", describe_calibration(*stored.recordings[i].refined)) +
+            calibration_table(*stored.recordings[i].refined);
   }
   for (const auto& [key, note] : stored.notes) text += wide_row(key, note);
   if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
@@ -157,7 +161,8 @@ Json to_json(const SourceRecording& recording, int keyframes) {
           {"keyframes", keyframes},
           {"first_time_ns", recording.first_time.count()},
           {"last_time_ns", recording.last_time.count()},
-          {"stereo", recording.calibration.right.has_value()}};
+          {"stereo", recording.calibration.right.has_value()},
+          {"refined_calibration", recording.refined ? calibration_json(*recording.refined) : Json()}};
 }
 
 template <typename Size>

@@ -1,3 +1,4 @@
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
 #include "byre/cli/register_report.h"
@@ -156,6 +157,7 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
                {"counts", counts_json(run)},
                {"extension", extension_json(run, protocol)},
+               {"calibration", run.calibration ? calibration_json(*run.calibration) : Json()},
                {"finishing", run.finishing ? to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},

@@ -1,5 +1,6 @@
 #include "byre/cli/map_report.h"
 
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/map_statistics.h"
 #include "byre/cli/stored_map.h"
@@ -124,7 +125,7 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 }
 
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
-  if (run.finishing) return to_text(*run.finishing);
+  if (run.finishing) return calibration_row(run.calibration) + to_text(*run.finishing);
   if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
   if (run.causal.empty()) return row("finishing", "left out, as there is no map");
   return row("finishing", "left out; \"byre refine\" does it");

@@ -16,6 +16,10 @@ namespace byre {
 // Throws InputError naming the field for a model that is not supported, and for what is missing or makes no sense.
 Calibration read_calibration(const std::filesystem::path& path);
 
+// The text of such a file, as Kalibr has it: read again, it gives the same calibration to the last digit but for
+// rotations, which are rounded as matrices are.
+std::string write_calibration(const Calibration& calibration);
+
 // Throws InputError with this place when the cameras of a pair sit in one place, so that no depth can be seen.
 void require_baseline(const StereoPartner& partner, const std::string& place);
 

@@ -162,6 +162,7 @@ Extraction Extractor::extract(const ImageFrame& images) {
       if (!matches[i]) continue;
       described.keypoints[i].disparity = matches[i]->disparity;
       described.keypoints[i].disparity_sigma = matches[i]->sigma;
+      described.keypoints[i].row_offset = matches[i]->row_offset;
     }
   }
   Extraction extraction;

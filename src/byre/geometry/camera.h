@@ -30,11 +30,15 @@ struct Camera {
   std::optional<Eigen::Vector3d> bearing(const Eigen::Vector2d& pixel) const;
 
   bool contains(const Eigen::Vector2d& pixel) const;  // inside the image, borders included
+
+  bool operator==(const Camera&) const = default;
 };
 
 struct StereoPartner {
   Camera camera;
   Pose right_from_left;
+
+  bool operator==(const StereoPartner&) const = default;
 };
 
 // What a recording says of its cameras, before any rectification.
@@ -42,6 +46,9 @@ struct Calibration {
   Camera left;
   std::optional<StereoPartner> right;
   Pose body_from_left;  // identity where the recording knows no body
+
+  // Of every number, to the last digit.
+  bool operator==(const Calibration&) const = default;
 };
 
 }  // namespace byre

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
+#include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 #include "byre/map/plan_registration.h"
 
@@ -18,10 +18,18 @@ namespace byre {
 // A recording that keyframes of a map come from.
 struct SourceRecording {
   std::string name;         // as the user called it
-  Calibration calibration;  // of the cameras that took its images, before rectification
+  Calibration calibration;  // of the cameras that took its images, before rectification; as it was given
   Timestamp first_time{};   // of its frames, whether keyframes or not
   Timestamp last_time{};
+  std::optional<RefinedCalibration> refined = {};  // by which its images are rectified, where there is one
+
+  const Calibration& present_calibration() const { return refined ? refined->calibration : calibration; }
 };
+
+// What recordings of a map have told of a calibration, the newest of those that were given the same for these cameras;
+// empty when there is none. The left camera may be the only one.
+std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
+                                                    const Calibration& given);
 
 // What the positions of a map are measured in.
 enum class MapScale : std::uint8_t {

@@ -19,8 +19,8 @@ class Stopwatch {
 
 Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary,
                  std::shared_ptr<const OfflineMap> offline)
-    : rig_(rig),
-      options_(options),
+    : options_(options),
+      rig_(rig),
       executor_(std::move(lanes.local)),
       global_(offline ? make_inline_executor() : std::move(lanes.global), options.global) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
@@ -40,13 +40,19 @@ void Session::continue_map(Map online) {
   state_ = State::lost;
 }
 
-FrameReport Session::process(const Frame& frame) {
+void Session::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
+  assert(anchored_.empty());
+  calibrator_.emplace(given, options);
+}
+
+FrameReport Session::process(const Frame& rectified) {
   FrameReport report;
-  report.time = frame.time;
-  if (!first_frame_) first_frame_ = frame.time;
+  report.time = rectified.time;
+  if (!first_frame_) first_frame_ = rectified.time;
   const Stopwatch mapping_before;
   const auto finished = executor_->collect();
   take_over_results(finished, report);
+  const Frame frame = calibrator_ ? calibrator_->corrected(rectified) : rectified;
   start_job();
   const double seconds_before = mapping_before.seconds();
 
@@ -82,6 +88,7 @@ FrameReport Session::process(const Frame& frame) {
 void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
   if (finished) take_over(*finished);
   global_.collect();
+  if (take_over_calibration()) report.events.push_back(SessionEvent::recalibrated);
   if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
   if (search_) {
     if (const auto found = search_->collect()) consider_place(*found, report);
@@ -117,6 +124,41 @@ void Session::follow(const LengthChanges& changes) {
     if (&pose == &anchored_.back()) velocity_.head<3>() *= change->second;
   }
   for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
+}
+
+// What is in flight was measured by the calibration before, so that it must be over.
+bool Session::take_over_calibration() {
+  if (!calibrator_ || !executor_->idle()) return false;
+  if (const auto refined = global_.take_calibration()) {
+    recalibrate(*refined);
+    if (global_.idle() && !mission_) global_.close_loops(online_, loops_);
+    return true;
+  }
+  if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return false;
+  calibrator_->note_attempt(online_.keyframe_count());
+  global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig_), calibrator_->options());
+  return false;
+}
+
+// The rectified camera turns, as it is made of the real ones in another way.
+void Session::recalibrate(const RefinedCalibration& refined) {
+  const int rig = online_.add_rig(rig_);
+  const RectifiedChange change = calibrator_->take_over(refined);
+  const Pose& turn = change.after_from_before();
+  const auto turn_of = [&](KeyframeId id) {
+    return id.origin == Origin::online && online_.rig_of(id) == rig ? turn : Pose{};
+  };
+  online_.recalibrate(rig, change);
+  rig_ = change.rig();
+  for (AnchoredPose& pose : anchored_) {
+    pose.camera_from_keyframe = turn * pose.camera_from_keyframe * inverse(turn_of(pose.keyframe));
+  }
+  for (LoopEdge& loop : loops_) {
+    loop.keyframe_from_place = turn_of(loop.keyframe) * loop.keyframe_from_place * inverse(turn_of(loop.place));
+  }
+  velocity_ = adjoint(turn) * velocity_;
+  loop_.reset();
+  local_points_of_.reset();
 }
 
 bool Session::correct_online() {
@@ -232,6 +274,12 @@ void Session::finish() {
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
   assert(places_);
+  if (calibrator_) {
+    const MapWindow whole = whole_map(map());
+    const auto refined =
+        self_calibrate(whole, calibrator_->state(), online_.add_rig(rig_), calibrator_->options(), hooks.should_stop);
+    if (refined) recalibrate(*refined);
+  }
   FinishReport report = byre::finish_map(online_, *places_, options, hooks);
   follow(report.length_changes);
   return report;

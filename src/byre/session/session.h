@@ -2,6 +2,7 @@
 
 #include "byre/features/features.h"
 #include "byre/map/map_view.h"
+#include "byre/session/calibrator.h"
 #include "byre/session/executor.h"
 #include "byre/session/global_lane.h"
 #include "byre/session/mission.h"
@@ -99,7 +100,16 @@ class Session {
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
   void continue_map(Map online);
 
-  FrameReport process(const Frame& frame);
+  // The calibration by which the frames are rectified may err, and is refined from what is seen. Call it before the
+  // first frame.
+  void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
+
+  // What is known of the calibration by now; empty until it was refined.
+  std::optional<RefinedCalibration> self_calibration() const {
+    return calibrator_ ? calibrator_->result() : std::nullopt;
+  }
+
+  FrameReport process(const Frame& rectified);
 
   // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
   void hurry() { global_.hurry(); }
@@ -153,6 +163,8 @@ class Session {
   void take_over(const FinishedJob& job);
   bool take_over_correction();
   void follow(const LengthChanges& changes);
+  void recalibrate(const RefinedCalibration& refined);
+  bool take_over_calibration();
   bool correct_online();
   void consider_place(const FoundPlace& found, FrameReport& report);
   bool is_refuted_by(const FoundPlace& found, const Agreement& agreement) const;
@@ -204,11 +216,11 @@ class Session {
   Pose predict(Timestamp time) const;
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_world) const;
 
-  // Constant after construction.
-  Rig rig_;
-  SessionOptions options_;
+  SessionOptions options_;  // constant after construction
 
   // Owned by the calling thread.
+  Rig rig_;
+  std::optional<Calibrator> calibrator_;
   std::unique_ptr<Executor> executor_;
   GlobalLane global_;
   std::optional<Mission> mission_;     // on an offline map

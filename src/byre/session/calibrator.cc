@@ -1,0 +1,22 @@
+#include "byre/session/calibrator.h"
+
+#include "byre/features/recalibrated.h"
+
+namespace byre {
+
+Frame Calibrator::corrected(const Frame& frame) const {
+  if (!from_given_) return frame;
+  Frame result = frame;
+  result.features = std::make_shared<const Features>(recalibrated(*frame.features, *from_given_));
+  return result;
+}
+
+RectifiedChange Calibrator::take_over(const RefinedCalibration& refined) {
+  const Calibration before = state_.present();
+  state_.change = refined.change;
+  result_ = refined;
+  from_given_.emplace(state_.given, refined.calibration);
+  return {before, refined.calibration};
+}
+
+}  // namespace byre
