@@ -7,6 +7,7 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/pose_frame.h"
 #include "byre/cli/progress.h"
+#include "byre/cli/scaled_recording.h"
 #include "byre/cli/stopwatch.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
@@ -96,6 +97,7 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
   if (is_recording(options.inputs.front())) {
     recording = open_recording(options.inputs.front(), options.range, options.open);
     if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+    recording = on_map(std::move(recording), stored);
   }
   const int frames = recording ? recording->size() : static_cast<int>(options.inputs.size());
   Progress progress(std::cerr, progress_style(options.quiet), frames);

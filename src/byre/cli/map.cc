@@ -57,10 +57,9 @@ void write_results(const MapOptions& options, const MapRun& run, const MapProtoc
   if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
 }
 
-// The map that is gone on with, out of which its record takes all but the map.
+// The map that is gone on with, out of which its record keeps all but the map.
 std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
   if (!options.extended) return std::nullopt;
-  record.about = load_for_mapping(*options.extended, *record.vocabulary);
   record.about.pose_source = PoseSource::slam;
   Map online = online_copy(record.about.map);
   record.about.map = Map(Origin::offline);
@@ -96,11 +95,16 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
   MapRecord record = record_of(options);
-  const auto [recording, is_metric, body_from_camera] =
+  auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, options.extended.has_value());
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  const SourceRecording source = describe_source(options.recording, *recording);
+  if (options.extended) {
+    record.about = load_for_mapping(*options.extended, *record.vocabulary);
+    recording = on_map(std::move(recording), record.about);
+  }
   std::optional<Map> extended = take_extended(options, record);
-  record.about.recordings.push_back(describe_source(options.recording, *recording));
+  record.about.recordings.push_back(source);
   record.about.scale = is_metric ? MapScale::metric : MapScale::unknown;
   MapProtocol protocol = protocol_of(options, record, *recording);
   protocol.is_metric = is_metric;

@@ -69,8 +69,15 @@ MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
   if (options.frame == PoseFrame::plan) {
     protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
   }
-  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary);
   return protocol;
+}
+
+// The map that is run on; the recording's cameras become what it knows them as.
+std::shared_ptr<const OfflineMap> load_map_for(ScaledRecording& opened, const fs::path& path,
+                                               const Vocabulary& vocabulary) {
+  StoredMap stored = load_for_mapping(path, vocabulary);
+  opened.recording = on_map(std::move(opened.recording), stored);
+  return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary);
 }
 
 // Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends.
@@ -107,12 +114,12 @@ Mission judge(const MapRun& run, const MapRunOptions& options, const std::option
   return mission;
 }
 
-void save_online_map(const Map& map, const RunOptions& options, const ScaledRecording& recording,
+void save_online_map(const Map& map, const RunOptions& options, const SourceRecording& source, bool is_metric,
                      const Vocabulary& vocabulary) {
   StoredMap stored;
   stored.map = map;
-  stored.recordings = {describe_source(options.recording, *recording.recording)};
-  stored.scale = recording.is_metric ? MapScale::metric : MapScale::unknown;
+  stored.recordings = {source};
+  stored.scale = is_metric ? MapScale::metric : MapScale::unknown;
   save_for_use(std::move(stored), vocabulary, "", *options.online_map);
 }
 
@@ -126,11 +133,13 @@ void write_results(const RunOptions& options, const MapRun& run, const MapProtoc
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
-  const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
+  ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
+  const SourceRecording source = describe_source(options.recording, *opened.recording);
   if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
   const std::optional<Truth> truth = load_truths(options);
   MapProtocol protocol = protocol_of(options, *opened.recording);
   protocol.is_metric = opened.is_metric;
+  if (options.map) protocol.options.offline = load_map_for(opened, *options.map, *protocol.options.vocabulary);
 
   limit_image_threads(1);
   const std::unique_ptr<RunViewer> viewer =
@@ -146,7 +155,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (options.online_map) {
-    save_online_map(run.map, options, opened, *protocol.options.vocabulary);
+    save_online_map(run.map, options, source, opened.is_metric, *protocol.options.vocabulary);
   }
   const ResourceUse resources = resources_used_so_far();
   const Mission mission = judge(run, protocol.options, truth, opened);

@@ -2,6 +2,7 @@
 
 #include "byre/dataset/recording.h"
 #include "byre/geometry/trajectory.h"
+#include "byre/map/map_file.h"
 
 #include <filesystem>
 #include <memory>
@@ -18,6 +19,9 @@ struct ScaledRecording {
   // The path of what moves along the run's poses.
   Trajectory path_of(const Trajectory& world_from_body) const;
 };
+
+// The same frames, of cameras as a map that they are run on knows them: see calibration_on.
+std::unique_ptr<Recording> on_map(std::unique_ptr<Recording> recording, const StoredMap& stored);
 
 // Throws InputError as open_recording does. A map that is there tells one camera the scale.
 ScaledRecording open_scaled(const std::filesystem::path& path, const FrameRange& range, const OpenOptions& options,
