@@ -43,6 +43,7 @@ std::string left_as_given(const std::vector<Row>& rows) {
 }  // namespace
 
 std::string describe_calibration(const RefinedCalibration& refined) {
+  if (refined.keyframes == 0) return "as given, but for the length of the baseline";
   const std::string open = left_as_given(rows_of(refined));
   return formatted("refined from %d keyframes, by %.2f px on the whole", refined.keyframes, refined.shift) +
          (open.empty() ? "" : "; left as given: " + open);
@@ -54,6 +55,7 @@ std::string calibration_row(const std::optional<RefinedCalibration>& refined) {
 
 std::string calibration_table(const RefinedCalibration& refined) {
   std::string text;
+  if (refined.keyframes == 0) return text;
   for (const Row& row : rows_of(refined)) {
     text += formatted("  %-28s %+11.5f %-3s  known to %.5f before, %.5f now%s\n",
                       std::string(row.parameter.name).c_str(), row.change, std::string(row.parameter.unit).c_str(),

@@ -2,6 +2,7 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/input/input_error.h"
+#include "byre/map/scaled_copy.h"
 
 #include <algorithm>
 #include <charconv>
@@ -100,10 +101,8 @@ ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, c
     throw InputError("--between " + first + " " + second, "is one and the same place", "name two that are apart");
   }
   scaled.factor = metres / scaled.distance;
-  scaled.stored = stored;
-  scaled.stored.map = scaled_copy(stored.map, scaled.factor);
+  scaled.stored = scaled_copy(stored, scaled.factor);
   scaled.stored.scale = MapScale::metric;
-  if (scaled.stored.plan) scaled.stored.plan->plan_from_map.scale /= scaled.factor;
   return scaled;
 }
 

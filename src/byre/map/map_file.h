@@ -60,9 +60,9 @@ struct StoredMap {
 // stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
-// The same map with all lengths so many times as long: one camera alone tells them but for such a factor, which is
-// positive. Rigs stay as they are. Precondition: the rigs have no baselines and, as their poses are those of the
-// cameras, no arms to a body.
+// The same map with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
+// each image has every point where it was, disparity included. Arms to a body stay, as they were measured.
+// Precondition: ids without gaps, and a factor that is positive.
 Map scaled_copy(const Map& map, double factor);
 
 // All faults of find_faults(Map), and what a stored map must hold beyond them.

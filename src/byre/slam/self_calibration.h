@@ -10,7 +10,7 @@ namespace byre {
 
 struct SelfCalibrationOptions {
   int max_keyframes = 250;    // those that take part: the time grows with their cube
-  int min_keyframes = 15;     // fewer do not tell
+  int min_keyframes = 6;      // fewer do not tell
   double prior_sigmas = 2.0;  // how far off a calibration is taken to be at first, in sigmas of a good one
   // A direction among the parameters moves only when the images tell it this much better than was known before.
   double min_gain = 2.0;
