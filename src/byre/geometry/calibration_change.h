@@ -43,7 +43,7 @@ struct RefinedCalibration {
   CalibrationVector sigma_after = CalibrationVector::Zero();
   int keyframes = 0;     // that were looked at
   int observations = 0;  // of points, by those
-  double shift = 0.0;    // pixels, root mean square by which the change moves what is seen; disparity too
+  double shift = 0.0;    // pixels, root mean square by which the change moves what is seen, disparity too, turns apart
 };
 
 }  // namespace byre

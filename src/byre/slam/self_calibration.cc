@@ -152,13 +152,19 @@ void take_determined(const Knowledge& posterior, const SelfCalibrationOptions& o
   result.sigma_before.setConstant(options.prior_sigmas);
 }
 
+// Root mean square by which the change moves what is seen, but for what a turn of the camera would do as well: the mean
+// of u and of v.
 double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
                    const CalibrationVector& change) {
-  double sum = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum_of_squares = 0.0;
   for (const BundleObservation& observation : problem.observations) {
-    sum += (sensitivity.at(observation.measured).topRows<3>() * change).squaredNorm();
+    const Eigen::Vector3d shift = sensitivity.at(observation.measured).topRows<3>() * change;
+    sum += shift;
+    sum_of_squares += shift.squaredNorm();
   }
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, problem.observations.size())));
+  const auto count = static_cast<double>(std::max<std::size_t>(1, problem.observations.size()));
+  return std::sqrt(std::max(0.0, sum_of_squares / count - (sum.head<2>() / count).squaredNorm()));
 }
 
 }  // namespace
