@@ -52,7 +52,7 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
 
 CameraImperfection asked_for(const ImperfectionOptions& options) {
   constexpr double kSecondsPerMillisecond = 1e-3;
-  CameraImperfection imperfection = imperfection_of(options.condition);
+  CameraImperfection imperfection = imperfection_of(options.condition.value_or(CameraCondition::exact));
   replace(imperfection.calibration_level, options.calibration_level);
   replace(imperfection.calibration_seed, options.calibration_seed);
   replace(imperfection.rolling_shutter_s, options.rolling_shutter_ms, kSecondsPerMillisecond);

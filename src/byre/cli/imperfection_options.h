@@ -10,7 +10,7 @@ namespace byre::cli {
 
 // What a user asks of a simulated camera: a condition, and what is to differ from it.
 struct ImperfectionOptions {
-  CameraCondition condition = CameraCondition::exact;
+  std::optional<CameraCondition> condition{};  // exact where none is given
   std::optional<double> calibration_level{};
   std::optional<std::uint64_t> calibration_seed{};
   std::optional<double> rolling_shutter_ms{};
