@@ -118,11 +118,9 @@ constexpr Imperfection kOtherError{CameraCondition::good, 2};
 // Not, as everywhere else, with one and the same good camera for map and mission.
 std::vector<MissionCase> calibrated_otherwise() {
   const MissionCase undisturbed = with_demand(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
-  const MissionCase blank_wall = in_hall("blank_wall", frames(150, 270), degrade({1.5, 3.5}, blank_close_up()));
   MissionCase recalibrated = named(undisturbed, "hall_recalibrated");
   recalibrated.imperfection = kOtherError;
-  return {named(flown_with(undisturbed, kExact), "hall_undisturbed_exact"),
-          named(flown_with(blank_wall, kExact), "hall_blank_wall_exact"), recalibrated};
+  return {named(flown_with(undisturbed, kExact), "hall_undisturbed_exact"), recalibrated};
 }
 
 }  // namespace
