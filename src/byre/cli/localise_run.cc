@@ -19,7 +19,10 @@ class Finder {
   Finder(const SearchableMap& map, const Calibration& calibration) : map_(map), extractor_(calibration, {}) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
-    if (!map_.is_metric) images.right.reset();
+    if (!map_.is_metric) {
+      images.right.reset();
+      images.depth.reset();
+    }
     LocalisedFrame result;
     result.name = std::move(name);
     result.time = images.time;

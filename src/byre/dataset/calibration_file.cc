@@ -24,6 +24,15 @@ Calibration kalibr_chain(const CalibrationFields& chain) {
   return calibration;
 }
 
+Camera depth_lens(const CalibrationFields& fields) {
+  if (fields.has("camera_matrix")) return read_opencv_camera(fields);
+  return read_camera_fields(fields, fields.has("distortion_coeffs") ? "distortion_coeffs" : "distortion_coefficients");
+}
+
+constexpr const char* kDepthScale = "depth_scale";
+constexpr const char* kDepthSigma = "depth_sigma";
+constexpr const char* kDepthCamera = "depth_camera";
+
 }  // namespace
 
 Calibration read_calibration(const fs::path& path) {
@@ -33,6 +42,23 @@ Calibration read_calibration(const fs::path& path) {
   if (fields.has("intrinsics")) return one_camera(read_camera_fields(fields, "distortion_coefficients"), fields);
   throw InputError(path.string(), "is no calibration that byre knows",
                    "looked for intrinsics (EuRoC sensor.yaml), camera_matrix (OpenCV, ROS) and cam0 (Kalibr camchain)");
+}
+
+DepthCamera read_depth_camera(const fs::path& path) {
+  const CalibrationFields fields = CalibrationFields::load(path);
+  DepthCamera depth;
+  if (fields.has(kDepthScale)) depth.units_per_metre = fields.positive(kDepthScale);
+  if (fields.has(kDepthSigma)) depth.sigma_at_one_metre = fields.positive(kDepthSigma);
+  if (!fields.has(kDepthCamera)) return depth;
+  const CalibrationFields own = fields.group(kDepthCamera);
+  depth.camera = depth_lens(own);
+  depth.left_from_depth = own.pose("colour_from_depth");
+  return depth;
+}
+
+bool names_depth_camera(const fs::path& path) {
+  const CalibrationFields fields = CalibrationFields::load(path);
+  return fields.has(kDepthScale) || fields.has(kDepthSigma) || fields.has(kDepthCamera);
 }
 
 void require_baseline(const StereoPartner& partner, const std::string& place) {

@@ -91,6 +91,11 @@ bool is_rectified(const Calibration& calibration) {
          right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
 }
 
+double baseline_of(const Calibration& calibration) {
+  if (calibration.right) return calibration.right->right_from_left.translation.norm();
+  return calibration.depth ? calibration.depth->baseline : 0.0;
+}
+
 // The value between two that is nearest to zero. Not std::clamp: rounding may swap the bounds of a single value.
 double nearest_to_axis(double low, double high) {
   return std::min(std::max(0.0, low), high);
@@ -147,7 +152,7 @@ Rectifier::Maps Rectifier::make_maps(const Camera& camera, const Eigen::Quaterni
 
 Rectifier::Rectifier(const Calibration& calibration) {
   const Camera& left = calibration.left;
-  const double baseline = calibration.right ? calibration.right->right_from_left.translation.norm() : 0.0;
+  const double baseline = baseline_of(calibration);
   if (is_rectified(calibration)) {
     rig_ = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};
     return;
