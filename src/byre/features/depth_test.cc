@@ -134,7 +134,7 @@ TEST(DepthReader, NeverMixesTheSurfacesAtAnEdge) {
     if (u < 79.5) {
       ASSERT_TRUE(reading) << u;
       EXPECT_NEAR(depth_of(*reading, calibration), 1.2, 1e-5) << u;
-    } else if (u > 82.5) {
+    } else if (u >= 81.5) {
       ASSERT_TRUE(reading) << u;
       EXPECT_NEAR(depth_of(*reading, calibration), 3.0, 1e-5) << u;
     } else if (reading) {

@@ -21,7 +21,7 @@ struct ExtractOptions {
   int fast_threshold = 20;     // grey values
   int min_fast_threshold = 7;  // used where the image is dull
   Refinement refinement = Refinement::all;
-  DepthOptions depth;
+  DepthOptions depth{};
 };
 
 // Wall time of the stages of one extraction, seconds.
