@@ -1,8 +1,8 @@
 #include "byre/features/depth.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Cholesky>
 
