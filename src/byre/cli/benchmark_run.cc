@@ -76,7 +76,7 @@ Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
 void require_metric(const Source& source) {
   if (source.open_frames(false).is_metric) return;
   throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
-                   "make the map of a stereo recording, by both cameras");
+                   "make the map of a stereo recording, by both cameras, or of one with depth");
 }
 
 Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkProtocol& protocol, const fs::path& data) {

@@ -25,7 +25,10 @@ class Finder {
       : map_(map), extractor_(best_calibration(map.recordings, given), {}) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
-    if (!map_.is_metric) images.right.reset();
+    if (!map_.is_metric) {
+      images.right.reset();
+      images.depth.reset();
+    }
     LocalisedFrame result;
     result.name = std::move(name);
     result.time = images.time;

@@ -95,6 +95,7 @@ Json counts_json(const MapRun& run) {
           {"coverage", counts.coverage()},
           {"frames_unreadable", counts.unreadable},
           {"frames_without_right_image", counts.without_right_image},
+          {"frames_with_depth_image", counts.with_depth_image},
           {"keyframes_made", counts.keyframes},
           {"keyframes_left", run.map.keyframe_count()},
           {"points", run.map.point_count()},
@@ -205,6 +206,7 @@ Json frame_json(const MappedFrame& frame, const PoseError* error) {
   json["loop_found"] = report.has(SessionEvent::loop_found);
   json["map_corrected"] = report.has(SessionEvent::map_corrected);
   json["has_right_image"] = frame.has_right;
+  json["has_depth_image"] = frame.has_depth;
   json["keyframe"] = report.keyframe_added;
   json["features"] = report.features;
   json["expected"] = report.expected_points;

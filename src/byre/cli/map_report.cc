@@ -73,8 +73,11 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
 
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
   std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
-  if (protocol.camera != CameraChoice::stereo)
+  if (protocol.camera == CameraChoice::rgbd) {
+    text += formatted(", %d of them with depth", count_frames(run.frames).with_depth_image);
+  } else if (protocol.camera != CameraChoice::stereo) {
     text += formatted(" of the %s camera", to_string(protocol.camera).data());
+  }
   const auto frames = static_cast<int>(run.frames.size());
   if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
   return text;

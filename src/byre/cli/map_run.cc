@@ -81,6 +81,7 @@ class FrameThread {
     MappedFrame frame;
     frame.time = images.time;
     frame.has_right = images.right.has_value();
+    frame.has_depth = images.depth.has_value();
     frame.report = report;
     frame.seconds.rectify = extraction.times.rectify;
     frame.seconds.extract = extraction.times.extract;

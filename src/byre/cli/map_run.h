@@ -50,7 +50,7 @@ struct StageSeconds {
   double decode = 0.0;  // ahead, in a thread of its own; not in total
   double rectify = 0.0;
   double extract = 0.0;
-  double stereo = 0.0;
+  double stereo = 0.0;  // or reading depths
   double track = 0.0;
   double map = 0.0;         // windows, deltas, new points, and jobs where they run on this thread
   double map_submit = 0.0;  // of map: handing jobs to the executor, so the whole job where it runs on this thread
@@ -60,6 +60,7 @@ struct StageSeconds {
 struct MappedFrame {
   Timestamp time{};
   bool has_right = false;
+  bool has_depth = false;
   std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
   StageSeconds seconds;
   int keyframes = 0;       // of the map after it

@@ -93,7 +93,7 @@ Eigen::Vector3d find_place(const StoredMap& stored, const std::string& text) {
 ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, const std::string& second,
                             double metres) {
   if (std::ranges::any_of(stored.map.rigs(), &Rig::is_stereo)) {
-    throw InputError("the map", "was made by a stereo camera, whose baseline tells the scale", "use it as it is");
+    throw InputError("the map", "was made by a stereo or depth camera, which tells the scale", "use it as it is");
   }
   ScaledMap scaled;
   scaled.distance = (find_place(stored, first) - find_place(stored, second)).norm();

@@ -66,6 +66,25 @@ void write_pose(YAML::Emitter& yaml, const char* name, const Pose& pose) {
   yaml << YAML::EndSeq;
 }
 
+Camera depth_lens(const CalibrationFields& fields) {
+  if (fields.has("camera_matrix")) return read_opencv_camera(fields);
+  return read_camera_fields(fields, fields.has("distortion_coeffs") ? "distortion_coeffs" : "distortion_coefficients");
+}
+
+constexpr const char* kDepthScale = "depth_scale";
+constexpr const char* kDepthSigma = "depth_sigma";
+constexpr const char* kDepthCamera = "depth_camera";
+
+void write_depth_camera(YAML::Emitter& yaml, const DepthCamera& depth) {
+  yaml << YAML::Key << kDepthScale << YAML::Value << depth.units_per_metre;
+  yaml << YAML::Key << kDepthSigma << YAML::Value << depth.sigma_at_one_metre;
+  if (!depth.camera) return;
+  yaml << YAML::Key << kDepthCamera << YAML::Value << YAML::BeginMap;
+  write_camera(yaml, *depth.camera);
+  write_pose(yaml, "colour_from_depth", depth.left_from_depth);
+  yaml << YAML::EndMap;
+}
+
 }  // namespace
 
 Calibration read_calibration(const fs::path& path) {
@@ -90,8 +109,26 @@ std::string write_calibration(const Calibration& calibration) {
     write_pose(yaml, "T_cn_cnm1", calibration.right->right_from_left);
     yaml << YAML::EndMap;
   }
+  if (calibration.depth) write_depth_camera(yaml, *calibration.depth);
   yaml << YAML::EndMap;
   return std::string(yaml.c_str()) + "\n";
+}
+
+DepthCamera read_depth_camera(const fs::path& path) {
+  const CalibrationFields fields = CalibrationFields::load(path);
+  DepthCamera depth;
+  if (fields.has(kDepthScale)) depth.units_per_metre = fields.positive(kDepthScale);
+  if (fields.has(kDepthSigma)) depth.sigma_at_one_metre = fields.positive(kDepthSigma);
+  if (!fields.has(kDepthCamera)) return depth;
+  const CalibrationFields own = fields.group(kDepthCamera);
+  depth.camera = depth_lens(own);
+  depth.left_from_depth = own.pose("colour_from_depth");
+  return depth;
+}
+
+bool names_depth_camera(const fs::path& path) {
+  const CalibrationFields fields = CalibrationFields::load(path);
+  return fields.has(kDepthScale) || fields.has(kDepthSigma) || fields.has(kDepthCamera);
 }
 
 void require_baseline(const StereoPartner& partner, const std::string& place) {

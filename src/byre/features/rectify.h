@@ -20,7 +20,7 @@ class Rectifier {
 
   // Images that are rectified already are handed on without a copy.
   cv::Mat left(const cv::Mat& image) const { return left_.apply(image); }
-  cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: rig().is_stereo()
+  cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: there is a right camera
 
  private:
   struct Maps {

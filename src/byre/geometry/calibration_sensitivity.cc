@@ -86,6 +86,7 @@ CalibrationSensitivity::CalibrationSensitivity(const Calibration& given)
 
 CalibrationSensitivity::CalibrationSensitivity(const Calibration& given, const Rectification& rectification)
     : rig_(rectification.rig),
+      has_right_(given.right.has_value()),
       left_(rig_.width, rig_.height, left_slopes(given, rectification)),
       right_(rig_.width, rig_.height, right_slopes(given, rectification)),
       centre_by_turn_(centre_slopes(given, rectification)) {}
@@ -95,7 +96,7 @@ CalibrationSensitivity::Jacobian CalibrationSensitivity::at(const StereoPixel& p
   const Eigen::Vector2d in_left = pixel.head<2>();
   const ByCamera by_left = left_.at(in_left);
   jacobian.block<2, kParametersPerCamera>(0, kLeftCamera) = by_left;
-  if (!(rig_.is_stereo() && pixel.z() > 0.0)) return jacobian;
+  if (!has_right_ || !(pixel.z() > 0.0)) return jacobian;
   const Eigen::Vector2d in_right(pixel.x() - pixel.z(), pixel.y());
   ByRightCamera by_right = right_.at(in_right);
   // A point at depth z moves in the image by -focal / z times the centre's motion across the ray.

@@ -29,6 +29,7 @@ class CalibrationSensitivity {
   using ByRightCamera = Eigen::Matrix<double, 2, kCalibrationParameters - kRightCamera>;
 
   Rig rig_;
+  bool has_right_ = false;  // else a disparity is a depth, which owes the cameras nothing
   PixelGrid<ByCamera> left_;
   PixelGrid<ByRightCamera> right_;              // of points far away
   Eigen::Matrix<double, 3, 2> centre_by_turn_;  // of the right camera, in baselines, as the rectified left one sees it

@@ -89,6 +89,11 @@ bool is_rectified(const Calibration& calibration) {
          right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
 }
 
+double baseline_of(const Calibration& calibration) {
+  if (calibration.right) return calibration.right->right_from_left.translation.norm();
+  return calibration.depth ? calibration.depth->baseline : 0.0;
+}
+
 // The value between two that is nearest to zero. Not std::clamp: rounding may swap the bounds of a single value.
 double nearest_to_axis(double low, double high) {
   return std::min(std::max(0.0, low), high);
@@ -123,7 +128,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
-  const double baseline = calibration.right ? calibration.right->right_from_left.translation.norm() : 0.0;
+  const double baseline = baseline_of(calibration);
   Rectification result;
   if (is_rectified(calibration)) {
     result.rig = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};

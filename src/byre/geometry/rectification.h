@@ -6,7 +6,7 @@
 namespace byre {
 
 // How a calibrated camera or pair becomes an ideal rig: no distortion, one focal length, rows aligned. The rig's field
-// of view is the largest in which every pixel of both images is defined.
+// of view is the largest in which every pixel of both images is defined. A depth camera gives the rig its baseline.
 struct Rectification {
   Rig rig;
   Eigen::Quaterniond left_from_rectified = Eigen::Quaterniond::Identity();

@@ -35,6 +35,8 @@ RectifiedChange::RectifiedChange(const Calibration& before, const Calibration& a
 RectifiedChange::RectifiedChange(const Calibration& before, const Rectification& rectified_before,
                                  const Calibration& after, const Rectification& rectified_after)
     : rig_(rectified_after.rig),
+      has_right_(before.right.has_value()),
+      zoom_(rectified_after.rig.focal / rectified_before.rig.focal),
       after_from_before_{rectified_after.left_from_rectified.conjugate() * rectified_before.left_from_rectified,
                          Eigen::Vector3d::Zero()},
       left_(displacements({before.left, rectified_before.left_from_rectified, rectified_before.rig},
@@ -47,6 +49,10 @@ RectifiedChange::Corner RectifiedChange::operator()(const Corner& before) const 
   const Eigen::Vector2d in_left = before.pixel.head<2>();
   after.pixel.head<2>() += left_.at(in_left);
   if (!(before.pixel.z() > 0.0)) return after;
+  if (!has_right_) {
+    after.pixel.z() *= zoom_;
+    return after;
+  }
   const Eigen::Vector2d in_right(in_left.x() - before.pixel.z(), in_left.y() + before.row_offset);
   const Eigen::Vector2d moved_in_right = in_right + right_.at(in_right);
   after.pixel.z() = after.pixel.x() - moved_in_right.x();

@@ -27,6 +27,8 @@ class RectifiedChange {
                   const Rectification& rectified_after);
 
   Rig rig_;
+  bool has_right_ = false;  // else a disparity is a depth, which stays
+  double zoom_ = 1.0;       // focal length after, by that before
   Pose after_from_before_;
   PixelGrid<Eigen::Vector2d> left_;  // displacement, pixels
   PixelGrid<Eigen::Vector2d> right_;

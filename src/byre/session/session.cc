@@ -1,5 +1,6 @@
 #include "byre/session/session.h"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <utility>
@@ -14,6 +15,10 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+bool has_disparities(const Frame& frame) {
+  return std::ranges::any_of(frame.features->keypoints(), &Keypoint::has_disparity);
+}
 
 }  // namespace
 
@@ -62,6 +67,7 @@ FrameReport Session::process(const Frame& rectified) {
 
   const Stopwatch mapping_after;
   ++frames_since_keyframe_;
+  frames_without_depth_ = rig_.is_stereo() && !has_disparities(frame) ? frames_without_depth_ + 1 : 0;
   report.keyframe_added = located.is_new_segment;
   report.start_failure = located.start_failure;
   if (located.is_new_segment) {
@@ -234,6 +240,7 @@ KeyframeEvidence Session::keyframe_evidence(const HybridTrack& track) const {
   KeyframeEvidence evidence;
   evidence.fresh_inliers = fresh_inliers_;
   evidence.frames_since_last = frames_since_keyframe_;
+  evidence.without_depth = frames_without_depth_;
   evidence.pending = static_cast<int>(pending_.size());
   evidence.offline_inliers = track.offline_inliers;
   const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(track.tracked.reference));

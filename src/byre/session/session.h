@@ -251,6 +251,7 @@ class Session {
   std::vector<PointId> local_points_;           // online ones around a keyframe,
   std::optional<KeyframeId> local_points_of_;   // this one; empty when the map has changed since
   int frames_since_keyframe_ = 0;
+  int frames_without_depth_ = 0;         // since one had disparities, of a rig that gives them
   int last_inliers_ = 0;                 // in the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe
   std::vector<SeenPoint> seen_;          // in the last frame
