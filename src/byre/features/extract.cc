@@ -49,6 +49,7 @@ void take_over(const std::vector<std::optional<Measured>>& measured, std::vector
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
     keypoints[i].disparity_sigma = measured[i]->sigma;
+    keypoints[i].row_offset = measured[i]->row_offset;
   }
 }
 
