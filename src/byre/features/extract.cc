@@ -49,7 +49,6 @@ void take_over(const std::vector<std::optional<Measured>>& measured, std::vector
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
     keypoints[i].disparity_sigma = measured[i]->sigma;
-    keypoints[i].row_offset = measured[i]->row_offset;
   }
 }
 
@@ -139,7 +138,11 @@ void Extractor::State::match_right(const cv::Mat& rectified, std::vector<Keypoin
   build_pyramid(rectified, right);
   StereoOptions stereo_options;
   stereo_options.refine = options.refinement != Refinement::none;
-  take_over(match_stereo(left, right, rectifier.rig(), keypoints, stereo_options), keypoints);
+  const auto matches = match_stereo(left, right, rectifier.rig(), keypoints, stereo_options);
+  take_over(matches, keypoints);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (matches[i]) keypoints[i].row_offset = matches[i]->row_offset;
+  }
 }
 
 void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
