@@ -33,8 +33,7 @@ class FrameThread {
       : extractor_(calibration, options.extract),
         session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
                  options.vocabulary, options.offline) {
-    if (options.self_calibrate && !options.offline && !before)
-      session_.refine_calibration(calibration, options.self_calibration);
+    if (options.self_calibrate && !before) session_.refine_calibration(calibration, options.self_calibration);
     if (before) session_.continue_map(std::move(*before));
   }
 
@@ -140,12 +139,18 @@ std::string_view name_of(OfflinePolicy policy) {
   return "";
 }
 
+// A calibration that the map has refined is as good as it gets.
+MapRunOptions refining(MapRunOptions options, bool is_to_refine) {
+  options.self_calibrate &= is_to_refine;
+  return options;
+}
+
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
   const Stopwatch watch;
   const Calibration given = options.calibration.value_or(recording.calibration());
   const auto known = options.offline ? known_calibration(options.offline->recordings(), given) : std::nullopt;
-  FrameThread thread(known ? known->calibration : given, options, std::move(before));
+  FrameThread thread(known ? known->calibration : given, refining(options, !known), std::move(before));
   DecodeAhead decoder(recording);
   LiveClock clock;
   MapRun run;

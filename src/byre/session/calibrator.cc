@@ -2,6 +2,8 @@
 
 #include "byre/features/recalibrated.h"
 
+#include <utility>
+
 namespace byre {
 
 Frame Calibrator::corrected(const Frame& frame) const {
@@ -11,11 +13,15 @@ Frame Calibrator::corrected(const Frame& frame) const {
   return result;
 }
 
-RectifiedChange Calibrator::take_over(const RefinedCalibration& refined) {
-  const Calibration before = state_.present();
+void Calibrator::take_over(const RefinedCalibration& refined, RectifiedChange from_given) {
   state_.change = refined.change;
   result_ = refined;
-  from_given_.emplace(state_.given, refined.calibration);
+  from_given_.emplace(std::move(from_given));
+}
+
+RectifiedChange Calibrator::take_over(const RefinedCalibration& refined) {
+  const Calibration before = state_.present();
+  take_over(refined, {state_.given, refined.calibration});
   return {before, refined.calibration};
 }
 

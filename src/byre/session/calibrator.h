@@ -29,7 +29,9 @@ class Calibrator {
   bool is_due(int keyframes) const { return keyframes >= next_keyframes_; }
   void note_attempt(int keyframes) { next_keyframes_ = 2 * keyframes; }
 
-  // From now on that is the present calibration. Returns how what was seen by the one before changes.
+  // From now on that is the present calibration, and from_given how features of the one given change.
+  void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
+  // The same. Returns how what was seen by the one before changes.
   RectifiedChange take_over(const RefinedCalibration& refined);
 
  private:

@@ -32,6 +32,7 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
   if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
   mission_.emplace(offline, options.mission);
+  calibration_executor_ = std::move(lanes.calibration);
   search_.emplace(std::move(lanes.global), offline, options.relocalise);
 }
 
@@ -47,7 +48,21 @@ void Session::continue_map(Map online) {
 
 void Session::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
   assert(anchored_.empty());
-  calibrator_.emplace(given, options);
+  if (mission_) {
+    mission_calibrator_.emplace(given, CalibrationOnMapOptions{}, std::move(calibration_executor_));
+  } else {
+    calibrator_.emplace(given, options);
+  }
+}
+
+std::optional<RefinedCalibration> Session::self_calibration() const {
+  if (calibrator_) return calibrator_->result();
+  return mission_calibrator_ ? mission_calibrator_->result() : std::nullopt;
+}
+
+Frame Session::corrected(const Frame& rectified) const {
+  if (calibrator_) return calibrator_->corrected(rectified);
+  return mission_calibrator_ ? mission_calibrator_->corrected(rectified) : rectified;
 }
 
 FrameReport Session::process(const Frame& rectified) {
@@ -57,7 +72,7 @@ FrameReport Session::process(const Frame& rectified) {
   const Stopwatch mapping_before;
   const auto finished = executor_->collect();
   take_over_results(finished, report);
-  const Frame frame = calibrator_ ? calibrator_->corrected(rectified) : rectified;
+  const Frame frame = corrected(rectified);
   start_job();
   const double seconds_before = mapping_before.seconds();
 
@@ -94,7 +109,7 @@ FrameReport Session::process(const Frame& rectified) {
 void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
   if (finished) take_over(*finished);
   global_.collect();
-  if (take_over_calibration()) report.events.push_back(SessionEvent::recalibrated);
+  if (take_over_calibration() || switch_camera()) report.events.push_back(SessionEvent::recalibrated);
   if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
   if (search_) {
     if (const auto found = search_->collect()) consider_place(*found, report);
@@ -165,6 +180,18 @@ void Session::recalibrate(const RefinedCalibration& refined) {
   velocity_ = adjoint(turn) * velocity_;
   loop_.reset();
   local_points_of_.reset();
+}
+
+// From here on frames are of another rig; keyframes stay as they were seen.
+bool Session::switch_camera() {
+  const auto change = mission_calibrator_ ? mission_calibrator_->collect() : std::nullopt;
+  if (!change) return false;
+  rig_ = change->rig;
+  for (AnchoredPose& pose : anchored_)
+    pose.camera_from_keyframe = change->after_from_before * pose.camera_from_keyframe;
+  velocity_ = adjoint(change->after_from_before) * velocity_;
+  loop_.reset();
+  return true;
 }
 
 bool Session::correct_online() {
@@ -269,6 +296,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
 
 void Session::finish() {
   if (search_) search_->finish();
+  if (mission_calibrator_) mission_calibrator_->finish();
   while (true) {
     if (const auto finished = executor_->finish()) take_over(*finished);
     global_.finish();

@@ -6,6 +6,7 @@
 #include "byre/session/executor.h"
 #include "byre/session/global_lane.h"
 #include "byre/session/mission.h"
+#include "byre/session/mission_calibrator.h"
 #include "byre/session/odometry.h"
 #include "byre/session/place_search.h"
 #include "byre/session/segments.h"
@@ -55,10 +56,14 @@ struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
   Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
   Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane)
-      : local(std::move(local_lane)), global(std::move(global_lane)) {}
+      : Lanes(std::move(local_lane), std::move(global_lane), make_inline_executor()) {}
+  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane,
+        std::unique_ptr<Executor> calibration_lane)
+      : local(std::move(local_lane)), global(std::move(global_lane)), calibration(std::move(calibration_lane)) {}
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
+  std::unique_ptr<Executor> calibration;  // of a mission's cameras
 };
 
 // What the caller learns about one frame.
@@ -105,9 +110,7 @@ class Session {
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
   // What is known of the calibration by now; empty until it was refined.
-  std::optional<RefinedCalibration> self_calibration() const {
-    return calibrator_ ? calibrator_->result() : std::nullopt;
-  }
+  std::optional<RefinedCalibration> self_calibration() const;
 
   FrameReport process(const Frame& rectified);
 
@@ -165,6 +168,8 @@ class Session {
   void follow(const LengthChanges& changes);
   void recalibrate(const RefinedCalibration& refined);
   bool take_over_calibration();
+  bool switch_camera();
+  Frame corrected(const Frame& rectified) const;
   bool correct_online();
   void consider_place(const FoundPlace& found, FrameReport& report);
   bool is_refuted_by(const FoundPlace& found, const Agreement& agreement) const;
@@ -220,7 +225,9 @@ class Session {
 
   // Owned by the calling thread.
   Rig rig_;
-  std::optional<Calibrator> calibrator_;
+  std::unique_ptr<Executor> calibration_executor_;       // until calibration begins
+  std::optional<Calibrator> calibrator_;                 // of a session that maps
+  std::optional<MissionCalibrator> mission_calibrator_;  // of a mission
   std::unique_ptr<Executor> executor_;
   GlobalLane global_;
   std::optional<Mission> mission_;     // on an offline map

@@ -4,6 +4,7 @@
 #include "byre/geometry/median.h"
 #include "byre/optimise/calibration_covariance.h"
 #include "byre/optimise/huber.h"
+#include "byre/slam/determined_calibration.h"
 #include "byre/slam/mapping_steps.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -135,23 +135,6 @@ double variance_factor(const BundleProblem& problem, const std::vector<double>& 
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
-// The change of the calibration given, without the directions that the data have left open, and the sigmas it leaves.
-void take_determined(const Knowledge& posterior, const SelfCalibrationOptions& options, RefinedCalibration& result) {
-  const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> directions(posterior.information);
-  const double prior_information = 1.0 / (options.prior_sigmas * options.prior_sigmas);
-  CalibrationVector along = directions.eigenvectors().transpose() * posterior.expected;
-  CalibrationVector variances = directions.eigenvalues().cwiseInverse();
-  for (int i = 0; i < kCalibrationParameters; ++i) {
-    const bool is_determined = directions.eigenvalues()[i] >= options.min_gain * options.min_gain * prior_information;
-    if (is_determined) continue;
-    along[i] = 0.0;
-    variances[i] = 1.0 / prior_information;
-  }
-  result.change = directions.eigenvectors() * along;
-  result.sigma_after = (directions.eigenvectors().cwiseAbs2() * variances).cwiseSqrt();
-  result.sigma_before.setConstant(options.prior_sigmas);
-}
-
 // Root mean square by which the change moves what is seen, but for what a turn of the camera would do as well: the mean
 // of u and of v.
 double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
@@ -187,7 +170,6 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   const BundleResult solved = bundle_adjust(problem, bundle_options);
   if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
 
-  RefinedCalibration result;
   const double factor = variance_factor(problem, solved.squared_errors);
   BundleProblem at_solution = with_change(problem, solved.calibration_change);
   at_solution.calibration = problem.calibration;
@@ -200,8 +182,9 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   const auto information = calibration_information(at_solution, kHuberWidth);
   if (!information) return std::nullopt;
   const CalibrationMatrix of_motion = (*information - beforehand.information) / factor;
-  take_determined({beforehand.information + of_motion, state.change + solved.calibration_change}, options, result);
-  result.calibration = changed(state.given, result.change);
+  RefinedCalibration result =
+      determined_calibration(state.given, beforehand.information + of_motion, state.change + solved.calibration_change,
+                             options.prior_sigmas, options.min_gain);
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);
