@@ -26,8 +26,10 @@ class Calibrator {
   Frame corrected(const Frame& frame) const;
 
   // Whether a map of so many keyframes has grown enough since the last time for another look.
-  bool is_due(int keyframes) const { return keyframes >= next_keyframes_; }
-  void note_attempt(int keyframes) { next_keyframes_ = 2 * keyframes; }
+  bool is_due(int keyframes) const { return keyframes >= (last_keyframes_ ? 2 * *last_keyframes_ : 20); }
+  // The same at the end, when there is no other time.
+  bool is_worth_a_last_look(int keyframes) const { return !last_keyframes_ || 4 * keyframes >= 5 * *last_keyframes_; }
+  void note_attempt(int keyframes) { last_keyframes_ = keyframes; }
 
   // From now on that is the present calibration, and from_given how features of the one given change.
   void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
@@ -39,7 +41,7 @@ class Calibrator {
   CalibrationState state_;
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the one given
-  int next_keyframes_ = 20;
+  std::optional<int> last_keyframes_;  // of the map at the last look
 };
 
 }  // namespace byre

@@ -151,8 +151,10 @@ void Session::follow(const LengthChanges& changes) {
 bool Session::take_over_calibration() {
   if (!calibrator_ || !executor_->idle()) return false;
   if (const auto refined = global_.take_calibration()) {
+    constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
+    const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
     recalibrate(*refined);
-    if (global_.idle() && !mission_) global_.close_loops(online_, loops_);
+    if (is_large && global_.idle()) global_.close_loops(online_, loops_);
     return true;
   }
   if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return false;
@@ -309,7 +311,7 @@ void Session::finish() {
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
   assert(places_);
-  if (calibrator_) {
+  if (calibrator_ && calibrator_->is_worth_a_last_look(online_.keyframe_count())) {
     const MapWindow whole = whole_map(map());
     const auto refined =
         self_calibrate(whole, calibrator_->state(), online_.add_rig(rig_), calibrator_->options(), hooks.should_stop);
