@@ -135,6 +135,72 @@ double variance_factor(const BundleProblem& problem, const std::vector<double>& 
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
+// The problem at its solution without measurements that do not fit it. Corners at the edges of things, and what was
+// matched nearly right, err in one direction more than in the other: a loss that only bounds their influence leaves a
+// part in a thousand of the focal length to them.
+BundleProblem trimmed(BundleProblem problem, const BundleResult& solved) {
+  constexpr double kGate = 4.0;  // squared sigmas, of which the median says how large they are
+  const double gate = kGate * variance_factor(problem, solved.squared_errors);
+  std::vector<BundleObservation> kept;
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    if (solved.squared_errors[i] <= gate) kept.push_back(problem.observations[i]);
+  }
+  problem.observations = std::move(kept);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    problem.poses[i].camera_from_world = solved.camera_from_world[i];
+  }
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    problem.points[i].position_in_world = solved.points_in_world[i];
+  }
+  return problem;
+}
+
+// As the calibration found would have measured it.
+BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
+  BundleProblem moved = with_change(problem, solved.calibration_change);
+  moved.calibration = problem.calibration;
+  for (std::size_t i = 0; i < moved.poses.size(); ++i) moved.poses[i].camera_from_world = solved.camera_from_world[i];
+  for (std::size_t i = 0; i < moved.points.size(); ++i) moved.points[i].position_in_world = solved.points_in_world[i];
+  return moved;
+}
+
+// What measurements say by themselves, also where they leave directions open: normal equations.
+struct Learned {
+  CalibrationMatrix information;
+  CalibrationVector right_side;
+
+  void operator/=(double factor) {
+    information /= factor;
+    right_side /= factor;
+  }
+};
+
+Learned difference(const Knowledge& later, const Knowledge& earlier) {
+  return {later.information - earlier.information,
+          later.information * later.expected - earlier.information * earlier.expected};
+}
+
+Knowledge joined(const Knowledge& known, const Learned& learned) {
+  const CalibrationMatrix information = known.information + learned.information;
+  return {information, information.ldlt().solve(known.information * known.expected + learned.right_side)};
+}
+
+// All measurements share an error that looks like a change of the calibration along this vector, one sigma long
+// (Sherman and Morrison's formula).
+Learned with_shared_error(const Learned& learned, const CalibrationVector& error) {
+  const CalibrationVector told = learned.information * error;
+  const double scale = 1.0 / (1.0 + error.dot(told));
+  return {learned.information - scale * told * told.transpose(),
+          learned.right_side - scale * told * error.dot(learned.right_side)};
+}
+
+// Of both focal lengths alike.
+CalibrationVector focal_error(double sigmas) {
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kLeftCamera] = error[kRightCamera] = sigmas;
+  return error;
+}
+
 // Root mean square by which the change moves what is seen, but for what a turn of the camera would do as well: the mean
 // of u and of v.
 double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
@@ -159,32 +225,27 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   if (static_cast<int>(keyframes.size()) < options.min_keyframes) return std::nullopt;
   const CalibrationSensitivity sensitivity(state.present());
   const Knowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas), -state.change};
-  const Knowledge beforehand = learn_from_rows(measure_rows(whole, keyframes, sensitivity), prior);
+  const Knowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, sensitivity), prior);
 
   BundleProblem problem = bundle_of(whole, keyframes);
-  problem.calibration = BundleCalibration{&sensitivity, rig, beforehand.expected, beforehand.information};
+  problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
   BundleOptions bundle_options;
   bundle_options.max_iterations = options.iterations;
   bundle_options.huber_width = kHuberWidth;
   bundle_options.should_stop = should_stop;
+  const BundleResult rough = bundle_adjust(problem, bundle_options);
+  if (!rough.usable) return std::nullopt;
+  problem = trimmed(std::move(problem), rough);
   const BundleResult solved = bundle_adjust(problem, bundle_options);
   if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
 
-  const double factor = variance_factor(problem, solved.squared_errors);
-  BundleProblem at_solution = with_change(problem, solved.calibration_change);
-  at_solution.calibration = problem.calibration;
-  for (std::size_t i = 0; i < at_solution.poses.size(); ++i) {
-    at_solution.poses[i].camera_from_world = solved.camera_from_world[i];
-  }
-  for (std::size_t i = 0; i < at_solution.points.size(); ++i) {
-    at_solution.points[i].position_in_world = solved.points_in_world[i];
-  }
-  const auto information = calibration_information(at_solution, kHuberWidth);
+  const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
   if (!information) return std::nullopt;
-  const CalibrationMatrix of_motion = (*information - beforehand.information) / factor;
-  RefinedCalibration result =
-      determined_calibration(state.given, beforehand.information + of_motion, state.change + solved.calibration_change,
-                             options.prior_sigmas, options.min_gain);
+  Learned of_motion = difference({*information, solved.calibration_change}, with_rows);
+  of_motion /= variance_factor(problem, solved.squared_errors);
+  const Knowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(options.focal_sigmas)));
+  RefinedCalibration result = determined_calibration(
+      state.given, posterior.information, state.change + posterior.expected, options.prior_sigmas, options.min_gain);
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);
