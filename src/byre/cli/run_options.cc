@@ -62,7 +62,8 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->needs(map);
   command
       .add_flag("--align-scale", options.align_scale,
-                "Lay the map on the truth by a similarity: a baseline that errs in length, which no image tells, does not count")
+                "Lay the map on the truth by a similarity: a baseline that errs in length, which no image tells, does "
+                "not count")
       ->needs(truth)
       ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
