@@ -189,7 +189,8 @@ void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& 
     recordings[i].refined = refined;
     require_no_fault(reader, fault_in(recordings[i]), "recording", i);
   }
-  if (std::ranges::none_of(recordings, [](const SourceRecording& recording) { return recording.refined.has_value(); })) {
+  if (std::ranges::none_of(recordings,
+                           [](const SourceRecording& recording) { return recording.refined.has_value(); })) {
     reader.fail("holds no calibration");
   }
   reader.require_end();
