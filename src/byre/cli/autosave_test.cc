@@ -47,7 +47,7 @@ TEST(Autosave, PassesOverWhatComesWhileItSaves) {
 
 TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
   bool is_full = true;
-  Autosave autosave(0.0, [&is_full](const Map&) {
+  Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
     if (is_full) throw std::runtime_error("the disk is full");
   });
   autosave.offer(map_of(1));
@@ -60,7 +60,7 @@ TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
 }
 
 TEST(Autosave, HasNothingToWaitForBeforeTheFirst) {
-  Autosave autosave(0.0, [](const Map&) {});
+  Autosave autosave(0.0, [](const Map&, const auto&) {});
   autosave.finish();
   EXPECT_THAT(autosave.failures(), IsEmpty());
 }
