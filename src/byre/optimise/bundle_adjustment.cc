@@ -184,9 +184,8 @@ class CeresBundle {
 
   // Where the calibration is sought too; what does not move is held constant.
   void add(const BundleObservation& observation, const Rig& rig, const CalibrationSensitivity& sensitivity) {
-    const Reprojection reprojection(rig, observation.measured, observation.pixel_sigma, observation.disparity_sigma);
     const auto [pose, point] = std::pair(observation.pose, observation.point);
-    auto& cost = calibration_costs_.emplace_back(reprojection, sensitivity, observation);
+    auto& cost = calibration_costs_.emplace_back(rig, sensitivity, observation);
     ceres_.AddResidualBlock(&cost, loss_of(observation), rotation(pose), translation(pose), position(point),
                             calibration_.data());
     if (!roles_.pose_moves[pose]) {

@@ -106,7 +106,9 @@ TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
 
 // Seconds do not matter: the first row looks from the beginning of the way, the last one from its end.
 TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
-  const auto camera_at = [&](int row) { return Pose{{}, {0.4 * row / (camera.height - 1.0), 0.0, 0.0}}; };
+  const auto camera_at = [&](int row) {
+    return Pose{Eigen::Quaterniond::Identity(), {0.4 * row / (camera.height - 1.0), 0.0, 0.0}};
+  };
   SceneView view{pixels, {}};
   for (int row = 0; row < camera.height; ++row) view.world_from_camera_by_row.push_back(camera_at(row));
   const SceneRenderer renderer(still, pictures, {}, 1);

@@ -44,11 +44,13 @@ std::optional<Row> row_of(const TrackedFeature& feature, const Keypoint& keypoin
   Eigen::Vector3d weights = sigmas.cwiseInverse();
   if (!keypoint.has_disparity()) weights.z() = 0.0;
   const StereoPixel measured(feature.pixel.x(), feature.pixel.y(), keypoint.disparity);
+  StereoPixel expected = rig.project(point_in_camera);
   Row row;
-  row.residual = weights.asDiagonal() * (measured - rig.project(point_in_camera));
+  row.residual = weights.asDiagonal() * (measured - expected);
   row.by_pose << by_camera, -by_camera * skew(point_in_camera);
   row.by_pose = weights.asDiagonal() * row.by_pose;
-  row.by_calibration = weights.asDiagonal() * sensitivity.at(measured).topRows<3>();
+  if (!keypoint.has_disparity()) expected.z() = 0.0;
+  row.by_calibration = weights.asDiagonal() * sensitivity.at(expected).topRows<3>();
   const double influence = std::sqrt(huber_weight(row.residual.squaredNorm(), kHuberWidth));
   return Row{influence * row.residual, influence * row.by_pose, influence * row.by_calibration};
 }

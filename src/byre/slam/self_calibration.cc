@@ -135,26 +135,6 @@ double variance_factor(const BundleProblem& problem, const std::vector<double>& 
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
-// The problem at its solution without measurements that do not fit it. Corners at the edges of things, and what was
-// matched nearly right, err in one direction more than in the other: a loss that only bounds their influence leaves a
-// part in a thousand of the focal length to them.
-BundleProblem trimmed(BundleProblem problem, const BundleResult& solved) {
-  constexpr double kGate = 4.0;  // squared sigmas, of which the median says how large they are
-  const double gate = kGate * variance_factor(problem, solved.squared_errors);
-  std::vector<BundleObservation> kept;
-  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
-    if (solved.squared_errors[i] <= gate) kept.push_back(problem.observations[i]);
-  }
-  problem.observations = std::move(kept);
-  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-    problem.poses[i].camera_from_world = solved.camera_from_world[i];
-  }
-  for (std::size_t i = 0; i < problem.points.size(); ++i) {
-    problem.points[i].position_in_world = solved.points_in_world[i];
-  }
-  return problem;
-}
-
 // As the calibration found would have measured it.
 BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
   BundleProblem moved = with_change(problem, solved.calibration_change);
@@ -233,9 +213,6 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   bundle_options.max_iterations = options.iterations;
   bundle_options.huber_width = kHuberWidth;
   bundle_options.should_stop = should_stop;
-  const BundleResult rough = bundle_adjust(problem, bundle_options);
-  if (!rough.usable) return std::nullopt;
-  problem = trimmed(std::move(problem), rough);
   const BundleResult solved = bundle_adjust(problem, bundle_options);
   if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
 

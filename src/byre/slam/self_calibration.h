@@ -14,9 +14,9 @@ struct SelfCalibrationOptions {
   double prior_sigmas = 2.0;  // how far off a calibration is taken to be at first, in sigmas of a good one
   // A direction among the parameters moves only when the images tell it this much better than was known before.
   double min_gain = 2.0;
-  // By which measurements in real images err together as a wrong focal length would, whatever their number: corners at
-  // the edges of things are seen a little too far out. In sigmas of a good calibration.
-  double focal_sigmas = 1.0;
+  // By which measurements in real images err together as a wrong focal length would, whatever their number. In sigmas
+  // of a good calibration.
+  double focal_sigmas = 0.25;
   int iterations = 12;
 };
 

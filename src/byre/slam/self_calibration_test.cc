@@ -24,8 +24,9 @@ Pose about_the_room(int keyframe) {
 // A map as it comes from keyframes of a camera that differs from its calibration.
 class MapOfErringCamera {
  public:
-  MapOfErringCamera(const Calibration& given, const CalibrationVector& error, const PathOfCamera& path, int keyframes)
-      : given_(given), truth_(changed(given, error)), rectification_(rectification_of(given)) {
+  MapOfErringCamera(const Calibration& given, const CalibrationVector& error, const PathOfCamera& path, int keyframes,
+                    float sigma = 0.1f)
+      : given_(given), truth_(changed(given, error)), rectification_(rectification_of(given)), sigma_(sigma) {
     window_.rigs = {rectification_.rig};
     for (int i = 0; i < 400; ++i) {
       points_.push_back({place_(random_) * 4.0, place_(random_) * 2.5, 4.0 + place_(random_) * 2.0});
@@ -60,7 +61,7 @@ class MapOfErringCamera {
     entry.keyframe.frame.features = std::make_shared<const Features>(
         rig.width, rig.height, std::move(keypoints), std::vector<Descriptor>(count), std::vector<Patch>{});
     for (int i = 0; i < entry.keyframe.frame.features->size(); ++i) {
-      entry.keyframe.sightings.push_back({{}, entry.keyframe.frame.features->keypoint(i).pixel, kSigma});
+      entry.keyframe.sightings.push_back({{}, entry.keyframe.frame.features->keypoint(i).pixel, sigma_});
     }
     window_.keyframes.push_back(std::move(entry));
   }
@@ -73,10 +74,10 @@ class MapOfErringCamera {
     if (!rectification_.rig.contains({ideal.x() - ideal.z(), ideal.y()}, 20.0)) return std::nullopt;
     const Eigen::Vector4d seen = measured(truth_, given_, rectification_, point_in_left);
     Keypoint keypoint;
-    keypoint.pixel = (seen.head<2>() + kSigma * Eigen::Vector2d(noise_(random_), noise_(random_))).cast<float>();
-    keypoint.disparity = static_cast<float>(seen.z() + kSigma * noise_(random_));
-    keypoint.disparity_sigma = kSigma;
-    keypoint.row_offset = static_cast<float>(seen.w() + kSigma * noise_(random_));
+    keypoint.pixel = (seen.head<2>() + sigma_ * Eigen::Vector2d(noise_(random_), noise_(random_))).cast<float>();
+    keypoint.disparity = static_cast<float>(seen.z() + sigma_ * noise_(random_));
+    keypoint.disparity_sigma = sigma_;
+    keypoint.row_offset = static_cast<float>(seen.w() + sigma_ * noise_(random_));
     return keypoint;
   }
 
@@ -96,11 +97,10 @@ class MapOfErringCamera {
     }
   }
 
-  static constexpr float kSigma = 0.1f;  // pixels
-
   const Calibration given_;
   const Calibration truth_;
   const Rectification rectification_;
+  const float sigma_;  // of the noise, pixels
   std::vector<Eigen::Vector3d> points_;
   MapWindow window_;
   std::mt19937_64 random_{5};
@@ -135,6 +135,18 @@ TEST(SelfCalibration, FindsTheErrorOfAGoodCalibration) {
     EXPECT_LT(remaining_shift(found->calibration, truth), 0.015) << "seed " << seed;
     const CalibrationVector deviations = (found->change - error).cwiseQuotient(found->sigma_after);
     EXPECT_LT(deviations.cwiseAbs().maxCoeff(), 4.5) << "seed " << seed;
+  }
+}
+
+TEST(SelfCalibration, TakesNoNoiseForALongerFocalLength) {
+  const Calibration given = scene_calibration();
+  constexpr float kSigma = 0.15f;  // pixels
+  const MapOfErringCamera map(given, CalibrationVector::Zero(), about_the_room, 150, kSigma);
+  const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
+  ASSERT_TRUE(found);
+  for (const int focal : {kLeftCamera, kRightCamera}) {
+    EXPECT_LT(found->sigma_after[focal], 0.5 * found->sigma_before[focal]);
+    EXPECT_LT(std::abs(found->change[focal]), 2.0 * found->sigma_after[focal]);
   }
 }
 
@@ -176,7 +188,9 @@ TEST(SelfCalibration, MovesNothingOfOneCameraThatStandsStill) {
   const MapOfErringCamera map(
       given, draw_error(2), [](int) { return Pose{}; }, 30);
   const auto found = self_calibrate(without_disparities(map.window()), {given, CalibrationVector::Zero()}, 0, {});
-  if (found) EXPECT_LT(found->change.norm(), 1e-6);
+  if (found) {
+    EXPECT_LT(found->change.norm(), 1e-6);
+  }
 }
 
 TEST(SelfCalibration, MovesNoFocalLengthOfOneCameraThatGoesStraightAhead) {
