@@ -18,6 +18,9 @@ namespace byre {
 namespace {
 
 constexpr double kHuberWidth = 2.0;  // sigmas
+// The disparities of one corner in many keyframes, and those of its neighbours, are measured on the same surface and
+// err alike: together they tell less than their sigmas say.
+constexpr double kSharedDisparityError = 3.0;  // times their sigma
 constexpr double kMedianOfChiSquare2 = 1.386;
 constexpr double kMedianOfChiSquare3 = 2.366;
 constexpr double kSigmasOfMedian = 1.4826;  // by which the median of absolute deviations is multiplied
@@ -62,6 +65,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
       BundleObservation observation =
           bundle_observation(whole.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
       observation.pose = pose_of[static_cast<std::size_t>(seen.keyframe)];
+      if (observation.is_stereo()) observation.disparity_sigma *= kSharedDisparityError;
       observation.point = static_cast<int>(problem.points.size());
       problem.observations.push_back(observation);
     }
