@@ -235,10 +235,10 @@ Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, c
   return regions;
 }
 
-// Pixels: how far the regions' mean errors lie off more than noise explains. The prior counts as two regions.
+// Pixels: how far the regions' mean errors lie off more than noise explains. The prior counts as one region.
 double systematic_sigma_of(const Regions& regions, double variance_factor, double prior) {
   constexpr int kMinPoints = 4;         // of a region that is asked
-  constexpr double kPriorValues = 4.0;  // two regions, of two numbers each
+  constexpr double kPriorValues = 2.0;  // one region, of two numbers
   constexpr double kPoseFreedom = 6.0;  // what the pose has taken out of them
   double excess = 0.0;
   double values = -kPoseFreedom;
