@@ -223,9 +223,8 @@ Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, c
         std::clamp(static_cast<int>(kRegionColumns * sighting.measured.x() / rig.width), 0, kRegionColumns - 1);
     const int row = std::clamp(static_cast<int>(kRegionRows * sighting.measured.y() / rig.height), 0, kRegionRows - 1);
     Region& region = regions[static_cast<std::size_t>(row * kRegionColumns + column)];
-    const Eigen::Matrix3d information =
-        sighting.weight * huber_weight(sighting.squared_error, huber_width) * sighting.information;
-    const Eigen::Matrix3d push = rig.projection_jacobian(point_in_camera).transpose() * information;
+    const Eigen::Matrix3d information = huber_weight(sighting.squared_error, huber_width) * sighting.information;
+    const Eigen::Matrix3d push = sighting.weight * rig.projection_jacobian(point_in_camera).transpose() * information;
     region.information += information;
     region.descent += information * error;
     region.by_error.topRows<3>() += push;

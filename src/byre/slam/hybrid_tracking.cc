@@ -178,6 +178,12 @@ bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoi
   return support.fitting >= kMinParts && support.fitting >= kMinShare * support.telling;
 }
 
+// How many of the matches fit a pose by noise and systematic errors alone.
+std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
+  return part_by_agreement(camera_from_world, query.rig, measured, 1.0, query.options.refinement)
+      .agreeing.features.size();
+}
+
 // The pose that is believed, the points it was refined on, and matches that were left out of that.
 struct Solution {
   PoseRefinement refined;
@@ -225,6 +231,12 @@ Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& f
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
   opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
+  // A compromise between what stayed and what moved fits fewer offline points than the online pose does.
+  if (opinions.maps_disagree && opinions.offline_stands) {
+    const MeasuredPoints& points = found.measured.offline;
+    opinions.offline_stands = count_fitting(query, opinions.offline->camera_from_world, points) >=
+                              count_fitting(query, opinions.online->camera_from_world, points);
+  }
   return opinions;
 }
 
