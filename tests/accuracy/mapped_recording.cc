@@ -24,9 +24,10 @@ fs::path data_folder() {
 
 }  // namespace
 
-MappedRecording map_recording(const fs::path& folder, const FrameRange& range, std::unique_ptr<Executor> executor) {
+MappedRecording map_recording(const fs::path& folder, const FrameRange& range, std::unique_ptr<Executor> executor,
+                              const OpenOptions& options) {
   limit_image_threads(1);
-  const std::unique_ptr<Recording> recording = open_recording(folder, range);
+  const std::unique_ptr<Recording> recording = open_recording(folder, range, options);
   Extractor extractor(recording->calibration(), {});
   Session session(extractor.rig(), {}, std::move(executor));
   MappedRecording mapped;

@@ -21,7 +21,7 @@ struct MappedRecording {
 };
 
 MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,
-                              std::unique_ptr<Executor> executor);
+                              std::unique_ptr<Executor> executor, const OpenOptions& options = {});
 
 // Frames that have no final pose.
 int frames_without_pose(const MappedRecording& mapped);

@@ -36,29 +36,50 @@ fs::path folder_of(const RecordingName& name) {
   throw InputError(name.name, "is no recording here", why_missing(name));
 }
 
-Map map_by_session(Recording& recording) {
-  limit_image_threads(1);
-  Extractor extractor(recording.calibration(), {});
-  Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary());
+// Frames of a recording as a robot with such a camera has them.
+class MapFrames {
+ public:
+  MapFrames(Recording& recording, const Imperfection& imperfection)
+      : recording_(recording),
+        cameras_(imperfect_cameras(imperfection)),
+        extractor_(told_calibration(recording.calibration(), imperfection), {}) {
+    limit_image_threads(1);
+  }
+
+  const Rig& rig() const { return extractor_.rig(); }
+
+  // Empty where its images cannot be read.
+  std::optional<Frame> read(int index) {
+    const auto images = recording_.read(index);
+    return images ? std::optional(extractor_.extract(cameras_(*images, index)).frame) : std::nullopt;
+  }
+
+ private:
+  Recording& recording_;
+  Degradation cameras_;
+  Extractor extractor_;
+};
+
+Map map_by_session(Recording& recording, const Imperfection& imperfection) {
+  MapFrames frames(recording, imperfection);
+  Session session(frames.rig(), {}, make_inline_executor(), mission_vocabulary());
   for (int i = 0; i < recording.size(); ++i) {
-    if (const auto images = recording.read(i)) session.process(extractor.extract(*images).frame);
+    if (const auto frame = frames.read(i)) session.process(*frame);
   }
   session.finish();
   session.finish_map({}, {[] { return false; }, [](const char*) {}});
   return session.map().online();
 }
 
-Map map_by_true_poses(Recording& recording, const Trajectory& truth) {
-  limit_image_threads(1);
-  Extractor extractor(recording.calibration(), {});
-  std::vector<PosedFrame> frames;
+Map map_by_true_poses(Recording& recording, const Trajectory& truth, const Imperfection& imperfection) {
+  MapFrames frames(recording, imperfection);
+  std::vector<PosedFrame> posed;
   for (int i = 0; i < recording.size(); ++i) {
-    const auto images = recording.read(i);
-    const auto world_from_body = images ? pose_at(truth, images->time, std::chrono::milliseconds(60)) : std::nullopt;
-    if (!world_from_body) continue;
-    frames.push_back({extractor.extract(*images).frame, inverse(*world_from_body * extractor.rig().body_from_camera)});
+    const auto frame = frames.read(i);
+    const auto world_from_body = frame ? pose_at(truth, frame->time, std::chrono::milliseconds(60)) : std::nullopt;
+    if (world_from_body) posed.push_back({*frame, inverse(*world_from_body * frames.rig().body_from_camera)});
   }
-  return map_from_poses({extractor.rig()}, frames, {});
+  return map_from_poses({frames.rig()}, posed, {});
 }
 
 fs::path cache_file(const MapRecipe& recipe) {
@@ -69,11 +90,12 @@ StoredMap make_map(const MapRecipe& recipe) {
   const fs::path folder = folder_of(recipe.recording);
   const auto recording = open_recording(folder, recipe.range);
   StoredMap stored;
-  stored.map = offline_copy(recipe.from_true_poses ? map_by_true_poses(*recording, truth_of(recipe.recording))
-                                                   : map_by_session(*recording));
+  stored.map = offline_copy(recipe.from_true_poses
+                                ? map_by_true_poses(*recording, truth_of(recipe.recording), recipe.imperfection)
+                                : map_by_session(*recording, recipe.imperfection));
   stored.pose_source = recipe.from_true_poses ? PoseSource::given : PoseSource::slam;
-  stored.recordings = {
-      {folder.filename().string(), recording->calibration(), recording->times().front(), recording->times().back()}};
+  const Calibration told = told_calibration(recording->calibration(), recipe.imperfection);
+  stored.recordings = {{folder.filename().string(), told, recording->times().front(), recording->times().back()}};
   add_words(stored, mission_vocabulary());
   return stored;
 }
@@ -127,6 +149,7 @@ std::string why_missing(const RecordingName& name) {
 std::string name_of(const MapRecipe& recipe) {
   std::string name = recipe.recording.name;
   if (recipe.range.last) name += "_to_" + std::to_string(*recipe.range.last);
+  if (recipe.imperfection.condition != CameraCondition::exact) name += "_" + name_of(recipe.imperfection);
   std::ranges::replace(name, '/', '_');
   return name;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "imperfection.h"
+
 #include "byre/dataset/recording.h"
 #include "byre/geometry/alignment.h"
 #include "byre/slam/offline_map.h"
@@ -36,6 +38,7 @@ struct MapRecipe {
   RecordingName recording;
   FrameRange range{};
   bool from_true_poses = false;  // of frames too far apart for tracking
+  Imperfection imperfection{};   // of the camera that saw it
 };
 
 std::string name_of(const MapRecipe& recipe);  // different for different recipes of these tests

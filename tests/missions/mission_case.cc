@@ -10,16 +10,17 @@
 namespace byre {
 namespace {
 
-std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Trajectory& truth,
-                              std::shared_ptr<const OfflineMap> map) {
+std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Imperfection& imperfection,
+                              const Trajectory& truth, std::shared_ptr<const OfflineMap> map) {
   limit_image_threads(1);
-  Extractor extractor(recording.calibration(), {});
+  Extractor extractor(told_calibration(recording.calibration(), imperfection), {});
+  const Degradation cameras = imperfect_cameras(imperfection);
   Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);
     if (!recorded) continue;
-    ImageFrame images = step.disturb ? step.disturb(*recorded) : *recorded;
+    ImageFrame images = cameras(step.disturb ? step.disturb(*recorded) : *recorded, step.frame);
     images.time = step.time;
     frames.push_back({session.process(extractor.extract(images).frame),
                       pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
@@ -42,6 +43,14 @@ std::optional<RecordingName> missing_recording(const MissionCase& mission_case) 
   return std::nullopt;
 }
 
+MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfection) {
+  Imperfection& of_map = mission_case.map.recipe.imperfection;
+  const std::uint64_t apart = mission_case.imperfection.calibration_seed - of_map.calibration_seed;
+  of_map = imperfection;
+  mission_case.imperfection = {imperfection.condition, imperfection.calibration_seed + apart};
+  return mission_case;
+}
+
 KnownMap KnownMaps::get(const MapChoice& choice) {
   constexpr std::uint64_t kSeed = 1;
   const std::string name = name_of(choice.recipe);
@@ -60,7 +69,7 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
     plan.undisturbed_from = plan.steps.front().time + from_seconds(*mission_case.mapped_again_after);
   }
   FlownMission flown;
-  flown.frames = run(plan, *recording, truth_of(mission_case.recording), known.map);
+  flown.frames = run(plan, *recording, mission_case.imperfection, truth_of(mission_case.recording), known.map);
   if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
   flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
   return flown;

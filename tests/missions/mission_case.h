@@ -34,10 +34,15 @@ struct MissionCase {
   std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
   Demand demand{};
   std::optional<double> mapped_again_after{};  // seconds: when it comes back from outside the mapped area
+  Imperfection imperfection{};                 // of the mission's camera
 };
 
 inline constexpr double kMaxWrongTrust = 0.5;  // seconds
 inline constexpr double kMaxRecovery = 2.0;    // seconds
+
+// The same with the cameras of map and mission in this condition, and the map's error of calibration drawn by the seed.
+// Where mission and map had one error they still do.
+MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfection);
 
 std::vector<MissionCase> real_mission_cases();
 std::vector<MissionCase> twin_mission_cases();

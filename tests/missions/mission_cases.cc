@@ -98,6 +98,11 @@ MissionCase of_recording(MissionCase mission_case, const RecordingName& recordin
   return mission_case;
 }
 
+MissionCase named(MissionCase mission_case, const char* name) {
+  mission_case.name = name;
+  return mission_case;
+}
+
 MapChoice wrong(const MapRecipe& recipe) {
   MapChoice choice{recipe};
   choice.is_of_another_place = true;
@@ -106,6 +111,17 @@ MapChoice wrong(const MapRecipe& recipe) {
 
 constexpr Demand kHardlyDisturbed{true, 0.98};
 constexpr Demand kHonestOnly{false, 0.0};
+
+constexpr Imperfection kExact{CameraCondition::exact, 1};
+constexpr Imperfection kOtherError{CameraCondition::good, 2};
+
+// Not, as everywhere else, with one and the same good camera for map and mission.
+std::vector<MissionCase> calibrated_otherwise() {
+  const MissionCase undisturbed = with_demand(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
+  MissionCase recalibrated = named(undisturbed, "hall_recalibrated");
+  recalibrated.imperfection = kOtherError;
+  return {named(flown_with(undisturbed, kExact), "hall_undisturbed_exact"), recalibrated};
+}
 
 }  // namespace
 
@@ -123,6 +139,7 @@ std::vector<MissionCase> real_mission_cases() {
   cases.push_back(in_hall("contrast_loss", four_seconds, degrade_all(contrast_loss(0.3))));
   cases.push_back(with_map(in_hall("half_the_points", whole, as_recorded), {kHall, 0.5}));
   cases.push_back(with_demand(with_map(in_hall("wrong_map", six_seconds, as_recorded), wrong(kRealRoom)), kHonestOnly));
+  for (const MissionCase& other : calibrated_otherwise()) cases.push_back(other);
   return cases;
 }
 

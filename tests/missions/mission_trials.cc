@@ -1,7 +1,9 @@
 // Flies the missions that try the session's health, and prints a row of a table for each.
-// Usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [CASE...]
+// Usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [--imperfection exact|good|worn]
+//                            [--calibration-seed N] [CASE...]
 // All cases whose recordings are there are flown unless some are named. --trace writes a line of CSV for each frame
 // into FOLDER/CASE.csv. --dump flies nothing, and writes what the degradations make of an image into FOLDER as PNG.
+// --imperfection has all of them flown with cameras in that condition, and --calibration-seed with that error.
 // Exit code: 0 all demands are met, 1 some are not, 2 wrong usage or bad data.
 
 #include "mission_case.h"
@@ -10,6 +12,7 @@
 #include "byre/input/input_error.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -27,8 +30,16 @@ struct TrialOptions {
   bool list = false;
   std::optional<fs::path> trace;
   std::optional<fs::path> dump;
+  std::optional<CameraCondition> condition;
+  std::optional<std::uint64_t> calibration_seed;
   std::vector<std::string> cases;
 };
+
+std::optional<std::uint64_t> whole_number(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
 
 std::optional<TrialOptions> parse(std::span<char*> arguments) {
   TrialOptions options;
@@ -41,6 +52,12 @@ std::optional<TrialOptions> parse(std::span<char*> arguments) {
       options.trace = arguments[++i];
     } else if (argument == "--dump" && has_value) {
       options.dump = arguments[++i];
+    } else if (argument == "--imperfection" && has_value) {
+      options.condition = camera_condition_of(arguments[++i]);
+      if (!options.condition) return std::nullopt;
+    } else if (argument == "--calibration-seed" && has_value) {
+      options.calibration_seed = whole_number(arguments[++i]);
+      if (!options.calibration_seed) return std::nullopt;
     } else if (argument.starts_with("--")) {
       return std::nullopt;
     } else {
@@ -66,6 +83,11 @@ std::vector<MissionCase> chosen(const TrialOptions& options) {
   std::erase_if(cases, [&](const MissionCase& mission_case) {
     return !options.cases.empty() && std::ranges::find(options.cases, mission_case.name) == options.cases.end();
   });
+  for (MissionCase& mission_case : cases) {
+    const Imperfection& own = mission_case.map.recipe.imperfection;
+    mission_case = flown_with(mission_case, {options.condition.value_or(own.condition),
+                                             options.calibration_seed.value_or(own.calibration_seed)});
+  }
   return cases;
 }
 
@@ -99,13 +121,15 @@ std::string recovery_of(const MissionScore& score) {
 
 void print_heading() {
   std::printf(
-      "| case | recording | frames | coverage %% | trusted %% | worst trusted error m | longest wrong trust s | "
-      "recovery s | RMSE mm | within 95 %% bound %% |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| case | recording | map's camera | mission's | frames | coverage %% | trusted %% | worst trusted error m | "
+      "longest wrong trust s | "
+      "recovery s | RMSE mm | within 95 %% bound %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void print_row(const MissionCase& mission_case, const MissionScore& score) {
-  std::printf("| %s | %s | %d | %.1f | %.1f | %.3f | %.2f | %s | %.1f | %.1f |\n", mission_case.name.c_str(),
-              mission_case.recording.name.c_str(), score.frames, 100.0 * score.coverage, 100.0 * score.trusted,
+  std::printf("| %s | %s | %s | %s | %d | %.1f | %.1f | %.3f | %.2f | %s | %.1f | %.1f |\n", mission_case.name.c_str(),
+              mission_case.recording.name.c_str(), name_of(mission_case.map.recipe.imperfection).c_str(),
+              name_of(mission_case.imperfection).c_str(), score.frames, 100.0 * score.coverage, 100.0 * score.trusted,
               score.worst_trusted_error, score.longest_wrong_trust, recovery_of(score).c_str(), 1e3 * score.rmse,
               100.0 * score.within_bound);
   std::fflush(stdout);
@@ -134,12 +158,13 @@ void write_png(const Image& image, const fs::path& file) {
 void dump(const MissionCase& mission_case, const fs::path& folder) {
   if (missing_recording(mission_case)) return;
   const auto recording = open_recording(*find(mission_case.recording), mission_case.range);
+  const Degradation cameras = imperfect_cameras(mission_case.imperfection);
   int step = 0;
   for (const MissionStep& frame : mission_case.plan(recording->times()).steps) {
     if (!frame.disturb) continue;
     ++step;
     if (step != 1 && step != 3 && step != 12) continue;
-    const ImageFrame images = frame.disturb(recording->read(frame.frame).value());
+    const ImageFrame images = cameras(frame.disturb(recording->read(frame.frame).value()), step);
     const std::string name = mission_case.name + "_" + std::to_string(step);
     write_png(images.left, folder / (name + "_left.png"));
     if (images.right) write_png(*images.right, folder / (name + "_right.png"));
@@ -172,7 +197,10 @@ int run(const TrialOptions& options) {
 int main(int argc, char** argv) {
   const auto options = byre::parse({argv + 1, static_cast<std::size_t>(argc - 1)});
   if (!options) {
-    std::fprintf(stderr, "usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [CASE...]\n");
+    std::fprintf(
+        stderr,
+        "usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [--imperfection exact|good|worn]\n"
+        "                           [--calibration-seed N] [CASE...]\n");
     return 2;
   }
   try {

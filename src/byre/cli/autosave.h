@@ -1,10 +1,12 @@
 #pragma once
 
 #include "byre/cli/stopwatch.h"
+#include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +16,13 @@ namespace byre::cli {
 // saving has a thread of its own, and a map that comes due meanwhile is passed over.
 class Autosave {
  public:
-  using Save = std::function<void(const Map& online)>;
+  using Save = std::function<void(const Map& online, const std::optional<RefinedCalibration>& calibration)>;
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
-  void offer(const Map& online);  // after each frame
-  void finish();                  // waits for the thread
+  // After each frame; calibration: by which the map lies, where that was refined.
+  void offer(const Map& online, const std::optional<RefinedCalibration>& calibration = {});
+  void finish();  // waits for the thread
 
   int saved() const { return saved_; }                                    // how often it was
   const std::vector<std::string>& failures() const { return failures_; }  // why it was not

@@ -18,7 +18,7 @@ Map map_of(int points) {
 
 TEST(Autosave, SavesTheMapAsItWasWhenOffered) {
   std::vector<int> saved;
-  Autosave autosave(0.0, [&saved](const Map& map) { saved.push_back(map.point_count()); });
+  Autosave autosave(0.0, [&saved](const Map& map, const auto&) { saved.push_back(map.point_count()); });
   Map map = map_of(1);
   autosave.offer(map);
   map.add_point({});
@@ -30,7 +30,7 @@ TEST(Autosave, SavesTheMapAsItWasWhenOffered) {
 }
 
 TEST(Autosave, WaitsForItsTime) {
-  Autosave autosave(3600.0, [](const Map&) { FAIL() << "an hour too early"; });
+  Autosave autosave(3600.0, [](const Map&, const auto&) { FAIL() << "an hour too early"; });
   autosave.offer(map_of(1));
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 0);
@@ -38,7 +38,7 @@ TEST(Autosave, WaitsForItsTime) {
 
 TEST(Autosave, PassesOverWhatComesWhileItSaves) {
   std::promise<void> disk;
-  Autosave autosave(0.0, [done = disk.get_future().share()](const Map&) { done.wait(); });
+  Autosave autosave(0.0, [done = disk.get_future().share()](const Map&, const auto&) { done.wait(); });
   for (int i = 0; i < 3; ++i) autosave.offer(map_of(1));
   disk.set_value();
   autosave.finish();
@@ -47,7 +47,7 @@ TEST(Autosave, PassesOverWhatComesWhileItSaves) {
 
 TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
   bool is_full = true;
-  Autosave autosave(0.0, [&is_full](const Map&) {
+  Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
     if (is_full) throw std::runtime_error("the disk is full");
   });
   autosave.offer(map_of(1));
@@ -60,7 +60,7 @@ TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
 }
 
 TEST(Autosave, HasNothingToWaitForBeforeTheFirst) {
-  Autosave autosave(0.0, [](const Map&) {});
+  Autosave autosave(0.0, [](const Map&, const auto&) {});
   autosave.finish();
   EXPECT_THAT(autosave.failures(), IsEmpty());
 }

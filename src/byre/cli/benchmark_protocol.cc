@@ -41,7 +41,7 @@ FrameRange read_frames(const YamlValue& value) {
 
 CameraChoice read_camera(const YamlValue& value) {
   const std::optional<CameraChoice> camera = parse_camera(value.text());
-  if (!camera) value.fail("\"" + value.text() + "\" is no choice of cameras", "use stereo, left or right");
+  if (!camera) value.fail("\"" + value.text() + "\" is no choice of cameras", "use stereo, left, right or rgbd");
   return *camera;
 }
 

@@ -48,7 +48,7 @@ TEST_F(Protocols, SayHowToTakeARecording) {
   EXPECT_EQ(protocol.recording("a").open.calibration, "cameras.yaml");
   EXPECT_EQ(protocol.recording("a").open.frame_rate_hz, 12.5);
   EXPECT_THAT(fault_of(recording + "camera: middle}\n" + cases),
-              HasSubstr("\"middle\" is no choice of cameras | use stereo, left or right"));
+              HasSubstr("\"middle\" is no choice of cameras | use stereo, left, right or rgbd"));
   EXPECT_THAT(fault_of(recording + "fps: 0}\n" + cases), HasSubstr("is no number from 0.01"));
 }
 

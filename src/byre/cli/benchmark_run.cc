@@ -76,7 +76,7 @@ Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
 void require_metric(const Source& source) {
   if (source.open_frames(false).is_metric) return;
   throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
-                   "make the map of a stereo recording, by both cameras");
+                   "make the map of a stereo recording, by both cameras, or of one with depth");
 }
 
 Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkProtocol& protocol, const fs::path& data) {
@@ -225,7 +225,7 @@ class BenchmarkRunner {
                  align_to_truth(run.final, Scale::fixed, source.truth),
                  run.wall_seconds};
     StoredMap stored;
-    stored.recordings.push_back(describe_source(source.folder, *recording));
+    stored.recordings.push_back(describe_source(source.folder, *recording, run.calibration));
     stored.map = std::move(run.map);
     save_for_use(std::move(stored), vocabulary_, "", made.file);
     write_trajectories(run, file_name_of(name) + ".map", 0);

@@ -146,7 +146,7 @@ class DemoRunner {
     findings_.map_frames = static_cast<int>(run.frames.size());
     findings_.map_ate = judge(run, {load_truth(visit(1)), {}}).final_poses.ate.value_or(0.0);
     barn_.path = run.final;
-    barn_.stored.recordings = {describe_source(visit(1), *recording)};
+    barn_.stored.recordings = {describe_source(visit(1), *recording, run.calibration)};
     barn_.stored.map = std::move(run.map);
     lay_on_plan();
   }

@@ -30,6 +30,7 @@ bool moves_the_pose(SessionEvent event) {
     case SessionEvent::relocalised:
     case SessionEvent::online_corrected:
     case SessionEvent::map_corrected:
+    case SessionEvent::recalibrated:
       return true;
     default:
       return false;

@@ -1,5 +1,6 @@
 #include "byre/cli/inspect_report.h"
 
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/register_report.h"
 
@@ -80,10 +81,11 @@ std::string describe_box(const std::optional<BoundingBox>& box, const char* unit
                    box->max.y(), box->min.z(), box->max.z());
 }
 
-std::string describe(const SourceRecording& recording, int keyframes) {
-  return recording.name + formatted(", %.1f s, last frame at %.3f s, %d keyframes",
-                                    to_seconds(recording.last_time - recording.first_time),
-                                    to_seconds(recording.last_time), keyframes);
+std::string describe(const SourceRecording& recording, int keyframes, const std::string& camera) {
+  return recording.name +
+         formatted(", %.1f s, last frame at %.3f s, %d keyframes, ",
+                   to_seconds(recording.last_time - recording.first_time), to_seconds(recording.last_time), keyframes) +
+         camera;
 }
 
 template <typename Size>
@@ -107,11 +109,15 @@ std::string describe_file(const InspectedFile& file, int keyframes) {
   return text;
 }
 
-std::string origin_text(const StoredMap& stored, const MapCounts& counts) {
+std::string origin_text(const StoredMap& stored, const MapInspection& inspection) {
   std::string text = wide_row("poses", std::string(describe(stored.pose_source)));
   text += wide_row("scale", std::string(name_of(stored.scale)));
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
-    text += wide_row("recording", describe(stored.recordings[i], counts.keyframes_of_recordings[i]));
+    text += wide_row("recording", describe(stored.recordings[i], inspection.counts.keyframes_of_recordings[i],
+                                           inspection.cameras_of_recordings[i]));
+    if (!stored.recordings[i].refined) continue;
+    text += wide_row("calibration", describe_calibration(*stored.recordings[i].refined)) +
+            calibration_table(*stored.recordings[i].refined);
   }
   for (const auto& [key, note] : stored.notes) text += wide_row(key, note);
   if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
@@ -152,12 +158,14 @@ Json to_json(const std::optional<BoundingBox>& box) {
   return {{"min", {box->min.x(), box->min.y(), box->min.z()}}, {"max", {box->max.x(), box->max.y(), box->max.z()}}};
 }
 
-Json to_json(const SourceRecording& recording, int keyframes) {
+Json to_json(const SourceRecording& recording, int keyframes, const std::string& camera) {
   return {{"name", recording.name},
           {"keyframes", keyframes},
           {"first_time_ns", recording.first_time.count()},
           {"last_time_ns", recording.last_time.count()},
-          {"stereo", recording.calibration.right.has_value()}};
+          {"camera", camera},
+          {"stereo", recording.calibration.right.has_value()},
+          {"refined_calibration", recording.refined ? calibration_json(*recording.refined) : Json()}};
 }
 
 template <typename Size>
@@ -167,10 +175,11 @@ Json sizes_json(const std::vector<Size>& sizes) {
   return json;
 }
 
-Json recordings_json(const std::vector<SourceRecording>& recordings, const MapCounts& counts) {
+Json recordings_json(const std::vector<SourceRecording>& recordings, const MapInspection& inspection) {
   Json json = Json::array();
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    json.push_back(to_json(recordings[i], counts.keyframes_of_recordings[i]));
+    json.push_back(
+        to_json(recordings[i], inspection.counts.keyframes_of_recordings[i], inspection.cameras_of_recordings[i]));
   }
   return json;
 }
@@ -190,7 +199,7 @@ Json errors_json(const ReprojectionErrors& errors) {
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file) {
   const MapCounts& counts = inspection.counts;
   const char* const unit = unit_of(stored);
-  std::string text = wide_row("map", file.name) + origin_text(stored, counts);
+  std::string text = wide_row("map", file.name) + origin_text(stored, inspection);
   text += wide_row("keyframes", formatted("%d, with %d features, %d with a patch", counts.keyframes, counts.features,
                                           counts.patches));
   text += wide_row("points", formatted("%d, with %d observations", counts.points, counts.observations));
@@ -211,7 +220,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"file", file_json(file)},
       {"scale", name_of(stored.scale)},
       {"pose_source", name_of(stored.pose_source)},
-      {"recordings", recordings_json(stored.recordings, inspection.counts)},
+      {"recordings", recordings_json(stored.recordings, inspection)},
       {"notes", stored.notes},
       {"plan", stored.plan ? registration_json(*stored.plan) : Json()},
       {"vocabulary_checksum", formatted("%016llx", static_cast<unsigned long long>(stored.vocabulary_checksum))},

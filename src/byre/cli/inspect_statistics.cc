@@ -93,6 +93,21 @@ std::optional<BoundingBox> bounding_box(const Map& map) {
   return box;
 }
 
+// A pair says so in its calibration; without one, it was a depth camera that gave the keyframes' rigs a baseline.
+std::vector<std::string> cameras_of_recordings(const StoredMap& stored) {
+  std::vector<std::string> cameras;
+  for (const SourceRecording& recording : stored.recordings) {
+    cameras.emplace_back(recording.calibration.right ? "stereo" : "mono");
+  }
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    const Keyframe& keyframe = *stored.map.find_keyframe(id);
+    const bool has_baseline = stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)].is_stereo();
+    std::string& camera = cameras[static_cast<std::size_t>(keyframe.recording)];
+    if (has_baseline && camera == "mono") camera = "rgbd";
+  }
+  return cameras;
+}
+
 // Recordings by themselves: between two of them the robot was carried, or it is another robot.
 double path_of_keyframes(const StoredMap& stored) {
   std::vector<Trajectory> paths(stored.recordings.size());
@@ -139,6 +154,7 @@ MapInspection inspect(const StoredMap& stored) {
   MapInspection inspection;
   inspection.counts = count(stored.map);
   inspection.counts.keyframes_of_recordings = keyframes_of_recordings(stored.map, stored.recordings.size());
+  inspection.cameras_of_recordings = cameras_of_recordings(stored);
   inspection.observations_per_point = observations_per_point(stored.map);
   inspection.errors = reprojection_errors(stored.map);
   inspection.points_in_world = bounding_box(stored.map);

@@ -47,6 +47,7 @@ struct PartSize {
 
 struct MapInspection {
   MapCounts counts;
+  std::vector<std::string> cameras_of_recordings;  // stereo, rgbd or mono
   Distribution observations_per_point;
   ReprojectionErrors errors;
   std::optional<BoundingBox> points_in_world;  // none without points

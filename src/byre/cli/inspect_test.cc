@@ -94,7 +94,7 @@ TEST(InspectReport, IsReadable) {
   const InspectedFile file{"barn.byre", 12345678, {{"header", 432}, {"points", 2000000}}};
   const std::string text = to_text(stored, inspection, file);
   EXPECT_THAT(text, StartsWith("map            barn.byre\n"));
-  EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes\n"));
+  EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes, stereo\n"));
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
   EXPECT_THAT(text, HasSubstr("keyframes      5, with 36 features, 20 with a patch\n"));
   EXPECT_THAT(text, HasSubstr("words          of 2 keyframes, by the vocabulary 0123456789abcdef\n"));
@@ -103,6 +103,16 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("faults         none\n"));
   inspection.faults = {"point 3 is seen by no keyframe"};
   EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is seen by no keyframe\n"));
+}
+
+TEST(InspectReport, SaysWhichCamerasMadeTheMap) {
+  StoredMap stored = StoredMapScene(4, 9).stored();
+  EXPECT_THAT(inspect(stored).cameras_of_recordings, testing::ElementsAre("stereo", "mono"));
+  stored.recordings[0].calibration.right.reset();
+  const MapInspection inspection = inspect(stored);
+  EXPECT_THAT(inspection.cameras_of_recordings, testing::ElementsAre("rgbd", "mono")) << "its rig has a baseline";
+  EXPECT_THAT(to_text(stored, inspection, {}), HasSubstr("last frame at 200.000 s, 4 keyframes, rgbd\n"));
+  EXPECT_EQ(Json::parse(to_json(stored, inspection, {}))["recordings"][0]["camera"], "rgbd");
 }
 
 TEST(InspectReport, NamesItsUnit) {

@@ -80,8 +80,7 @@ Calibration camera_of_images(const LocaliseCommandOptions& options, const Stored
   const fs::path source = options.open.calibration.value_or(options.map);
   const Calibration calibration =
       options.open.calibration ? read_calibration(source) : calibration_of_map(stored, options.map);
-  return choose_calibration({calibration, source.string(), source.string()}, false, options.open.camera, source)
-      .cameras;
+  return choose_calibration({calibration, source.string(), source.string()}, {}, options.open.camera, source).cameras;
 }
 
 struct Work {

@@ -13,13 +13,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Calibration best_calibration(const std::vector<SourceRecording>& recordings, const Calibration& given) {
+  const auto known = known_calibration(recordings, given);
+  return known ? known->calibration : given;
+}
+
 // Extracts frames of one camera and looks for each in the map.
 class Finder {
  public:
-  Finder(const SearchableMap& map, const Calibration& calibration) : map_(map), extractor_(calibration, {}) {}
+  Finder(const SearchableMap& map, const Calibration& given)
+      : map_(map), extractor_(best_calibration(map.recordings, given), {}) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
-    if (!map_.is_metric) images.right.reset();
+    if (!map_.is_metric) {
+      images.right.reset();
+      images.depth.reset();
+    }
     LocalisedFrame result;
     result.name = std::move(name);
     result.time = images.time;

@@ -37,10 +37,14 @@ struct LocaliseHooks {
 // A map ready for queries. Borrows the map.
 struct SearchableMap {
   SearchableMap(const StoredMap& stored, const Vocabulary& vocabulary)
-      : is_metric(stored.scale == MapScale::metric), map(stored.map), index(index_of(stored.map, vocabulary)) {}
+      : is_metric(stored.scale == MapScale::metric),
+        map(stored.map),
+        recordings(stored.recordings),
+        index(index_of(stored.map, vocabulary)) {}
 
   bool is_metric;  // else disparities, which are, cannot be compared with it
   const Map& map;
+  const std::vector<SourceRecording>& recordings;
   Map nothing_online{Origin::online};
   PlaceIndex index;
 

@@ -31,6 +31,7 @@ constexpr std::array kCommands = {
     Command{"localise", "Find frames in a map, each without a guess", declare_localise},
     Command{"register", "Find where a map lies on a floor plan", declare_register},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
+    Command{"calibrate", "Refine the calibration of a recording's cameras by what they see", declare_calibrate},
     Command{"scale", "Give the map of one camera its size, by a distance that is known", declare_scale},
     Command{"draw", "Draw a map on its floor plan, what the camera saw, and videos of missions", declare_draw},
     Command{"view", "Show a map in a browser, and find it on a floor plan there", declare_view},

@@ -1,4 +1,5 @@
 #include "byre/cli/autosave.h"
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_options.h"
@@ -32,8 +33,9 @@ struct MapRecord {
   fs::path path;
 };
 
-void save(Map offline, const MapRecord& record) {
+void save(Map offline, const std::optional<RefinedCalibration>& calibration, const MapRecord& record) {
   StoredMap stored = record.about;
+  if (calibration) stored.recordings.back().refined = calibration;
   stored.map = std::move(offline);
   save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
 }
@@ -41,9 +43,15 @@ void save(Map offline, const MapRecord& record) {
 MapRun run_and_autosave(Recording& recording, const MapRunOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
-                    [&record](const Map& online) { save(offline_copy(online), record); });
+                    [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {
+                      save(offline_copy(online), calibration, record);
+                    });
   MapRunHooks hooks;
-  if (options.autosave_s) hooks.offer_map = [&autosave](const Map& online) { autosave.offer(online); };
+  if (options.autosave_s) {
+    hooks.offer_map = [&autosave](const Map& online, const std::optional<RefinedCalibration>& calibration) {
+      autosave.offer(online, calibration);
+    };
+  }
   MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet, std::move(before));
   autosave.finish();
   run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
@@ -67,6 +75,11 @@ std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
   return online;
 }
 
+// A recording that was given the same calibration as an earlier one of the map is rectified by the same refined one.
+void take_known_calibration(std::vector<SourceRecording>& recordings) {
+  recordings.back().refined = known_calibration(recordings, recordings.back().calibration);
+}
+
 MapRecord record_of(const MapOptions& options) {
   MapRecord record;
   // Found to be missing now, not after an hour of mapping.
@@ -85,6 +98,8 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   protocol.frames_in_range = recording.size();
   protocol.options.pace = options.pace;
   protocol.options.extract.refinement = options.refinement;
+  protocol.options.self_calibrate = !options.no_self_calibration;
+  protocol.options.calibration = record.about.recordings.back().present_calibration();
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
   if (options.extended) protocol.extended = options.extended->string();
@@ -101,6 +116,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   std::optional<Map> extended = take_extended(options, record);
   record.about.recordings.push_back(describe_source(options.recording, *recording));
+  take_known_calibration(record.about.recordings);
   record.about.scale = is_metric ? MapScale::metric : MapScale::unknown;
   MapProtocol protocol = protocol_of(options, record, *recording);
   protocol.is_metric = is_metric;
@@ -109,9 +125,10 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   const InterruptCatcher interrupt(options.outputs());
   const MapRun run = run_and_autosave(*recording, protocol.options, options, record, std::move(extended), interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
+  if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
   const ResourceUse resources = resources_used_so_far();
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep
-  if (options.map) save(run.map, record);
+  if (options.map) save(run.map, run.calibration, record);
   write_results(options, run, protocol, resources);
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;

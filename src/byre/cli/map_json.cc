@@ -1,3 +1,4 @@
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
 #include "byre/cli/register_report.h"
@@ -94,6 +95,7 @@ Json counts_json(const MapRun& run) {
           {"coverage", counts.coverage()},
           {"frames_unreadable", counts.unreadable},
           {"frames_without_right_image", counts.without_right_image},
+          {"frames_with_depth_image", counts.with_depth_image},
           {"keyframes_made", counts.keyframes},
           {"keyframes_left", run.map.keyframe_count()},
           {"points", run.map.point_count()},
@@ -156,6 +158,7 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
                {"counts", counts_json(run)},
                {"extension", extension_json(run, protocol)},
+               {"calibration", run.calibration ? calibration_json(*run.calibration) : Json()},
                {"finishing", run.finishing ? to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},
@@ -203,6 +206,7 @@ Json frame_json(const MappedFrame& frame, const PoseError* error) {
   json["loop_found"] = report.has(SessionEvent::loop_found);
   json["map_corrected"] = report.has(SessionEvent::map_corrected);
   json["has_right_image"] = frame.has_right;
+  json["has_depth_image"] = frame.has_depth;
   json["keyframe"] = report.keyframe_added;
   json["features"] = report.features;
   json["expected"] = report.expected_points;

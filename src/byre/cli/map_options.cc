@@ -66,6 +66,8 @@ void declare_building(CLI::App& command, MapOptions& options) {
       ->check(CLI::Range(0.1, 1e6).description(""));
   command.add_flag("--no-loops", options.no_loops,
                    "Recognise no places and leave out what comes after the last frame; for comparison");
+  command.add_flag("--no-self-calibration", options.no_self_calibration,
+                   "Take the calibration as it is given, instead of refining it from what is seen");
 }
 
 void require_consistent_extension(const MapOptions& options) {

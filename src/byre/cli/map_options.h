@@ -28,6 +28,7 @@ struct MapOptions {
   Pace pace = Pace::paced;
   Refinement refinement = Refinement::all;
   bool no_loops = false;
+  bool no_self_calibration = false;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

@@ -1,5 +1,6 @@
 #include "byre/cli/map_report.h"
 
+#include "byre/cli/calibration_report.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/map_statistics.h"
 #include "byre/cli/stored_map.h"
@@ -72,8 +73,11 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
 
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
   std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
-  if (protocol.camera != CameraChoice::stereo)
+  if (protocol.camera == CameraChoice::rgbd) {
+    text += formatted(", %d of them with depth", count_frames(run.frames).with_depth_image);
+  } else if (protocol.camera != CameraChoice::stereo) {
     text += formatted(" of the %s camera", to_string(protocol.camera).data());
+  }
   const auto frames = static_cast<int>(run.frames.size());
   if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
   return text;
@@ -124,7 +128,7 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 }
 
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
-  if (run.finishing) return to_text(*run.finishing);
+  if (run.finishing) return calibration_row(run.calibration) + to_text(*run.finishing);
   if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
   if (run.causal.empty()) return row("finishing", "left out, as there is no map");
   return row("finishing", "left out; \"byre refine\" does it");

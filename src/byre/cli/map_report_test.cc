@@ -40,7 +40,7 @@ MappedFrame tracked_frame(int number) {
   seconds.stereo = 0.002;
   seconds.map_submit = 0.001;
   seconds.total = 0.010 + 0.001 * number;
-  return {report.time, true, report, seconds, 1 + number, 500 * number, 60.04 + number};
+  return {report.time, true, false, report, seconds, 1 + number, 500 * number, 60.04 + number};
 }
 
 // Four frames, the second of which could not be read.

@@ -33,6 +33,7 @@ class FrameThread {
       : extractor_(calibration, options.extract),
         session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
                  options.vocabulary, options.offline) {
+    if (options.self_calibrate && !before) session_.refine_calibration(calibration, options.self_calibration);
     if (before) session_.continue_map(std::move(*before));
   }
 
@@ -79,6 +80,7 @@ class FrameThread {
     MappedFrame frame;
     frame.time = images.time;
     frame.has_right = images.right.has_value();
+    frame.has_depth = images.depth.has_value();
     frame.report = report;
     frame.seconds.rectify = extraction.times.rectify;
     frame.seconds.extract = extraction.times.extract;
@@ -102,6 +104,7 @@ bool has_pose(const MappedFrame& frame) {
 void take_over_result(const FrameThread& thread, MapRun& run) {
   run.final = thread.session().final_trajectory();
   run.map = offline_copy(standalone_copy(thread.session().map()));
+  if (const auto refined = thread.session().self_calibration()) run.calibration = refined;
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = thread.log().job_seconds;
   for (const MappedFrame& frame : run.frames) {
@@ -136,10 +139,18 @@ std::string_view name_of(OfflinePolicy policy) {
   return "";
 }
 
+// A calibration that the map has refined is as good as it gets.
+MapRunOptions refining(MapRunOptions options, bool is_to_refine) {
+  options.self_calibrate &= is_to_refine;
+  return options;
+}
+
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
   const Stopwatch watch;
-  FrameThread thread(recording.calibration(), options, std::move(before));
+  const Calibration given = options.calibration.value_or(recording.calibration());
+  const auto known = options.offline ? known_calibration(options.offline->recordings(), given) : std::nullopt;
+  FrameThread thread(known ? known->calibration : given, refining(options, !known), std::move(before));
   DecodeAhead decoder(recording);
   LiveClock clock;
   MapRun run;
@@ -155,7 +166,7 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
     if (hooks.look && decoded->images) hooks.look({*decoded->images, run.frames.back(), thread.session()});
     is_begun = is_begun || has_pose(run.frames.back());
-    if (is_begun && hooks.offer_map) hooks.offer_map(thread.online());
+    if (is_begun && hooks.offer_map) hooks.offer_map(thread.online(), thread.session().self_calibration());
   }
   if (hooks.should_stop()) thread.hurry();
   thread.finish();
@@ -167,6 +178,7 @@ MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunH
       run.finishing = thread.finish_map(options.finish, finish_hooks);
     }
   }
+  run.calibration = known;
   take_over_result(thread, run);
   run.wall_seconds = watch.seconds();
   return run;

@@ -37,6 +37,9 @@ struct MapRunOptions {
   Pace pace = Pace::paced;
   ExtractOptions extract;
   SessionOptions session;
+  std::optional<Calibration> calibration;  // of the cameras; empty: as the recording has it
+  bool self_calibrate = true;              // refine the calibration given from what is mapped
+  SelfCalibrationOptions self_calibration;
   FinishOptions finish;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
@@ -47,7 +50,7 @@ struct StageSeconds {
   double decode = 0.0;  // ahead, in a thread of its own; not in total
   double rectify = 0.0;
   double extract = 0.0;
-  double stereo = 0.0;
+  double stereo = 0.0;  // or reading depths
   double track = 0.0;
   double map = 0.0;         // windows, deltas, new points, and jobs where they run on this thread
   double map_submit = 0.0;  // of map: handing jobs to the executor, so the whole job where it runs on this thread
@@ -57,6 +60,7 @@ struct StageSeconds {
 struct MappedFrame {
   Timestamp time{};
   bool has_right = false;
+  bool has_depth = false;
   std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
   StageSeconds seconds;
   int keyframes = 0;       // of the map after it
@@ -65,12 +69,13 @@ struct MappedFrame {
 };
 
 struct MapRun {
-  std::vector<MappedFrame> frames;     // one for each frame of the recording, fewer when the run was stopped
-  Trajectory causal;                   // poses as published when their frames came
-  Trajectory final;                    // as recomputed after the last frame
-  Trajectory odometry;                 // the smooth poses as published, in a frame of their own
-  Map map{Origin::offline};            // as it is kept; of the keyframes made, others were found redundant
-  std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
+  std::vector<MappedFrame> frames;                // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                              // poses as published when their frames came
+  Trajectory final;                               // as recomputed after the last frame
+  Trajectory odometry;                            // the smooth poses as published, in a frame of their own
+  Map map{Origin::offline};                       // as it is kept; of the keyframes made, others were found redundant
+  std::optional<RefinedCalibration> calibration;  // by which the map lies, where it was refined
+  std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // of a mission, of adjusting its online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   std::vector<std::string> warnings;                // of the recording
@@ -89,7 +94,8 @@ struct MapRunHooks {
   std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
   std::function<void(const RunView& view)> look;  // unless empty, after each frame that could be read; not in its time
-  std::function<void(const Map& online)> offer_map;  // unless empty, after each frame from the first with a pose on
+  std::function<void(const Map& online, const std::optional<RefinedCalibration>& calibration)>
+      offer_map;  // unless empty, after each frame from the first with a pose on
   std::function<void(const char* step)> before_finishing_step;
 };
 

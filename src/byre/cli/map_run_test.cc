@@ -124,7 +124,7 @@ TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
-  hooks.offer_map = [&keyframes](const Map& online) { keyframes.push_back(online.keyframe_count()); };
+  hooks.offer_map = [&keyframes](const Map& online, const auto&) { keyframes.push_back(online.keyframe_count()); };
   const MapRun mapped = run_map(*recording, {}, hooks);
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));

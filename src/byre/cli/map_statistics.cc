@@ -60,6 +60,7 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
     counts.unreadable += frame.report ? 0 : 1;
     if (!frame.report) continue;
     counts.without_right_image += frame.has_right ? 0 : 1;
+    counts.with_depth_image += frame.has_depth ? 1 : 0;
     count_events(*frame.report, counts);
     if (frame.report->start_failure != TwoViewFailure::none) ++counts.refused_starts[frame.report->start_failure];
     const State before = std::exchange(state, frame.report->state);

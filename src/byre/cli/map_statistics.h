@@ -30,7 +30,8 @@ struct FrameCounts {
   int with_pose = 0;
   int unreadable = 0;
   int without_right_image = 0;  // of those readable
-  int keyframes = 0;            // that became one
+  int with_depth_image = 0;
+  int keyframes = 0;  // that became one
   int lost_episodes = 0;
   int lost = 0;    // frames in these episodes
   int resets = 0;  // how often a map was given up for a new one

@@ -10,7 +10,7 @@
 namespace byre::cli {
 namespace {
 
-constexpr std::array kChoices = {CameraChoice::stereo, CameraChoice::left, CameraChoice::right};
+constexpr std::array kChoices = {CameraChoice::stereo, CameraChoice::left, CameraChoice::right, CameraChoice::rgbd};
 
 std::optional<double> parse_frame_rate(std::string_view text) {
   const std::optional<double> rate = parse_number(text);
@@ -29,16 +29,18 @@ std::optional<CameraChoice> parse_camera(std::string_view text) {
 void declare_open_options(CLI::App& command, OpenOptions& options) {
   const auto set_camera = [&options](const std::string& text) {
     options.camera = parse_camera(text);
-    if (!options.camera) throw CLI::ValidationError("--camera", "\"" + text + "\" is none of stereo, left and right");
+    if (!options.camera)
+      throw CLI::ValidationError("--camera", "\"" + text + "\" is none of stereo, left, right and rgbd");
   };
   const auto set_frame_rate = [&options](const std::string& text) {
     options.frame_rate_hz = parse_frame_rate(text);
     if (!options.frame_rate_hz) throw CLI::ValidationError("--fps", "\"" + text + "\" is no frame rate");
   };
   command
-      .add_option_function<std::string>("--camera", set_camera,
-                                        "Take both cameras of the recording or one alone (both where it has two)")
-      ->type_name("stereo|left|right");
+      .add_option_function<std::string>(
+          "--camera", set_camera,
+          "Take both cameras of the recording, one alone, or the colour camera with depth (all it has)")
+      ->type_name("stereo|left|right|rgbd");
   command
       .add_option(
           "--calibration", options.calibration,

@@ -17,7 +17,7 @@ inline constexpr const char* kRecordingHelp =
 // command line.
 void declare_open_options(CLI::App& command, OpenOptions& options);
 
-// One of stereo, left and right; empty for anything else.
+// One of stereo, left, right and rgbd; empty for anything else.
 std::optional<CameraChoice> parse_camera(std::string_view text);
 
 // Range of frame rates that may be given, Hz.

@@ -42,6 +42,7 @@ TEST(ParseCamera, KnowsEachByItsName) {
   EXPECT_EQ(parse_camera("stereo"), CameraChoice::stereo);
   EXPECT_EQ(parse_camera("left"), CameraChoice::left);
   EXPECT_EQ(parse_camera("right"), CameraChoice::right);
+  EXPECT_EQ(parse_camera("rgbd"), CameraChoice::rgbd);
   EXPECT_FALSE(parse_camera("Left"));
   EXPECT_FALSE(parse_camera(""));
 }

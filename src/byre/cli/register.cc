@@ -21,6 +21,7 @@ struct RegisterCommandOptions {
   fs::path picks;
   std::optional<fs::path> output;
   RegisterOptions registering;
+  bool fix_scale = false;
   bool json = false;
 };
 
@@ -28,24 +29,36 @@ constexpr const char* kFooter = R"(Examples:
   byre register barn.byre --plan plan.yaml --points picks.csv
   byre register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre
   byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
+  byre register barn.byre --plan plan.yaml --points picks.csv --fix-scale -o barn-plan.byre
 
 Finds where a map lies on a floor plan, from points picked in both: with -o a copy of the map that knows it, with which
 "byre run" and "byre localise" give poses on the plan (--frame plan). The plan is a map_server YAML file, or an image
 with a world file beside it. Which way is up, and how high the floor lies, comes from the path that was driven. A wrong
-pick is found when four or more are given, better six. A map without a metric scale gets one on the plan. Doubts are
-told, and are no errors. docs/floor_plan.md describes the files and the figures.)";
+pick is found when four or more are given, better six. A map without a metric scale gets one on the plan; of a metric
+map the plan tells whether its scale is right. A stereo map that is too large or too small has a baseline that is:
+--fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors. docs/floor_plan.md describes the
+files and the figures.)";
+
+MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
+  StoredMap stored = load_map(options.map);
+  if (options.fix_scale) return mend_scale(std::move(stored), options.map, plan, options.picks, options.registering);
+  Registering registering = register_map(stored, options.map, plan, options.picks, options.registering);
+  return {std::move(stored), std::move(registering), 1.0};
+}
 
 ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
   if (options.output) require_writable(*options.output);
   const FloorPlan plan = read_floor_plan(options.plan);
-  StoredMap stored = load_map(options.map);
-  const Registering registering = register_map(stored, options.map, plan, options.picks, options.registering);
+  const MendedMap registered = register_as_asked(options, plan);
   if (options.output) {
-    stored.plan = registering.fit.registration;
+    StoredMap stored = registered.stored;
+    stored.plan = registered.registering.fit.registration;
     save_map(stored, *options.output);
   }
+  RegisterProtocol protocol{options.map.string(), plan, options.output.value_or("").string(), {}};
+  if (options.fix_scale) protocol.scaled_by = registered.factor;
   const auto print = options.json ? to_json : to_text;
-  result << print(registering, {options.map.string(), plan, options.output.value_or("").string()});
+  result << print(registered.registering, protocol);
   return ExitCode::done;
 }
 
@@ -60,9 +73,10 @@ Action declare_register(CLI::App& command) {
   command.add_option("--points", options->picks, "Points picked in the map and on the plan: a CSV file")
       ->type_name("FILE")
       ->required();
-  command.add_option("-o,--output", options->output, "The map with its place on the plan (none is written)")
-      ->type_name("MAP");
-  command.add_option("--pick-sigma", options->registering.pick_sigma, "How well points were picked, one sigma (0.05)")
+  CLI::Option* const output =
+      command.add_option("-o,--output", options->output, "The map with its place on the plan (none is written)")
+          ->type_name("MAP");
+  command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")
       ->type_name("METRES")
       ->check(CLI::Range(1e-4, 100.0).description(""));
   command
@@ -70,6 +84,9 @@ Action declare_register(CLI::App& command) {
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
       ->check(CLI::Range(-100.0, 100.0).description(""));
+  command
+      .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
+      ->needs(output);
   command.add_flag("--json", options->json, "Print the result as JSON");
   command.footer(kFooter);
   return [options](std::ostream& result) { return run_register(*options, result); };

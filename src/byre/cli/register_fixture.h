@@ -13,7 +13,8 @@ inline StoredMap driven_barn(FloorPlanScene& scene) {
   const Camera camera{CameraModel::pinhole, 320, 240, 188.0, 188.0, 158.0, 119.0, {}};
   StoredMap stored;
   stored.map = scene.driven_map(scene.path_in_map());
-  stored.recordings = {{"barn_morning", {camera, std::nullopt, {}}, {}, std::chrono::seconds(100)}};
+  const StereoPartner right{camera, {Eigen::Quaterniond::Identity(), {-stored.map.rigs()[0].baseline, 0.0, 0.0}}};
+  stored.recordings = {{"barn_morning", {camera, right, {}}, {}, std::chrono::seconds(100)}};
   return stored;
 }
 
@@ -23,6 +24,18 @@ inline std::string picks_csv(const std::vector<PlanCorrespondence>& corresponden
   for (const PlanCorrespondence& each : correspondences) {
     text += formatted("%.9f,%.9f,%.9f,", each.point_in_map.x(), each.point_in_map.y(), each.point_in_map.z());
     text += formatted("%.9f,%.9f,", each.point_in_plan.x(), each.point_in_plan.y()) + each.name + "\n";
+  }
+  return text;
+}
+
+// The body at every tenth keyframe of the driven barn, by its time, as picks.
+inline std::string keyframe_picks_csv(const FloorPlanScene& scene, const StoredMap& stored) {
+  std::string text = "time_s,plan_x_m,plan_y_m\n";
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    if (id.number % 10 != 5) continue;
+    const Keyframe& keyframe = *stored.map.find_keyframe(id);
+    const Eigen::Vector3d in_plan = scene.plan_from_map * body_at(stored.map, keyframe);
+    text += formatted("%.9f,%.9f,%.9f\n", to_seconds(keyframe.frame.time), in_plan.x(), in_plan.y());
   }
   return text;
 }

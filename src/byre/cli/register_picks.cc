@@ -134,43 +134,50 @@ MapPlace read_image_pixel(const Pick& pick, const StoredMap& stored) {
   return *place;
 }
 
-MapPlace read_position(const Pick& pick) {
+MapPlace read_position(const Pick& pick, double scale) {
   const Columns columns = pick.has(kPosition) ? kPosition : kPositionOfPoint;
-  return {{pick.number(columns[0]), pick.number(columns[1]), pick.number(columns[2])}};
+  return {scale * Eigen::Vector3d(pick.number(columns[0]), pick.number(columns[1]), pick.number(columns[2]))};
 }
 
-MapPlace read_place_in_map(const Pick& pick, const StoredMap& stored) {
+MapPlace read_place_in_map(const Pick& pick, const StoredMap& stored, double positions_scale) {
   pick.require_one({kPoint, kPosition, kPositionOfPoint, kBody, kImagePixel}, "its place in the map",
                    "fill in point, or map_x_m to map_z_m, or time_s, or time_ns, u_px and v_px");
   if (pick.has(kPoint)) return read_point(pick, stored);
   if (pick.has(kBody)) return read_body(pick, stored);
   if (pick.has(kImagePixel)) return read_image_pixel(pick, stored);
-  return read_position(pick);
+  return read_position(pick, positions_scale);
 }
 
-double read_sigma(const Pick& pick, double pick_sigma) {
-  if (!pick.has(kSigma)) return pick_sigma;
+double read_sigma(const Pick& pick, const PickOptions& options) {
+  if (!pick.has(kSigma)) return options.sigma;
   const double sigma = pick.number(kSigma[0]);
   if (!(sigma > 0.0)) pick.fail("has a sigma_m that is not positive", "give the uncertainty of the pick in metres");
   return sigma;
 }
 
 PlanCorrespondence read_correspondence(const Pick& pick, const FloorPlan& plan, const StoredMap& stored,
-                                       double pick_sigma) {
-  return correspondence(pick.name(), read_place_in_map(pick, stored), read_point_in_plan(pick, plan),
-                        read_sigma(pick, pick_sigma));
+                                       const PickOptions& options) {
+  return correspondence(pick.name(), read_place_in_map(pick, stored, options.positions_scale),
+                        read_point_in_plan(pick, plan), read_sigma(pick, options));
 }
 
 }  // namespace
 
 std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem::path& path, const FloorPlan& plan,
-                                                          const StoredMap& stored, double pick_sigma) {
+                                                          const StoredMap& stored, const PickOptions& options) {
   const CsvTable table = read_csv_table(path, all_columns());
   std::vector<PlanCorrespondence> correspondences;
   for (const CsvTable::Row& row : table.rows) {
-    correspondences.push_back(read_correspondence({table, row}, plan, stored, pick_sigma));
+    correspondences.push_back(read_correspondence({table, row}, plan, stored, options));
   }
   return correspondences;
+}
+
+bool gives_positions(const std::filesystem::path& path) {
+  const CsvTable table = read_csv_table(path, all_columns());
+  return std::ranges::any_of(table.rows, [&table](const CsvTable::Row& row) {
+    return Pick(table, row).has(kPosition) || Pick(table, row).has(kPositionOfPoint);
+  });
 }
 
 }  // namespace byre::cli

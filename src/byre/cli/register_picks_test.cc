@@ -53,7 +53,7 @@ class RegisterPicks : public testing::Test {
 
   std::vector<PlanCorrespondence> read(const std::string& content) const {
     std::ofstream(path_) << content;
-    return read_plan_correspondences(path_, small_plan(), map_, kPickSigma);
+    return read_plan_correspondences(path_, small_plan(), map_, {kPickSigma, scale_});
   }
 
   std::string refusal_of(const std::string& content) const {
@@ -66,6 +66,7 @@ class RegisterPicks : public testing::Test {
   }
 
   StoredMap map_ = small_map();
+  double scale_ = 1.0;
   std::filesystem::path path_ =
       std::filesystem::path(testing::TempDir()) / ("picks_" + std::to_string(getpid()) + ".csv");
 };
@@ -82,6 +83,16 @@ TEST_F(RegisterPicks, AreReadAsTheSimulatedBarnWritesThem) {
 TEST_F(RegisterPicks, MayGivePositionsInTheMapByEitherName) {
   const auto picks = read("map_x_m,map_y_m,map_z_m,plan_x_m,plan_y_m\n1.5,-2,0.25,10.5,3\n");
   EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(1.5, -2.0, 0.25));
+}
+
+TEST_F(RegisterPicks, ScalePositionsButNotPoints) {
+  scale_ = 2.0;
+  const auto picks = read("map_x_m,map_y_m,map_z_m,point,plan_x_m,plan_y_m\n1.5,-2,0.25,,10.5,3\n,,,0,10.5,3\n");
+  EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(3.0, -4.0, 0.5));
+  EXPECT_EQ(picks.at(1).point_in_map, Eigen::Vector3d(4.0, 5.0, 6.0));
+  EXPECT_TRUE(gives_positions(path_));
+  read("map_x_m,map_y_m,map_z_m,point,plan_x_m,plan_y_m\n,,,0,10.5,3\n");
+  EXPECT_FALSE(gives_positions(path_));
 }
 
 TEST_F(RegisterPicks, MayBePixelsOfTheImageOfAKeyframe) {

@@ -4,6 +4,8 @@
 #include "byre/cli/register_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -71,6 +74,54 @@ TEST_F(RegisterProgram, PlacesAMapInAProjectedCoordinateSystem) {
   expected.translation += Eigen::Vector3d(500000.0, 5400000.0, 0.0);
   EXPECT_THAT(load_map(folder_ / "barn.byre").plan.value().plan_from_map.target_from_source,
               PoseNear(expected, 1e-5, 1e-6));
+}
+
+TEST_F(RegisterProgram, MendsTheScaleOfAStereoMapOnce) {
+  const FloorPlanScene scene(1, 1.0 / 1.016);
+  FloorPlanScene driven = scene;
+  const StoredMap before = driven_barn(driven);
+  save_map(before, folder_ / "large.byre");
+  write("picks.csv", keyframe_picks_csv(scene, before));
+  const std::string arguments = " --plan plan.yaml --points picks.csv";
+  EXPECT_THAT(run("register large.byre" + arguments).output,
+              ContainsRegex("scale        the map is 1\\.6. % \\+- 0\\.0. % too large: --fix-scale mends it\n"));
+
+  const Outcome once = run("register large.byre" + arguments + " --fix-scale -o mended.byre");
+  EXPECT_EQ(once.exit_code, 0) << once.errors;
+  EXPECT_THAT(once.output,
+              ContainsRegex("scale        the map was 1\\.6. % \\+- 0\\.0. % too large: its lengths and baseline are "
+                            "now 0\\.98.* of those\n"));
+  const StoredMap mended = load_map(folder_ / "mended.byre");
+  EXPECT_NEAR(mended.map.rigs()[0].baseline * 1.016, before.map.rigs()[0].baseline, 1e-4);
+  EXPECT_EQ(mended.plan.value().plan_from_map.scale, 1.0);
+  EXPECT_EQ(mended.recordings[0].calibration.right->right_from_left.translation.x(), -0.11) << "as it was given";
+  const Eigen::Vector3d far = body_at(mended.map, *mended.map.find_keyframe({Origin::offline, 39}));
+  EXPECT_THAT(mended.plan->plan_from_map * far, PointNear(Eigen::Vector3d(40.0, -1.0, 0.0), 0.03));
+
+  const Outcome twice = run("register mended.byre" + arguments + " --fix-scale --json -o again.byre");
+  const json report = json::parse(twice.output);
+  EXPECT_EQ(report.at("scaled_by"), 1.0);
+  EXPECT_LT(std::abs(report.at("measured_scale").at("too_large_percent").get<double>()), 0.1);
+  EXPECT_FALSE(report.at("measured_scale").at("differs").get<bool>());
+  EXPECT_EQ(load_map(folder_ / "again.byre").map.rigs()[0].baseline, mended.map.rigs()[0].baseline);
+  EXPECT_THAT(run("register mended.byre" + arguments + " --fix-scale -o again.byre").output,
+              HasSubstr("scale        nothing to mend: "));
+  EXPECT_EQ(run("validate mended.byre").exit_code, 0);
+}
+
+TEST_F(RegisterProgram, RefusesToMendTheScaleWhereItCannot) {
+  write("three.csv", picks_csv(scene_.correspondences(3)));
+  const Outcome few = run("register barn.byre --plan plan.yaml --points three.csv --fix-scale -o out.byre");
+  EXPECT_EQ(few.exit_code, 3);
+  EXPECT_THAT(few.errors, HasSubstr("three.csv: does not tell the scale: fewer than four"));
+  StoredMap unscaled = driven_barn(scene_);
+  unscaled.scale = MapScale::unknown;
+  save_map(unscaled, folder_ / "mono.byre");
+  const Outcome mono = run("register mono.byre --plan plan.yaml --points picks.csv --fix-scale -o out.byre");
+  EXPECT_EQ(mono.exit_code, 3);
+  EXPECT_THAT(mono.errors, HasSubstr("byre scale makes it metric"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.byre"));
+  EXPECT_EQ(run("register barn.byre --plan plan.yaml --points picks.csv --fix-scale").exit_code, 2) << "without -o";
 }
 
 TEST_F(RegisterProgram, TellsDoubtsOfTooFewPicks) {

@@ -49,6 +49,32 @@ double yaw_sigma(const PlanRegistration& registration) {
   return kDegreesPerRadian * std::sqrt(up_in_map.dot(registration.covariance.block<3, 3>(3, 3) * up_in_map));
 }
 
+// "1.60 % +- 0.10 % too large"
+std::string describe_excess(const PlanScale& scale) {
+  return formatted("%.2f %% +- %.2f %% too %s", 1e2 * std::abs(scale.excess()), 1e2 * scale.sigma,
+                   scale.excess() > 0.0 ? "large" : "small");
+}
+
+std::string describe_measured_scale(const PlanScale& scale, bool has_baseline) {
+  if (scale.doubt) return "not checked: " + std::string(to_string(*scale.doubt));
+  if (!scale.differs_from_one()) return "agrees with the plan: " + describe_excess(scale);
+  return "the map is " + describe_excess(scale) + (has_baseline ? ": --fix-scale mends it" : " for the plan");
+}
+
+std::string describe_mended_scale(const PlanScale& scale, double factor) {
+  if (factor == 1.0) return "nothing to mend: " + describe_excess(scale);
+  return "the map was " + describe_excess(scale) +
+         formatted(": its lengths and baseline are now %.6g of those", factor);
+}
+
+Json measured_scale_json(const PlanScale& scale) {
+  return {{"plan_from_map", scale.plan_from_map},
+          {"sigma", scale.sigma},
+          {"too_large_percent", 1e2 * scale.excess()},
+          {"differs", scale.differs_from_one()},
+          {"doubt", scale.doubt ? Json(to_string(*scale.doubt)) : Json()}};
+}
+
 Json correspondence_json(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
   const Eigen::Vector3d& in_map = correspondence.point_in_map;
   const Eigen::Vector2d& in_plan = correspondence.point_in_plan;
@@ -92,6 +118,10 @@ std::string to_text(const Registering& registering, const RegisterProtocol& prot
     text += row("scale", formatted("%.6g m per unit of the map, known to %.2f %%", registration.plan_from_map.scale,
                                    1e2 * std::sqrt(registration.covariance(6, 6))));
   }
+  if (const std::optional<PlanScale>& measured = registering.measured_scale) {
+    text += row("scale", protocol.scaled_by ? describe_mended_scale(*measured, *protocol.scaled_by)
+                                            : describe_measured_scale(*measured, registering.has_baseline));
+  }
   text += row("known to", formatted("%.3f m on all of the path, %.3f deg in yaw (one sigma)",
                                     registering.largest_path_sigma, yaw_sigma(registration)));
   for (const PlanDoubt doubt : registering.fit.doubts) text += row("doubt", std::string(to_string(doubt)));
@@ -105,6 +135,9 @@ std::string to_json(const Registering& registering, const RegisterProtocol& prot
   json["rms_m"] = registering.fit.rms;
   json["largest_path_sigma_m"] = registering.largest_path_sigma;
   json["yaw_sigma_deg"] = yaw_sigma(registering.fit.registration);
+  const std::optional<PlanScale>& measured = registering.measured_scale;
+  json["measured_scale"] = measured ? measured_scale_json(*measured) : Json();
+  json["scaled_by"] = protocol.scaled_by ? Json(*protocol.scaled_by) : Json();
   json["doubts"] = Json::array();
   for (const PlanDoubt doubt : registering.fit.doubts) json["doubts"].push_back(to_string(doubt));
   json["points"] = Json::array();

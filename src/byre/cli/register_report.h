@@ -2,6 +2,7 @@
 
 #include "byre/cli/register_run.h"
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,6 +20,7 @@ struct RegisterProtocol {
   std::string map;
   FloorPlan plan;
   std::string written;
+  std::optional<double> scaled_by;  // where the scale was to be mended; 1: there was nothing to mend
 };
 
 // A page for people, and the same for programs.

@@ -29,6 +29,7 @@ struct Truth {
   Trajectory of_frames;
   Trajectory of_map;
   std::optional<Trajectory> map_run;  // not true, but what the map is aligned to the truth by
+  Scale map_scale = Scale::fixed;     // of that alignment
 };
 
 Trajectory load_truth_later_by(const fs::path& path, Timestamp offset) {
@@ -44,12 +45,13 @@ std::optional<Truth> load_truths(const RunOptions& options) {
   truth.of_frames = load_truth_later_by(*options.truth, offset);
   truth.of_map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.of_frames;
   if (options.map_trajectory) truth.map_run = load_trajectory(*options.map_trajectory, {});
+  if (options.align_scale) truth.map_scale = Scale::free;
   return truth;
 }
 
 MapAlignment align_map(const Map& map, const Truth& truth) {
-  return truth.map_run ? align_to_truth(*truth.map_run, Scale::fixed, truth.of_map)
-                       : align_to_truth(map, Scale::fixed, truth.of_map);
+  return truth.map_run ? align_to_truth(*truth.map_run, truth.map_scale, truth.of_map)
+                       : align_to_truth(map, truth.map_scale, truth.of_map);
 }
 
 MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
@@ -107,11 +109,11 @@ Mission judge(const MapRun& run, const MapRunOptions& options, const std::option
   return mission;
 }
 
-void save_online_map(const Map& map, const RunOptions& options, const ScaledRecording& recording,
+void save_online_map(const MapRun& run, const RunOptions& options, const ScaledRecording& recording,
                      const Vocabulary& vocabulary) {
   StoredMap stored;
-  stored.map = map;
-  stored.recordings = {describe_source(options.recording, *recording.recording)};
+  stored.map = run.map;
+  stored.recordings = {describe_source(options.recording, *recording.recording, run.calibration)};
   stored.scale = recording.is_metric ? MapScale::metric : MapScale::unknown;
   save_for_use(std::move(stored), vocabulary, "", *options.online_map);
 }
@@ -146,7 +148,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (options.online_map) {
-    save_online_map(run.map, options, opened, *protocol.options.vocabulary);
+    save_online_map(run, options, opened, *protocol.options.vocabulary);
   }
   const ResourceUse resources = resources_used_so_far();
   const Mission mission = judge(run, protocol.options, truth, opened);

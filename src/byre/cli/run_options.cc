@@ -60,6 +60,12 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->type_name("FILE")
       ->needs(truth)
       ->needs(map);
+  command
+      .add_flag("--align-scale", options.align_scale,
+                "Lay the map on the truth by a similarity: a baseline that errs in length, which no image tells, does "
+                "not count")
+      ->needs(truth)
+      ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
       ->check(CLI::Range(-1e6, 1e6).description(""))

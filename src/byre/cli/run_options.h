@@ -27,8 +27,9 @@ struct RunOptions {
   std::optional<std::filesystem::path> truth;
   std::optional<std::filesystem::path> map_truth;       // of the map's own recording, where that is another
   std::optional<std::filesystem::path> map_trajectory;  // of the run that made the map
-  double time_offset_s = 0.0;                           // added to the time stamps of both
-  std::optional<std::filesystem::path> vocabulary;      // else the one that comes with byre
+  bool align_scale = false;    // the map is laid on the truth with its scale, which an erring baseline changes
+  double time_offset_s = 0.0;  // added to the time stamps of both
+  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
   FrameRange range;
   OpenOptions open;  // how to take the recording
   Pace pace = Pace::paced;

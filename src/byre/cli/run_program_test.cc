@@ -4,8 +4,9 @@
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/rendered_fixture.h"
 #include "byre/evaluation/trajectory_file.h"
+#include "byre/geometry/alignment.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/map/map_file.h"
+#include "byre/map/scaled_copy.h"
 #include "byre/slam/state.h"
 
 #include <sstream>
@@ -191,6 +192,21 @@ TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
   EXPECT_NEAR(stats.at("frames").back().at("position_m").at(1), on_plan.translation.y(), 1e-6);
   EXPECT_LT(stats.at("errors").at("causal").at("position_m").at("max"), 0.05) << "errors stay those in the map";
   EXPECT_GT(lines_of("events.jsonl").back().at("position_m").at(1), 1900.0);
+}
+
+// As after the map's scale was corrected on a floor plan; the recording still says what the baseline was taken for
+// then.
+TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
+  constexpr double kFactor = 0.95;
+  ASSERT_EQ(mission("--causal-trajectory before.txt --quiet").exit_code, 0);
+  const StoredMap stored = load_map(folder_ / "room.byre");
+  save_map(scaled_copy(stored, kFactor), folder_ / "room.byre");
+  ASSERT_EQ(mission("--causal-trajectory now.txt --stats stats.json --quiet").exit_code, 0);
+  const auto last_camera = [&](const std::string& file) {
+    return read_trajectory(folder_ / file).back().world_from_body * stored.map.rigs()[0].body_from_camera;
+  };
+  EXPECT_THAT(last_camera("now.txt"), PoseNear(scale_lengths(last_camera("before.txt"), kFactor), 0.002, 0.001));
+  EXPECT_EQ(json::parse(read("stats.json")).at("frames").back().at("health").at("verdict"), "trusted");
 }
 
 TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {

@@ -2,6 +2,7 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/input/input_error.h"
+#include "byre/map/scaled_copy.h"
 
 #include <algorithm>
 #include <charconv>
@@ -92,7 +93,7 @@ Eigen::Vector3d find_place(const StoredMap& stored, const std::string& text) {
 ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, const std::string& second,
                             double metres) {
   if (std::ranges::any_of(stored.map.rigs(), &Rig::is_stereo)) {
-    throw InputError("the map", "was made by a stereo camera, whose baseline tells the scale", "use it as it is");
+    throw InputError("the map", "was made by a stereo or depth camera, which tells the scale", "use it as it is");
   }
   ScaledMap scaled;
   scaled.distance = (find_place(stored, first) - find_place(stored, second)).norm();
@@ -100,10 +101,8 @@ ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, c
     throw InputError("--between " + first + " " + second, "is one and the same place", "name two that are apart");
   }
   scaled.factor = metres / scaled.distance;
-  scaled.stored = stored;
-  scaled.stored.map = scaled_copy(stored.map, scaled.factor);
+  scaled.stored = scaled_copy(stored, scaled.factor);
   scaled.stored.scale = MapScale::metric;
-  if (scaled.stored.plan) scaled.stored.plan->plan_from_map.scale /= scaled.factor;
   return scaled;
 }
 

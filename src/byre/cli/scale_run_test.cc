@@ -88,7 +88,7 @@ TEST(ScaleByDistance, RefusesAMapWhoseScaleIsKnown) {
   stereo.map =
       true_map(simulate_mission(simulated_rig(), circling_trajectory(8, 10.0, 2.0, 0.05), {}), 4, Origin::offline);
   EXPECT_THAT([&] { scale_by_distance(stereo, "0,0,0", "1,0,0", 1.0); },
-              ThrowsMessage<InputError>(HasSubstr("made by a stereo camera")));
+              ThrowsMessage<InputError>(HasSubstr("made by a stereo or depth camera")));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/imperfection_options.h"
 #include "byre/cli/report_json.h"
 #include "byre/cli/simulate_run.h"
 
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 struct SimulateOptions {
   CowshedRecordingOptions recording;
+  ImperfectionOptions imperfection;
   fs::path output;
   bool json = false;
   bool quiet = false;
@@ -27,18 +29,33 @@ constexpr const char* kFooter = R"(Examples:
   byre simulate cowshed -o barn_1
   byre simulate cowshed --mission 2 -o barn_2
   byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
+  byre simulate cowshed --imperfection good -o barn_4
+  byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
 A feeding robot drives up and down the feed alley with a stereo camera. The same seed is the same barn; another mission
 is another visit to it: other feed, other light, cows elsewhere, a share of the buckets, pallets and barrows moved, and a
 gate open to a store that the first visit did not see.
 FOLDER gets an EuRoC recording with exact truth (mav0), and a floor plan with points to register a map of this recording
-on it (plan). The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
+on it (plan). Where the calibration errs, sensor.yaml has the erring one, and true_sensor.yaml beside it what rendered
+the images. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
 docs/simulation.md describes both.)";
 
 std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
   return formatted("rendered     %d stereo pairs in %.1f s (%.1f a second), after %.1f s to build the barn\n",
                    rendering.frames, rendering.rendering_s, rendering.frames_per_second(), rendering.preparing_s) +
          row("recording", options.output.string()) + row("floor plan", (options.output / "plan").string());
+}
+
+nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
+  return {{"calibration_level", camera.calibration_level},
+          {"calibration_seed", camera.calibration_seed},
+          {"rolling_shutter_s", camera.rolling_shutter_s},
+          {"time_offset_s", camera.time_offset_s},
+          {"lens_blur_px", camera.lens_blur},
+          {"gain", camera.gain},
+          {"offset", camera.offset},
+          {"vignetting", camera.vignetting},
+          {"jpeg_quality", camera.jpeg_quality}};
 }
 
 std::string to_json(const SimulateOptions& options, const Rendering& rendering) {
@@ -48,6 +65,7 @@ std::string to_json(const SimulateOptions& options, const Rendering& rendering) 
                  {"recording", options.output.string()},
                  {"seed", options.recording.barn.seed},
                  {"mission", options.recording.barn.mission},
+                 {"imperfection", imperfection_json(options.recording.camera)},
                  {"frames", rendering.frames},
                  {"preparing_s", rendering.preparing_s},
                  {"rendering_s", rendering.rendering_s}},
@@ -121,11 +139,15 @@ Action declare_simulate(CLI::App& command) {
   CLI::App& cowshed = *command.add_subcommand("cowshed", "A barn with a feed alley, fences, cubicles and cows");
   declare_visit(cowshed, options->recording);
   declare_camera(cowshed, options->recording);
+  declare_imperfection(cowshed, options->imperfection);
   cowshed.add_option("-o,--output", options->output, "Folder for the recording")->type_name("FOLDER")->required();
   cowshed.add_flag("--json", options->json, "Print the report as JSON");
   cowshed.add_flag("--quiet", options->quiet, "Show no progress");
   cowshed.footer(kFooter);
-  return [options](std::ostream& result) { return run_simulate(*options, result); };
+  return [options](std::ostream& result) {
+    options->recording.camera = asked_for(options->imperfection);
+    return run_simulate(*options, result);
+  };
 }
 
 }  // namespace byre::cli

@@ -40,6 +40,37 @@ TEST_F(SimulateProgram, WritesTheSameBytesForTheSameOptions) {
   }
 }
 
+TEST_F(SimulateProgram, KeepsTheTrueCalibrationBesideOneThatErrs) {
+  EXPECT_EQ(run(kSmall + "-o exact --quiet").exit_code, 0);
+  EXPECT_EQ(run(kSmall + "--calibration-level 1 --calibration-seed 4 -o erring --quiet").exit_code, 0);
+  EXPECT_EQ(read("exact/mav0/cam0/data/100000000000000.png"), read("erring/mav0/cam0/data/100000000000000.png"));
+  EXPECT_NE(read("exact/mav0/cam0/sensor.yaml"), read("erring/mav0/cam0/sensor.yaml"));
+  EXPECT_EQ(read("exact/mav0/cam0/sensor.yaml"), read("erring/mav0/cam0/true_sensor.yaml"));
+  EXPECT_EQ(read("exact/mav0/cam1/sensor.yaml"), read("erring/mav0/cam1/true_sensor.yaml"));
+  EXPECT_FALSE(fs::exists(folder_ / "exact/mav0/cam0/true_sensor.yaml"));
+}
+
+TEST_F(SimulateProgram, WritesTheSameBytesForTheSameImperfection) {
+  const std::string all = "--imperfection worn --rolling-shutter 15 --time-offset 3 --dirt 1 --quiet ";
+  EXPECT_EQ(run(kSmall + all + "--threads 1 -o one").exit_code, 0);
+  EXPECT_EQ(run(kSmall + all + "--threads 2 -o two").exit_code, 0);
+  for (const char* file : {"mav0/cam0/data/100000100000000.png", "mav0/cam1/data/100000100000000.png",
+                           "mav0/cam0/sensor.yaml", "mav0/cam1/sensor.yaml", "plan/pick_pixels.csv"}) {
+    EXPECT_FALSE(read(std::string("one/") + file).empty()) << file;
+    EXPECT_EQ(read(std::string("one/") + file), read(std::string("two/") + file)) << file;
+  }
+}
+
+TEST_F(SimulateProgram, LetsSingleOptionsDifferFromTheCondition) {
+  const Outcome outcome = run(kSmall + "--imperfection good --gain 1.5 --rolling-shutter 15 -o barn --json --quiet");
+  const json imperfection = json::parse(outcome.output).at("imperfection");
+  EXPECT_EQ(imperfection.at("calibration_level"), 1.0);
+  EXPECT_EQ(imperfection.at("gain"), 1.5);
+  EXPECT_DOUBLE_EQ(imperfection.at("rolling_shutter_s"), 0.015);
+  EXPECT_EQ(run(kSmall + "--imperfection new -o barn_2").exit_code, 2);
+  EXPECT_EQ(run(kSmall + "--jpeg 0 -o barn_2").exit_code, 2);
+}
+
 TEST_F(SimulateProgram, ReportsAsJson) {
   const Outcome outcome = run(kSmall + "--mission 2 --seed 7 -o barn --json --quiet");
   EXPECT_THAT(outcome.errors, IsEmpty());

@@ -3,6 +3,8 @@
 #include "byre/input/input_error.h"
 #include "byre/place/map_words.h"
 
+#include <utility>
+
 namespace byre::cli {
 
 namespace fs = std::filesystem;
@@ -11,9 +13,11 @@ Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
   return Vocabulary::load(path ? *path : default_vocabulary_path());
 }
 
-SourceRecording describe_source(const fs::path& folder, const Recording& recording) {
+SourceRecording describe_source(const fs::path& folder, const Recording& recording,
+                                const std::optional<RefinedCalibration>& refined) {
   const fs::path whole = fs::weakly_canonical(folder);
-  return {whole.filename().string(), recording.calibration(), recording.times().front(), recording.times().back()};
+  return {whole.filename().string(), recording.calibration(), recording.times().front(), recording.times().back(),
+          refined};
 }
 
 StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
@@ -28,7 +32,8 @@ StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
 }
 
 std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary) {
-  return std::make_shared<const OfflineMap>(load_for_mapping(path, vocabulary).map, vocabulary);
+  StoredMap stored = load_for_mapping(path, vocabulary);
+  return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings));
 }
 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {

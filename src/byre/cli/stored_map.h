@@ -17,7 +17,8 @@ namespace byre::cli {
 Vocabulary open_vocabulary(const std::optional<std::filesystem::path>& path);
 
 // What a map says of a recording it was made from: not where it lies, so that equal maps are equal.
-SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording);
+SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording,
+                                const std::optional<RefinedCalibration>& refined = {});
 
 // A map that a recording may be tracked in: its keyframes have words of this vocabulary. Throws InputError when it
 // cannot be loaded, or has no metric scale, without which stereo and loops cannot be compared with it.

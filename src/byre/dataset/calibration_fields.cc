@@ -101,6 +101,12 @@ Pose CalibrationFields::pose(const std::string& field) const {
   return {*rotation, matrix.topRightCorner<3, 1>()};
 }
 
+double CalibrationFields::positive(const std::string& field) const {
+  const std::optional<double> number = parse_number(word(field));
+  if (number && *number > 0.0) return *number;
+  throw InputError(place(field), "is not a number above zero");
+}
+
 int CalibrationFields::pixels(const std::string& field) const {
   const std::optional<double> number = parse_number(word(field));
   if (!number) throw InputError(place(field), "is not a number");

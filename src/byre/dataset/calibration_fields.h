@@ -28,6 +28,7 @@ class CalibrationFields {
   std::vector<double> numbers(const std::string& field) const;
   std::vector<double> numbers(const std::string& field, std::size_t count) const;  // so many
   Pose pose(const std::string& field) const;                                       // of the 4x4 matrix of a rigid one
+  double positive(const std::string& field) const;                                 // one number above zero
   int pixels(const std::string& field) const;                                      // one side of an image
 
  private:

@@ -205,5 +205,22 @@ TEST_F(CalibrationFile, IsFoundInAFolderByItsName) {
   EXPECT_EQ(find_calibration(folder_), folder_ / "calibration.yaml");
 }
 
+TEST_F(CalibrationFile, IsReadAsItWasWritten) {
+  Calibration calibration;
+  calibration.left = {CameraModel::radial_tangential, 752, 480, 458.654321, 457.3, 367.2, 248.4,
+                      {-0.28, 0.07, 1e-4, 2e-5, 0.01}};
+  calibration.right =
+      StereoPartner{{CameraModel::equidistant, 752, 480, 457.6, 456.1, 380.0, 255.2, {0.1, 0.02, -0.003, 4e-4, 0.0}},
+                    {rotation_exp({0.01, -0.02, 0.003}), {-0.11, 0.0004, -0.0008}}};
+  calibration.body_from_left = {rotation_exp({0.1, 1.2, -0.5}), {-0.02, -0.06, 0.01}};
+  write("camera.yaml", write_calibration(calibration));
+  const Calibration read = read_calibration(folder_ / "camera.yaml");
+  EXPECT_EQ(read.left, calibration.left);
+  ASSERT_TRUE(read.right);
+  EXPECT_EQ(read.right->camera, calibration.right->camera);
+  EXPECT_THAT(read.right->right_from_left, PoseNear(calibration.right->right_from_left, 1e-12, 1e-12));
+  EXPECT_THAT(read.body_from_left, PoseNear(calibration.body_from_left, 1e-12, 1e-12));
+}
+
 }  // namespace
 }  // namespace byre

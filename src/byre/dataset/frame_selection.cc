@@ -20,8 +20,13 @@ std::string describe(const std::vector<Timestamp>& times) {
   return "it holds " + std::to_string(times.size()) + " frames in " + std::to_string(span) + " s";
 }
 
-PlacedCalibration left_alone(PlacedCalibration calibration) {
+PlacedCalibration without_right(PlacedCalibration calibration) {
   calibration.cameras.right.reset();
+  return calibration;
+}
+
+PlacedCalibration without_depth(PlacedCalibration calibration) {
+  calibration.cameras.depth.reset();
   return calibration;
 }
 
@@ -34,6 +39,19 @@ PlacedCalibration right_alone(const PlacedCalibration& calibration) {
 
 bool has_right_image(const FrameFiles& frame) {
   return frame.right.has_value();
+}
+
+void require_pair(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
+  if (beside.right && calibration.cameras.right) return;
+  throw InputError(path.string(), beside.right ? "is calibrated for one camera only" : "has images of one camera only",
+                   "take that camera alone: left, or right of a calibrated pair");
+}
+
+void require_depth(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
+  if (beside.depth && calibration.cameras.depth) return;
+  throw InputError(path.string(), "has no depth images",
+                   "give the folder of an RGB-D recording, whose depth.txt lists them (TUM), or take the camera alone: "
+                   "left");
 }
 
 }  // namespace
@@ -51,20 +69,24 @@ std::vector<std::size_t> frames_in_range(const std::vector<Timestamp>& times, co
   return selected;
 }
 
-PlacedCalibration choose_calibration(const PlacedCalibration& calibration, bool has_pairs,
+PlacedCalibration choose_calibration(const PlacedCalibration& calibration, const BesideLeft& beside,
                                      const std::optional<CameraChoice>& choice, const fs::path& path) {
-  const bool has_right = calibration.cameras.right.has_value();
-  const bool is_pair = has_pairs && has_right;
-  if (choice == CameraChoice::right) {
-    if (has_right) return right_alone(calibration);
-    throw InputError(path.string(), "has no right camera in its calibration",
-                     "give the calibration of a pair, or take the left camera");
+  const bool is_pair = beside.right && calibration.cameras.right;
+  switch (choice.value_or(is_pair ? CameraChoice::stereo : CameraChoice::rgbd)) {
+    case CameraChoice::right:
+      if (calibration.cameras.right) return right_alone(calibration);
+      throw InputError(path.string(), "has no right camera in its calibration",
+                       "give the calibration of a pair, or take the left camera");
+    case CameraChoice::stereo:
+      require_pair(calibration, beside, path);
+      return without_depth(calibration);
+    case CameraChoice::rgbd:
+      if (choice) require_depth(calibration, beside, path);
+      return without_right(beside.depth ? calibration : without_depth(calibration));
+    case CameraChoice::left:
+      break;
   }
-  if (choice == CameraChoice::stereo && !is_pair) {
-    throw InputError(path.string(), has_pairs ? "is calibrated for one camera only" : "has images of one camera only",
-                     "take that camera alone: left, or right of a calibrated pair");
-  }
-  return is_pair && choice != CameraChoice::left ? calibration : left_alone(calibration);
+  return without_right(without_depth(calibration));
 }
 
 void require_calibrated_size(int width, int height, const Camera& camera, const std::string& place) {
@@ -75,23 +97,27 @@ void require_calibrated_size(int width, int height, const Camera& camera, const 
                    "use a calibration made at the size of the images");
 }
 
-bool has_pairs(const RecordingIndex& index) {
-  return std::ranges::any_of(index.frames, has_right_image);
+BesideLeft images_beside_left(const RecordingIndex& index) {
+  return {.right = std::ranges::any_of(index.frames, has_right_image),
+          .depth = std::ranges::any_of(index.frames, [](const FrameFiles& frame) { return frame.depth.has_value(); })};
 }
 
-RecordingIndex choose_camera(RecordingIndex index, bool has_pairs, const std::optional<CameraChoice>& choice,
+RecordingIndex choose_camera(RecordingIndex index, const BesideLeft& beside, const std::optional<CameraChoice>& choice,
                              const fs::path& path) {
-  if (has_pairs && !index.calibration.cameras.right && !choice) {
+  if (beside.right && !index.calibration.cameras.right && !choice) {
     index.warnings.push_back(path.string() + ": is calibrated for one camera only, so its right images are left out");
   }
-  index.calibration = choose_calibration(index.calibration, has_pairs, choice, path);
+  index.calibration = choose_calibration(index.calibration, beside, choice, path);
   if (index.calibration.cameras.right) return index;
-  if (has_pairs && choice == CameraChoice::right) {
+  if (beside.right && choice == CameraChoice::right) {
     std::erase_if(index.frames, [](const FrameFiles& frame) { return !has_right_image(frame); });
     for (FrameFiles& frame : index.frames) frame.left = *frame.right;
   }
   if (index.frames.empty()) throw InputError(path.string(), "no frame in the range asked for has a right image");
-  for (FrameFiles& frame : index.frames) frame.right.reset();
+  for (FrameFiles& frame : index.frames) {
+    frame.right.reset();
+    if (!index.calibration.cameras.depth) frame.depth.reset();
+  }
   return index;
 }
 

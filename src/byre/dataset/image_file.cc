@@ -33,9 +33,9 @@ bool is_cut_jpeg(const Bytes& bytes) {
   return std::search(tail, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end();
 }
 
-cv::Mat decode(const Bytes& bytes) {
+cv::Mat decode(const Bytes& bytes, int flags) {
   try {
-    return cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    return cv::imdecode(bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
     return {};
   }
@@ -46,10 +46,18 @@ cv::Mat decode(const Bytes& bytes) {
 std::optional<Image> read_image(const std::filesystem::path& path) {
   const Bytes bytes = read_bytes(path);
   if (bytes.empty() || is_cut_jpeg(bytes)) return std::nullopt;
-  const cv::Mat grey = decode(bytes);
+  const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) return std::nullopt;
   assert(grey.isContinuous());
   return Image{grey.cols, grey.rows, Bytes(grey.data, grey.data + grey.total())};
+}
+
+std::optional<DepthImage> read_depth_image(const std::filesystem::path& path) {
+  const Bytes bytes = read_bytes(path);
+  if (bytes.empty()) return std::nullopt;
+  const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
+  if (depth.empty() || depth.type() != CV_16U) return std::nullopt;
+  return DepthImage{depth.cols, depth.rows, {depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()}};
 }
 
 }  // namespace byre

@@ -11,4 +11,7 @@ namespace byre {
 // no image, or cut short. Of 16-bit images the upper byte is taken.
 std::optional<Image> read_image(const std::filesystem::path& path);
 
+// A depth image: one channel of 16 bits. Empty when the file is missing, cut short or anything else.
+std::optional<DepthImage> read_depth_image(const std::filesystem::path& path);
+
 }  // namespace byre

@@ -38,6 +38,31 @@ TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
   EXPECT_EQ(clear->pixels, std::vector<std::uint8_t>(6, 90));
 }
 
+using ReadDepthImage = TestFolder;
+
+TEST_F(ReadDepthImage, KeepsAllSixteenBits) {
+  cv::Mat depth(2, 3, CV_16U, cv::Scalar(0));
+  depth.at<std::uint16_t>(0, 2) = 5001;
+  depth.at<std::uint16_t>(1, 0) = 65535;
+  cv::imwrite((folder_ / "depth.png").string(), depth);
+  const std::optional<DepthImage> image = read_depth_image(folder_ / "depth.png");
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, 3);
+  EXPECT_EQ(image->height, 2);
+  EXPECT_EQ(image->units, (std::vector<std::uint16_t>{0, 0, 5001, 65535, 0, 0}));
+}
+
+TEST_F(ReadDepthImage, IsEmptyForWhatIsNoWholeImageOfDepths) {
+  write_image("grey.png", 4, 3, 90);
+  cv::imwrite((folder_ / "colour.png").string(), cv::Mat(2, 2, CV_16UC3, cv::Scalar(1, 2, 3)));
+  cv::imwrite((folder_ / "cut.png").string(), cv::Mat(480, 640, CV_16U, cv::Scalar(777)));
+  cut_in_half("cut.png");
+  write("text.png", "no image");
+  for (const char* const name : {"grey.png", "colour.png", "cut.png", "text.png", "absent.png"}) {
+    EXPECT_FALSE(read_depth_image(folder_ / name)) << name;
+  }
+}
+
 TEST_F(ReadImage, IsEmptyForWhatIsNoWholeImage) {
   write_image("cut.png", 640, 480, 90);
   write_image("cut.jpg", 640, 480, 90);

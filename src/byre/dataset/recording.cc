@@ -9,12 +9,18 @@
 #include "byre/input/input_error.h"
 
 #include <cassert>
+#include <type_traits>
 #include <utility>
 
 namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The camera that depth images are pixel by pixel of.
+const Camera& depth_lens(const Calibration& calibration) {
+  return calibration.depth->camera ? *calibration.depth->camera : calibration.left;
+}
 
 class ImageFiles final : public Recording {
  public:
@@ -28,8 +34,10 @@ class ImageFiles final : public Recording {
   const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:
-  std::optional<Image> read_calibrated(const fs::path& path, const Camera& camera);
+  template <typename AnyImage>
+  std::optional<AnyImage> read_calibrated(const fs::path& path, std::optional<AnyImage> image, const Camera& camera);
   std::optional<Image> read_right(const FrameFiles& files);
+  std::optional<DepthImage> read_depth(const FrameFiles& files);
 
   RecordingIndex index_;               // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
@@ -39,22 +47,30 @@ class ImageFiles final : public Recording {
 std::optional<ImageFrame> ImageFiles::read(int index) {
   assert(index >= 0 && index < size());
   const FrameFiles& files = index_.frames[static_cast<std::size_t>(index)];
-  std::optional<Image> left = read_calibrated(files.left, calibration().left);
+  std::optional<Image> left = read_calibrated(files.left, read_image(files.left), calibration().left);
   if (!left) return std::nullopt;
-  return ImageFrame{files.time, std::move(*left), read_right(files)};
+  return ImageFrame{files.time, std::move(*left), read_right(files), read_depth(files)};
 }
 
 std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
   if (!calibration().right) return std::nullopt;
-  if (files.right) return read_calibrated(*files.right, calibration().right->camera);
+  if (files.right) return read_calibrated(*files.right, read_image(*files.right), calibration().right->camera);
   warnings_.push_back(files.left.string() + ": has no right image of the same time");
   return std::nullopt;
 }
 
-std::optional<Image> ImageFiles::read_calibrated(const fs::path& path, const Camera& camera) {
-  std::optional<Image> image = read_image(path);
+std::optional<DepthImage> ImageFiles::read_depth(const FrameFiles& files) {
+  if (!calibration().depth || !files.depth) return std::nullopt;
+  return read_calibrated(*files.depth, read_depth_image(*files.depth), depth_lens(calibration()));
+}
+
+template <typename AnyImage>
+std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, std::optional<AnyImage> image,
+                                                    const Camera& camera) {
   if (!image) {
-    warnings_.push_back(path.string() + (fs::exists(path) ? ": is not a whole image" : ": does not exist"));
+    constexpr bool kIsDepth = std::is_same_v<AnyImage, DepthImage>;
+    const char* const torn = kIsDepth ? ": is not a whole image of 16 bits" : ": is not a whole image";
+    warnings_.push_back(path.string() + (fs::exists(path) ? torn : ": does not exist"));
     return std::nullopt;
   }
   if (image->width == camera.width && image->height == camera.height) return image;
@@ -73,16 +89,30 @@ RecordingIndex select(RecordingIndex index, const FrameRange& range, const fs::p
   return index;
 }
 
+// The first depth image that can be read; throws InputError naming it when none can.
+DepthImage first_readable_depth(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    if (std::optional<DepthImage> image = read_depth_image(file)) return std::move(*image);
+  }
+  throw InputError(files.front().string(), "is no whole image of 16 bits, nor is any other of the depth images",
+                   "give depths as one channel of 16 bits, or take the camera alone: left");
+}
+
 // Throws InputError where the first images that can be read are of another size than calibrated.
 void require_calibrated_sizes(const RecordingIndex& index) {
-  std::vector<fs::path> left, right;
+  std::vector<fs::path> left, right, depth;
   for (const FrameFiles& frame : index.frames) {
     left.push_back(frame.left);
     if (frame.right) right.push_back(*frame.right);
+    if (frame.depth) depth.push_back(*frame.depth);
   }
-  const auto& [cameras, left_size, right_size] = index.calibration;
+  const auto& [cameras, left_size, right_size, depth_size] = index.calibration;
   const Image first_left = first_readable(left);
   require_calibrated_size(first_left.width, first_left.height, cameras.left, left_size);
+  if (cameras.depth && !depth.empty()) {
+    const DepthImage first_depth = first_readable_depth(depth);
+    require_calibrated_size(first_depth.width, first_depth.height, depth_lens(cameras), depth_size);
+  }
   if (!cameras.right || right.empty()) return;
   const Image first_right = first_readable(right);
   require_calibrated_size(first_right.width, first_right.height, cameras.right->camera, right_size);
@@ -92,6 +122,13 @@ void require_untimed(RecordingFormat format, const fs::path& path, const OpenOpt
   if (!options.frame_rate_hz || format == RecordingFormat::images || format == RecordingFormat::video) return;
   throw InputError(path.string(), "has time stamps, so no frame rate can be given",
                    "leave it out, or name the folder of the images");
+}
+
+fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options) {
+  if (options.calibration) return *options.calibration;
+  if (const std::optional<fs::path> file = find_calibration(folder)) return *file;
+  throw InputError(folder.empty() ? "." : folder.string(), "holds no calibration of the camera",
+                   "name one (--calibration FILE), or put it there as calibration.yaml, camera.yaml or sensor.yaml");
 }
 
 }  // namespace
@@ -105,10 +142,16 @@ Image first_readable(const std::vector<fs::path>& files) {
 }
 
 PlacedCalibration calibration_for(const fs::path& folder, const OpenOptions& options) {
-  const std::optional<fs::path> file = options.calibration ? options.calibration : find_calibration(folder);
-  if (file) return {read_calibration(*file), file->string(), file->string()};
-  throw InputError(folder.empty() ? "." : folder.string(), "holds no calibration of the camera",
-                   "name one (--calibration FILE), or put it there as calibration.yaml, camera.yaml or sensor.yaml");
+  const fs::path file = calibration_file_for(folder, options);
+  return {read_calibration(file), file.string(), file.string()};
+}
+
+PlacedDepthCamera depth_camera_for(const fs::path& folder, const OpenOptions& options) {
+  const fs::path of_cameras = calibration_file_for(folder, options);
+  const fs::path beside = folder / "depth.yaml";
+  const bool is_beside = !names_depth_camera(of_cameras) && fs::is_regular_file(beside);
+  const fs::path file = is_beside ? beside : of_cameras;
+  return {read_depth_camera(file), file.string()};
 }
 
 std::string_view to_string(RecordingFormat format) {
@@ -135,6 +178,8 @@ std::string_view to_string(CameraChoice choice) {
       return "left";
     case CameraChoice::right:
       return "right";
+    case CameraChoice::rgbd:
+      return "rgbd";
   }
   return "";
 }
@@ -174,13 +219,14 @@ RecordingIndex index_recording(const fs::path& path, const OpenOptions& options)
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
   if (is_video_file(path)) return open_video(path, range, options);
   const RecordingIndex whole = index_recording(path, options);
-  const bool is_pair = has_pairs(whole);
-  require_calibrated_sizes(choose_camera(whole, is_pair, options.camera, path));
-  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), is_pair, options.camera, path));
+  const BesideLeft beside = images_beside_left(whole);
+  require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
+  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), beside, options.camera, path));
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {
-  return recording.calibration().right ? CameraChoice::stereo : options.camera.value_or(CameraChoice::left);
+  if (recording.calibration().right) return CameraChoice::stereo;
+  return recording.calibration().depth ? CameraChoice::rgbd : options.camera.value_or(CameraChoice::left);
 }
 
 std::optional<fs::path> find_ground_truth(const fs::path& path) {

@@ -15,15 +15,15 @@ namespace byre {
 
 //   euroc   mav0/cam0, and mav0/cam1 for stereo
 //   kitti   a sequence of KITTI odometry: calib.txt, times.txt, image_0, and image_1 for stereo
-//   tum     rgb.txt of a TUM RGB-D folder; its depth images are not used
+//   tum     rgb.txt of a TUM RGB-D folder, and depth.txt for depth
 //   images  image files in a folder, or for stereo in its folders left and right
 //   video   a video file
 enum class RecordingFormat : std::uint8_t { euroc, kitti, tum, images, video };
 
 std::string_view to_string(RecordingFormat format);
 
-// Which of a recording's cameras to use: both, or one of them alone.
-enum class CameraChoice : std::uint8_t { stereo, left, right };
+// Which of a recording's cameras to use: both of a pair, one of them alone, or the left one with the depth camera.
+enum class CameraChoice : std::uint8_t { stereo, left, right, rgbd };
 
 std::string_view to_string(CameraChoice choice);
 
@@ -38,13 +38,13 @@ struct FrameRange {
 
 // What a recording does not say of itself, or is to be taken otherwise.
 struct OpenOptions {
-  std::optional<CameraChoice> camera{};                // else both where there are two
+  std::optional<CameraChoice> camera{};                // else both where there are two, with depth where there is depth
   std::optional<std::filesystem::path> calibration{};  // a file read_calibration knows, in place of the recording's own
   std::optional<double> frame_rate_hz{};               // of images and videos, in place of what they say
 };
 
-// A recorded sequence of one camera or of a stereo pair, read one frame at a time. Of the right camera alone, left
-// image and left calibration are that camera's.
+// A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
+// right camera alone, left image and left calibration are that camera's.
 class Recording {
  public:
   virtual ~Recording() = default;
@@ -53,7 +53,8 @@ class Recording {
   // Time stamps of the frames in range, strictly increasing. A left image without a right partner is in it.
   virtual const std::vector<Timestamp>& times() const = 0;
   // The i-th frame, decoded. Empty, with a warning added, when the left image cannot be read or is of another size than
-  // calibrated; without a right image, with a warning added, when that one is absent, unreadable or of another size.
+  // calibrated; without a right image, with a warning added, when that one is absent, unreadable or of another size;
+  // likewise without a depth image, but no warning where none was taken.
   // May be called from any thread, but from one at a time.
   virtual std::optional<ImageFrame> read(int index) = 0;
   virtual const std::vector<std::string>& warnings() const = 0;  // those of opening it first

@@ -11,11 +11,13 @@
 
 namespace byre {
 
-// Where the images of one frame are. A monocular frame, or one whose partner is lost, has no right image.
+// Where the images of one frame are. A monocular frame, or one whose partner is lost, has no right image; one of a
+// camera with depth has no depth image when none was taken with it.
 struct FrameFiles {
   Timestamp time{};
   std::filesystem::path left;
   std::optional<std::filesystem::path> right{};
+  std::optional<std::filesystem::path> depth{};
 };
 
 // A calibration and the places where it says the size of the images, as InputError names them.
@@ -23,6 +25,7 @@ struct PlacedCalibration {
   Calibration cameras;
   std::string left_size;
   std::string right_size;
+  std::string depth_size{};
 };
 
 // What a recording of image files consists of, before any image is wanted. The calibration may be of a pair though the
@@ -40,7 +43,8 @@ std::optional<std::filesystem::path> find_mav_folder(const std::filesystem::path
 bool holds_images(const std::filesystem::path& folder);
 
 // All throw InputError as open_recording says. Images of two cameras belong together when their time stamps differ by
-// 2 ms at most; KITTI's by their number. The right camera is left out where the left one alone is asked for.
+// 2 ms at most; KITTI's by their number. The right camera is left out where the left one alone is asked for. A depth
+// image belongs to the frame nearest in time, within 20 ms.
 RecordingIndex index_euroc(const std::filesystem::path& folder, const OpenOptions& options);
 RecordingIndex index_kitti(const std::filesystem::path& folder, const OpenOptions& options);
 RecordingIndex index_tum(const std::filesystem::path& folder, const OpenOptions& options);
@@ -51,6 +55,16 @@ RecordingIndex index_recording(const std::filesystem::path& path, const OpenOpti
 
 // The calibration of the options, or else the one in the folder. Throws InputError when there is neither.
 PlacedCalibration calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
+
+// A depth camera and the place where the size of its images is said, as InputError names it.
+struct PlacedDepthCamera {
+  DepthCamera camera;
+  std::string size;
+};
+
+// What is known of the depth camera: by the calibration of the options or, where that says nothing of depth, by the
+// folder's depth.yaml, or else by its calibration. Throws InputError as calibration_for and read_depth_camera do.
+PlacedDepthCamera depth_camera_for(const std::filesystem::path& folder, const OpenOptions& options);
 
 // The first image that can be decoded; throws InputError naming the folder when there is none.
 Image first_readable(const std::vector<std::filesystem::path>& files);

@@ -134,7 +134,6 @@ class TumRecording : public SingleCamera {
   TumRecording() {
     write("rgb.txt",
           "# color images\n# timestamp filename\n1305031102.175304 rgb/a.png\n1305031102.211214 rgb/b.png\n");
-    write("depth.txt", "1305031102.160407 depth/a.png\n");
     write("camera.yaml", kOne);
     write_frame("rgb/a.png", 10);
     write_frame("rgb/b.png", 20);

@@ -10,16 +10,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Timestamp kPairTolerance = std::chrono::milliseconds(2);
+constexpr Timestamp kDepthTolerance = std::chrono::milliseconds(20);
+
+// The one nearest in time, when it is within the tolerance; else the end. Precondition: they ascend in time.
+template <typename Range>
+auto find_nearest(Range& items, Timestamp time, Timestamp tolerance) {
+  const auto before = [](const auto& item, Timestamp t) { return item.time < t; };
+  auto nearest = std::lower_bound(items.begin(), items.end(), time, before);
+  if (nearest != items.begin() && (nearest == items.end() || time - std::prev(nearest)->time < nearest->time - time)) {
+    --nearest;
+  }
+  const bool is_near = nearest != items.end() && std::chrono::abs(nearest->time - time) <= tolerance;
+  return is_near ? nearest : items.end();
+}
 
 // The file taken at nearly the same time. Precondition: files ascend in time.
 std::optional<fs::path> partner_of(Timestamp time, const std::vector<TimedFile>& files) {
-  const auto before = [](const TimedFile& file, Timestamp t) { return file.time < t; };
-  auto nearest = std::lower_bound(files.begin(), files.end(), time, before);
-  if (nearest != files.begin() && (nearest == files.end() || time - std::prev(nearest)->time < nearest->time - time)) {
-    --nearest;
-  }
-  if (nearest == files.end() || std::chrono::abs(nearest->time - time) > kPairTolerance) return std::nullopt;
-  return nearest->path;
+  const auto partner = find_nearest(files, time, kPairTolerance);
+  return partner == files.end() ? std::nullopt : std::optional(partner->path);
 }
 
 }  // namespace
@@ -34,6 +42,19 @@ std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std:
   std::vector<FrameFiles> frames;
   for (const TimedFile& file : left) frames.push_back({file.time, file.path, partner_of(file.time, right)});
   return frames;
+}
+
+void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& depth) {
+  std::vector<std::optional<Timestamp>> gaps(frames.size());
+  for (const TimedFile& file : depth) {
+    const auto frame = find_nearest(frames, file.time, kDepthTolerance);
+    if (frame == frames.end()) continue;
+    const Timestamp gap = std::chrono::abs(frame->time - file.time);
+    std::optional<Timestamp>& least = gaps[static_cast<std::size_t>(frame - frames.begin())];
+    if (least && *least <= gap) continue;
+    least = gap;
+    frame->depth = file.path;
+  }
 }
 
 void require_pairs(const std::vector<FrameFiles>& frames, const std::string& place) {

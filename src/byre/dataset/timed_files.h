@@ -20,6 +20,10 @@ std::vector<std::filesystem::path> paths_of(const std::vector<TimedFile>& files)
 // ascend in time.
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right);
 
+// Gives the frames their depth images: each image belongs to the frame nearest to it, when that is within 20 ms, and a
+// frame takes the nearest of its own. Precondition: both ascend in time.
+void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& depth);
+
 // Throws InputError with this place when no frame has a right image.
 void require_pairs(const std::vector<FrameFiles>& frames, const std::string& place);
 

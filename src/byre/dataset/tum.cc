@@ -3,12 +3,14 @@
 #include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
 
+#include <algorithm>
+
 namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A line of rgb.txt: "1305031102.175304 rgb/1305031102.175304.png".
+// A line of rgb.txt or depth.txt: "1305031102.175304 rgb/1305031102.175304.png".
 TimedFile parse_timed_file(const TextLine& line, const fs::path& folder, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
   const std::optional<Timestamp> time = parse_seconds(fields.front());
@@ -17,10 +19,8 @@ TimedFile parse_timed_file(const TextLine& line, const fs::path& folder, const s
   return {*time, folder / fields[1]};
 }
 
-}  // namespace
-
-RecordingIndex index_tum(const fs::path& folder, const OpenOptions& options) {
-  const fs::path list = folder / "rgb.txt";
+std::vector<TimedFile> read_list(const fs::path& folder, const char* name) {
+  const fs::path list = folder / name;
   std::vector<TimedFile> files;
   for (const TextLine& line : read_lines(list)) {
     const std::string place = place_of(list, line);
@@ -30,7 +30,34 @@ RecordingIndex index_tum(const fs::path& folder, const OpenOptions& options) {
     }
   }
   if (files.empty()) throw InputError(list.string(), "lists no images");
-  return {calibration_for(folder, options), frames_of(files, {})};
+  return files;
+}
+
+bool is_there(const FrameFiles& frame) {
+  return frame.depth && fs::exists(*frame.depth);
+}
+
+// Depth images are often left out of copies, whose lists still name them.
+void add_listed_depth(const fs::path& folder, const OpenOptions& options, RecordingIndex& index) {
+  add_depth(index.frames, read_list(folder, "depth.txt"));
+  if (std::ranges::none_of(index.frames, is_there)) {
+    index.warnings.push_back((folder / "depth.txt").string() +
+                             ": none of its images is there and within 20 ms of a frame, so depth is left out");
+    for (FrameFiles& frame : index.frames) frame.depth.reset();
+    return;
+  }
+  const PlacedDepthCamera depth = depth_camera_for(folder, options);
+  index.calibration.cameras.depth = depth.camera;
+  index.calibration.depth_size = depth.size;
+}
+
+}  // namespace
+
+RecordingIndex index_tum(const fs::path& folder, const OpenOptions& options) {
+  RecordingIndex index{calibration_for(folder, options), frames_of(read_list(folder, "rgb.txt"), {})};
+  const bool wants_depth = !options.camera || options.camera == CameraChoice::rgbd;
+  if (wants_depth && fs::exists(folder / "depth.txt")) add_listed_depth(folder, options, index);
+  return index;
 }
 
 }  // namespace byre

@@ -127,7 +127,7 @@ bool is_video_file(const fs::path& path) {
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {
   cv::VideoCapture capture = open_capture(file);
   const PlacedCalibration calibration =
-      choose_calibration(calibration_for(file.parent_path(), options), false, options.camera, file);
+      choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
   require_calibrated_size(static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
                           static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
                           calibration.left_size);

@@ -23,20 +23,33 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-// A header over the image's own pixels; nothing writes through it.
-cv::Mat as_matrix(const Image& image, const Camera& camera) {
-  if (image.width != camera.width || image.height != camera.height) {
+void require_size(int width, int height, std::size_t pixels, const Camera& camera) {
+  if (width != camera.width || height != camera.height) {
     throw InputError("image",
-                     "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                         " pixels, the calibration says " + std::to_string(camera.width) + " x " +
-                         std::to_string(camera.height),
+                     "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, the calibration says " +
+                         std::to_string(camera.width) + " x " + std::to_string(camera.height),
                      "use the calibration of this camera at this resolution");
   }
-  if (image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
-    throw InputError("image", "holds " + std::to_string(image.pixels.size()) + " bytes, not width times height",
-                     "give 8-bit grey pixels, row after row without padding");
+  if (pixels != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw InputError("image", "holds " + std::to_string(pixels) + " pixels, not width times height",
+                     "give 8-bit grey pixels (of depths: 16 bits), row after row without padding");
   }
+}
+
+// A header over the image's own pixels; nothing writes through it.
+cv::Mat as_matrix(const Image& image, const Camera& camera) {
+  require_size(image.width, image.height, image.pixels.size(), camera);
   return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// What was measured of each keypoint, where it was.
+template <typename Measured>
+void take_over(const std::vector<std::optional<Measured>>& measured, std::vector<Keypoint>& keypoints) {
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i]) continue;
+    keypoints[i].disparity = measured[i]->disparity;
+    keypoints[i].disparity_sigma = measured[i]->sigma;
+  }
 }
 
 // How many features each octave gets: in proportion to its side, finer octaves more.
@@ -79,9 +92,12 @@ struct Extractor::State {
   Pyramid left;
   Pyramid right;
   cv::Mat blurred;
+  std::optional<DepthReader> depth;
 
   void describe_octave(int octave, int quota, Described& described);
   Described describe_all();
+  void match_right(const cv::Mat& rectified, std::vector<Keypoint>& keypoints);
+  void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
 };
 
 void Extractor::State::describe_octave(int octave, int quota, Described& described) {
@@ -118,6 +134,22 @@ Described Extractor::State::describe_all() {
   return described;
 }
 
+void Extractor::State::match_right(const cv::Mat& rectified, std::vector<Keypoint>& keypoints) {
+  build_pyramid(rectified, right);
+  StereoOptions stereo_options;
+  stereo_options.refine = options.refinement != Refinement::none;
+  const auto matches = match_stereo(left, right, rectifier.rig(), keypoints, stereo_options);
+  take_over(matches, keypoints);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (matches[i]) keypoints[i].row_offset = matches[i]->row_offset;
+  }
+}
+
+void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
+  require_size(image.width, image.height, image.units.size(), calibration.depth->camera.value_or(calibration.left));
+  take_over(depth->read(image, keypoints, options.depth), keypoints);
+}
+
 std::string_view name_of(Refinement refinement) {
   switch (refinement) {
     case Refinement::none:
@@ -131,7 +163,9 @@ std::string_view name_of(Refinement refinement) {
 }
 
 Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
-    : state_(new State{calibration, Rectifier(calibration), options, {}, {}, {}}) {}
+    : state_(new State{calibration, Rectifier(calibration), options, {}, {}, {}, {}}) {
+  if (calibration.depth) state_->depth.emplace(calibration, rig());
+}
 Extractor::~Extractor() = default;
 Extractor::Extractor(Extractor&&) noexcept = default;
 Extractor& Extractor::operator=(Extractor&&) noexcept = default;
@@ -142,8 +176,8 @@ const Rig& Extractor::rig() const {
 
 Extraction Extractor::extract(const ImageFrame& images) {
   const Clock::time_point start = Clock::now();
-  const bool stereo = rig().is_stereo() && images.right.has_value();
   const Calibration& calibration = state_->calibration;
+  const bool stereo = calibration.right && images.right;
   const cv::Mat left = state_->rectifier.left(as_matrix(images.left, calibration.left));
   const cv::Mat right =
       stereo ? state_->rectifier.right(as_matrix(*images.right, calibration.right->camera)) : cv::Mat();
@@ -153,17 +187,8 @@ Extraction Extractor::extract(const ImageFrame& images) {
   Described described = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
 
-  if (stereo) {
-    build_pyramid(right, state_->right);
-    StereoOptions stereo_options;
-    stereo_options.refine = state_->options.refinement != Refinement::none;
-    const auto matches = match_stereo(state_->left, state_->right, rig(), described.keypoints, stereo_options);
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      if (!matches[i]) continue;
-      described.keypoints[i].disparity = matches[i]->disparity;
-      described.keypoints[i].disparity_sigma = matches[i]->sigma;
-    }
-  }
+  if (stereo) state_->match_right(right, described.keypoints);
+  if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
   Extraction extraction;
   extraction.frame.time = images.time;
   extraction.frame.condition = measure_condition(images.left);

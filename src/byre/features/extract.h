@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/features/depth.h"
 #include "byre/features/features.h"
 #include "byre/features/image.h"
 #include "byre/geometry/camera.h"
@@ -20,13 +21,14 @@ struct ExtractOptions {
   int fast_threshold = 20;     // grey values
   int min_fast_threshold = 7;  // used where the image is dull
   Refinement refinement = Refinement::all;
+  DepthOptions depth{};
 };
 
 // Wall time of the stages of one extraction, seconds.
 struct ExtractTimes {
   double rectify = 0.0;
   double extract = 0.0;  // pyramid, corners, descriptors, patches
-  double stereo = 0.0;
+  double stereo = 0.0;   // or reading depths
 };
 
 struct Extraction {
@@ -46,8 +48,9 @@ class Extractor {
 
   const Rig& rig() const;  // the ideal rig whose pixels the features are given in
 
-  // Rectifies, detects, describes and, where there is a right image, matches left to right. A frame of a stereo rig
-  // without a right image has no disparities. Throws InputError when an image's size is not the calibration's.
+  // Rectifies, detects, describes and, where there is a right image, matches left to right; where there is a depth
+  // image, its depths become disparities. A frame of a stereo rig without either has no disparities. Throws InputError
+  // when an image's size is not the calibration's.
   Extraction extract(const ImageFrame& images);
 
  private:

@@ -222,6 +222,47 @@ TEST(Extractor, IgnoresTheRightImageOfASingleCamera) {
   EXPECT_EQ(share_with_disparity(*features), 0.0);
 }
 
+Calibration with_registered_depth() {
+  return {ideal_camera(), std::nullopt, Pose{}, DepthCamera{}};
+}
+
+DepthImage even_depth(double metres) {
+  const auto units = static_cast<std::uint16_t>(std::lround(5000.0 * metres));
+  return {kWidth, kHeight, std::vector<std::uint16_t>(static_cast<std::size_t>(kWidth * kHeight), units)};
+}
+
+TEST(Extractor, TurnsDepthsIntoDisparities) {
+  ImageFrame images = wall().seen_by(with_registered_depth());
+  images.depth = even_depth(2.0);
+  Extractor extractor(with_registered_depth(), {});
+  ASSERT_TRUE(extractor.rig().is_stereo());
+  const auto features = extractor.extract(images).frame.features;
+  EXPECT_EQ(share_with_disparity(*features), 1.0);
+  for (const Keypoint& keypoint : features->keypoints()) {
+    const Eigen::Vector3d point =
+        extractor.rig().triangulate({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity});
+    EXPECT_NEAR(point.z(), 2.0, 1e-5);
+    EXPECT_GT(keypoint.disparity_sigma, 0.0f);
+  }
+}
+
+TEST(Extractor, FindsNoDisparitiesInAFrameWithoutItsDepthImage) {
+  Extractor extractor(with_registered_depth(), {});
+  const auto features = extractor.extract(wall().seen_by(with_registered_depth())).frame.features;
+  EXPECT_GE(features->size(), 500);
+  EXPECT_EQ(share_with_disparity(*features), 0.0);
+}
+
+TEST(Extractor, RefusesDepthImagesOfAnotherSize) {
+  ImageFrame images = wall().seen_by(with_registered_depth());
+  images.depth = DepthImage{2, 1, {1000, 1000}};
+  Extractor extractor(with_registered_depth(), {});
+  EXPECT_THROW(extractor.extract(images), InputError);
+  images.depth = even_depth(2.0);
+  images.depth->units.pop_back();
+  EXPECT_THROW(extractor.extract(images), InputError);
+}
+
 TEST(Extractor, FindsNothingInABlankImage) {
   ImageFrame images{Timestamp{}, {kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight, 90)}, std::nullopt};
   images.right = images.left;

@@ -1,5 +1,6 @@
 #include "byre/features/features.h"
 
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -30,6 +31,40 @@ std::vector<int> one_each(std::size_t count) {
   return indices;
 }
 
+// Keypoints counted and sorted by the cells of a grid; stable, so equal input gives equal output.
+struct Cells {
+  int size = 0;  // pixels
+  int columns = 0;
+  int rows = 0;
+  std::vector<int> begin;  // see Features::cell_begin_
+  std::vector<int> order;  // indices of keypoints
+
+  Cells(int width, int height, const std::vector<Keypoint>& keypoints)
+      : size(cell_size_for(width, height, keypoints.size())),
+        columns((width + size - 1) / size),
+        rows((height + size - 1) / size),
+        begin(static_cast<std::size_t>(columns * rows + 1), 0),
+        order(keypoints.size()) {
+    std::vector<int> cells;
+    cells.reserve(keypoints.size());
+    for (const Keypoint& keypoint : keypoints) {
+      cells.push_back(cell_of(keypoint));
+      ++begin[static_cast<std::size_t>(cells.back() + 1)];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (std::size_t i = 0; i < keypoints.size(); ++i) {
+      order[static_cast<std::size_t>(next[static_cast<std::size_t>(cells[i])]++)] = static_cast<int>(i);
+    }
+  }
+
+  int cell_of(const Keypoint& keypoint) const {
+    const int column = std::clamp(static_cast<int>(keypoint.pixel.x()) / size, 0, columns - 1);
+    const int row = std::clamp(static_cast<int>(keypoint.pixel.y()) / size, 0, rows - 1);
+    return row * columns + column;
+  }
+};
+
 }  // namespace
 
 Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
@@ -38,34 +73,32 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
 
 Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
                    std::vector<Patch> patches, std::vector<int> patch_of_keypoint)
-    : patches_(std::move(patches)) {
+    : patches_(std::make_shared<const std::vector<Patch>>(std::move(patches))) {
   if (keypoints.empty()) return;
-  cell_size_ = cell_size_for(width, height, keypoints.size());
-  columns_ = (width + cell_size_ - 1) / cell_size_;
-  rows_ = (height + cell_size_ - 1) / cell_size_;
-  const auto cell_of = [&](const Keypoint& keypoint) {
-    const int column = std::clamp(static_cast<int>(keypoint.pixel.x()) / cell_size_, 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(keypoint.pixel.y()) / cell_size_, 0, rows_ - 1);
-    return row * columns_ + column;
-  };
-  // Counting sort by cell; stable, so equal input gives equal output.
-  cell_begin_.assign(static_cast<std::size_t>(columns_ * rows_ + 1), 0);
-  std::vector<int> cells;
-  cells.reserve(keypoints.size());
-  for (const Keypoint& keypoint : keypoints) {
-    cells.push_back(cell_of(keypoint));
-    ++cell_begin_[static_cast<std::size_t>(cells.back() + 1)];
-  }
-  std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
-  std::vector<int> next(cell_begin_.begin(), cell_begin_.end() - 1);
-  std::vector<int> order(keypoints.size());
+  const Cells cells(width, height, keypoints);
+  cell_size_ = cells.size;
+  columns_ = cells.columns;
+  rows_ = cells.rows;
+  cell_begin_ = cells.begin;
+  keypoints_ = in_order(std::move(keypoints), cells.order);
+  descriptors_ = in_order(std::move(descriptors), cells.order);
+  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_->size());
+  patch_of_keypoint_ = in_order(std::move(patch_of_keypoint), cells.order);
+}
+
+std::vector<int> Features::order_of(int width, int height, const std::vector<Keypoint>& keypoints) {
+  return keypoints.empty() ? std::vector<int>{} : Cells(width, height, keypoints).order;
+}
+
+Features Features::moved(std::vector<Keypoint> keypoints) const {
+  assert(keypoints.size() == keypoints_.size());
+  Features result = *this;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    order[static_cast<std::size_t>(next[static_cast<std::size_t>(cells[i])]++)] = static_cast<int>(i);
+    const float shift = (keypoints[i].pixel - keypoints_[i].pixel).cwiseAbs().maxCoeff();
+    result.slack_ = std::max(result.slack_, slack_ + shift);
   }
-  keypoints_ = in_order(std::move(keypoints), order);
-  descriptors_ = in_order(std::move(descriptors), order);
-  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_.size());
-  patch_of_keypoint_ = in_order(std::move(patch_of_keypoint), order);
+  result.keypoints_ = std::move(keypoints);
+  return result;
 }
 
 }  // namespace byre

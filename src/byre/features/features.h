@@ -30,6 +30,7 @@ struct Keypoint {
   Eigen::Vector2f pixel;          // full-resolution pixels; centre of its patch to sub-pixel precision
   float disparity = -1.0f;        // pixels, negative when not matched in the right image
   float disparity_sigma = -1.0f;  // pixels
+  float row_offset = 0.0f;        // where it was matched: the right row less the left one, zero if all is calibrated
   float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
   float response = 0.0f;          // corner strength, larger is better
   std::uint8_t octave = 0;
@@ -57,6 +58,12 @@ class Features {
   Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
            std::vector<Patch> patches, std::vector<int> patch_of_keypoint);
 
+  // The order that features have: that of the constructor, indices into keypoints in any other.
+  static std::vector<int> order_of(int width, int height, const std::vector<Keypoint>& keypoints);
+
+  // The same corners in the same order, each a little elsewhere in the image. Precondition: as many as there are.
+  Features moved(std::vector<Keypoint> keypoints) const;
+
   int size() const { return static_cast<int>(keypoints_.size()); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }
   const std::vector<Descriptor>& descriptors() const { return descriptors_; }
@@ -65,7 +72,7 @@ class Features {
   // nullptr where none was kept: a patch takes several times the memory of all the rest.
   const Patch* find_patch(int i) const {
     const int patch = patch_of_keypoint_.empty() ? -1 : patch_of_keypoint_[static_cast<std::size_t>(i)];
-    return patch < 0 ? nullptr : &patches_[static_cast<std::size_t>(patch)];
+    return patch < 0 ? nullptr : &(*patches_)[static_cast<std::size_t>(patch)];
   }
 
   // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
@@ -77,9 +84,10 @@ class Features {
   int cell_size_ = 0;  // pixels
   int columns_ = 0;
   int rows_ = 0;
+  float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
   std::vector<Keypoint> keypoints_;
   std::vector<Descriptor> descriptors_;
-  std::vector<Patch> patches_;
+  std::shared_ptr<const std::vector<Patch>> patches_;  // shared with copies that were moved
   std::vector<int> patch_of_keypoint_;
   std::vector<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
 };
@@ -99,10 +107,11 @@ void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_oc
     return std::min(static_cast<int>(std::min(std::max(0.0f, coordinate), kFar)) / cell_size_, count - 1);
   };
   if (columns_ == 0) return;
-  const int first_column = cell(pixel.x() - radius, columns_);
-  const int last_column = cell(pixel.x() + radius, columns_);
-  const int last_row = cell(pixel.y() + radius, rows_);
-  for (int row = cell(pixel.y() - radius, rows_); row <= last_row; ++row) {
+  const float reach = radius + slack_;
+  const int first_column = cell(pixel.x() - reach, columns_);
+  const int last_column = cell(pixel.x() + reach, columns_);
+  const int last_row = cell(pixel.y() + reach, rows_);
+  for (int row = cell(pixel.y() - reach, rows_); row <= last_row; ++row) {
     const int begin = cell_begin_[static_cast<std::size_t>(row * columns_ + first_column)];
     const int end = cell_begin_[static_cast<std::size_t>(row * columns_ + last_column + 1)];
     for (int i = begin; i < end; ++i) {

@@ -1,127 +1,10 @@
 #include "byre/features/rectify.h"
 
-#include "byre/input/input_error.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "byre/geometry/rectification.h"
 
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
-namespace {
-
-// One camera and how it must be turned.
-struct View {
-  const Camera* camera;
-  Eigen::Quaterniond rectified_from_camera;
-};
-
-// Part of the plane z = 1 of the rectified camera.
-struct Field {
-  double left = -std::numeric_limits<double>::infinity();
-  double right = std::numeric_limits<double>::infinity();
-  double top = -std::numeric_limits<double>::infinity();
-  double bottom = std::numeric_limits<double>::infinity();
-};
-
-// Where a border pixel lies on the plane z = 1; or, if the lens model cannot invert it or it lies to the side of the
-// rectified camera, the outermost pixel towards it.
-Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& border) {
-  constexpr double kMinForward = 0.1;  // cosine of the angle off the rectified axis
-  const Eigen::Vector2d centre(view.camera->cx, view.camera->cy);
-  bool invertible = false;
-  for (double fraction = 1.0; fraction > 0.1; fraction -= 0.02) {
-    const auto bearing = view.camera->bearing(centre + fraction * (border - centre));
-    if (!bearing) continue;
-    invertible = true;
-    const Eigen::Vector3d ray = view.rectified_from_camera * *bearing;
-    if (ray.z() > kMinForward) return ray.head<2>() / ray.z();
-  }
-  if (invertible) {
-    throw InputError("calibration", "the cameras look in directions too far apart to be rectified",
-                     "check the extrinsic calibration of the pair");
-  }
-  throw InputError("calibration", "the distortion cannot be inverted near the image centre",
-                   "check intrinsics and distortion coefficients");
-}
-
-// Shrinks the field to the largest upright rectangle inside this view's own.
-void clip_to_view(const View& view, Field& field) {
-  const double last_u = view.camera->width - 1;
-  const double last_v = view.camera->height - 1;
-  constexpr int kSamples = 32;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double u = last_u * i / kSamples;
-    const double v = last_v * i / kSamples;
-    field.left = std::max(field.left, on_rectified_plane(view, {0.0, v}).x());
-    field.right = std::min(field.right, on_rectified_plane(view, {last_u, v}).x());
-    field.top = std::max(field.top, on_rectified_plane(view, {u, 0.0}).y());
-    field.bottom = std::min(field.bottom, on_rectified_plane(view, {u, last_v}).y());
-  }
-}
-
-// Both images turned so that their rows run along the baseline and both look along the mean of the optical axes.
-Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
-  const Pose left_from_right = inverse(partner.right_from_left);
-  const Eigen::Vector3d x_axis = left_from_right.translation.normalized();
-  if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < 0.5) {
-    throw InputError("calibration", "the right camera does not lie to the right of the left one",
-                     "check the extrinsic calibration; left and right may be swapped");
-  }
-  const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d z_axis = (mean_axis - mean_axis.dot(x_axis) * x_axis).normalized();
-  Eigen::Matrix3d rotation;
-  rotation << x_axis.transpose(), z_axis.cross(x_axis).transpose(), z_axis.transpose();
-  return Eigen::Quaterniond(rotation);
-}
-
-bool is_ideal(const Camera& camera) {
-  return camera.model == CameraModel::pinhole && camera.fx == camera.fy;
-}
-
-bool is_rectified(const Calibration& calibration) {
-  if (!is_ideal(calibration.left)) return false;
-  if (!calibration.right) return true;
-  const Camera& left = calibration.left;
-  const Camera& right = calibration.right->camera;
-  const Pose& right_from_left = calibration.right->right_from_left;
-  return is_ideal(right) && left.width == right.width && left.height == right.height && left.fx == right.fx &&
-         left.cx == right.cx && left.cy == right.cy && right_from_left.rotation.vec().norm() < 1e-12 &&
-         right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
-}
-
-// The value between two that is nearest to zero. Not std::clamp: rounding may swap the bounds of a single value.
-double nearest_to_axis(double low, double high) {
-  return std::min(std::max(0.0, low), high);
-}
-
-// The camera that shows the whole field, and nothing beyond it, at the source's resolution.
-Rig rig_of_field(const Field& field, const Camera& source) {
-  const double width = field.right - field.left;
-  const double height = field.bottom - field.top;
-  if (!(width > 0.0) || !(height > 0.0)) {
-    throw InputError("calibration", "the cameras' fields of view do not overlap",
-                     "check the extrinsic calibration of the pair");
-  }
-  // A very wide lens is cropped rather than squeezed: at most this many times coarser than the source's centre.
-  constexpr double kMaxShrink = 2.0;
-  const double filling = std::max((source.width - 1) / width, (source.height - 1) / height);
-  Rig rig;
-  rig.width = source.width;
-  rig.height = source.height;
-  rig.focal = std::max(filling, 0.5 * (source.fx + source.fy) / kMaxShrink);
-  // Of a field larger than the image, the part nearest to the axis is shown.
-  const double half_width = 0.5 * (rig.width - 1);
-  const double half_height = 0.5 * (rig.height - 1);
-  const double middle_x = nearest_to_axis(field.left + half_width / rig.focal, field.right - half_width / rig.focal);
-  const double middle_y = nearest_to_axis(field.top + half_height / rig.focal, field.bottom - half_height / rig.focal);
-  rig.cx = half_width - rig.focal * middle_x;
-  rig.cy = half_height - rig.focal * middle_y;
-  return rig;
-}
-
-}  // namespace
 
 cv::Mat Rectifier::Maps::apply(const cv::Mat& image) const {
   if (whole.empty()) return image;
@@ -146,26 +29,11 @@ Rectifier::Maps Rectifier::make_maps(const Camera& camera, const Eigen::Quaterni
 }
 
 Rectifier::Rectifier(const Calibration& calibration) {
-  const Camera& left = calibration.left;
-  const double baseline = calibration.right ? calibration.right->right_from_left.translation.norm() : 0.0;
-  if (is_rectified(calibration)) {
-    rig_ = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};
-    return;
-  }
-  const Eigen::Quaterniond turned_left =
-      calibration.right ? rectified_from_left(*calibration.right) : Eigen::Quaterniond::Identity();
-  Field field;
-  clip_to_view({&left, turned_left}, field);
-  Eigen::Quaterniond turned_right = turned_left;
-  if (calibration.right) {
-    turned_right = turned_left * calibration.right->right_from_left.rotation.conjugate();
-    clip_to_view({&calibration.right->camera, turned_right}, field);
-  }
-  rig_ = rig_of_field(field, left);
-  rig_.baseline = baseline;
-  rig_.body_from_camera = calibration.body_from_left * Pose{turned_left.conjugate(), Eigen::Vector3d::Zero()};
-  left_ = make_maps(left, turned_left.conjugate(), rig_);
-  if (calibration.right) right_ = make_maps(calibration.right->camera, turned_right.conjugate(), rig_);
+  const Rectification rectification = rectification_of(calibration);
+  rig_ = rectification.rig;
+  if (rectification.is_identity) return;
+  left_ = make_maps(calibration.left, rectification.left_from_rectified, rig_);
+  if (calibration.right) right_ = make_maps(calibration.right->camera, rectification.right_from_rectified, rig_);
 }
 
 }  // namespace byre

@@ -9,8 +9,7 @@
 
 namespace byre {
 
-// Turns images of a calibrated camera or stereo pair into those of an ideal rig: no distortion, one focal length,
-// rows aligned. The rig's field of view is the largest in which every pixel of both images is defined.
+// Turns images of a calibrated camera or stereo pair into those of an ideal rig, see rectification_of.
 class Rectifier {
  public:
   // Throws InputError when no rectification exists: the right camera is not to the right of the left one, the cameras
@@ -21,7 +20,7 @@ class Rectifier {
 
   // Images that are rectified already are handed on without a copy.
   cv::Mat left(const cv::Mat& image) const { return left_.apply(image); }
-  cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: rig().is_stereo()
+  cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: there is a right camera
 
  private:
   struct Maps {

@@ -96,6 +96,7 @@ std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x
 struct OctaveMatch {
   float disparity = 0.0f;
   float sigma = 0.0f;
+  float row_offset = 0.0f;
 };
 
 std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& right, int x, int y, int right_x,
@@ -110,7 +111,7 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
   const auto aligned = align_window<kAlignSize>(CentredTemplate<kAlignSize>(*grey), window_of(right),
                                                 {static_cast<float>(right_x), pixel.y()}, align);
   if (!aligned || std::abs(aligned->pixel.y() - pixel.y()) > options.max_vertical_error) return std::nullopt;
-  return OctaveMatch{pixel.x() - aligned->pixel.x(), aligned->sigma};
+  return OctaveMatch{pixel.x() - aligned->pixel.x(), aligned->sigma, aligned->pixel.y() - pixel.y()};
 }
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
@@ -125,9 +126,9 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
   const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
   if (!right_x) return std::nullopt;
   const auto match = options.refine ? refine_column(left, right, x, y, *right_x, options)
-                                    : OctaveMatch{static_cast<float>(x - *right_x), kRoundingSigma};
+                                    : OctaveMatch{static_cast<float>(x - *right_x), kRoundingSigma, 0.0f};
   if (!match || !(match->disparity > 0.0f)) return std::nullopt;
-  return StereoMatch{match->disparity * scale, match->sigma * scale};
+  return StereoMatch{match->disparity * scale, match->sigma * scale, match->row_offset * scale};
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ struct StereoOptions {
 };
 
 struct StereoMatch {
-  float disparity = 0.0f;  // full-resolution pixels
-  float sigma = 0.0f;      // full-resolution pixels
+  float disparity = 0.0f;   // full-resolution pixels
+  float sigma = 0.0f;       // full-resolution pixels
+  float row_offset = 0.0f;  // the right row less the left one, full-resolution pixels
 };
 
 // Finds each keypoint in the right image: a search along its row with the sum of absolute differences, unique and

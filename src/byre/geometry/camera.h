@@ -30,18 +30,39 @@ struct Camera {
   std::optional<Eigen::Vector3d> bearing(const Eigen::Vector2d& pixel) const;
 
   bool contains(const Eigen::Vector2d& pixel) const;  // inside the image, borders included
+
+  bool operator==(const Camera&) const = default;
 };
 
 struct StereoPartner {
   Camera camera;
   Pose right_from_left;
+
+  bool operator==(const StereoPartner&) const = default;
 };
 
-// What a recording says of its cameras, before any rectification.
+// A camera beside the left one whose images hold depths along its optical axis.
+struct DepthCamera {
+  std::optional<Camera> camera{};      // empty where its images are registered: pixel by pixel those of the left camera
+  Pose left_from_depth{};              // identity where they are registered
+  double units_per_metre = 5000.0;     // of the numbers in its images
+  double sigma_at_one_metre = 0.0025;  // metres, of a depth; grows with its square, as in all that triangulate
+  double baseline = 0.08;              // metres: depths are told as disparities of a pair this far apart
+
+  bool operator==(const DepthCamera&) const = default;
+};
+
+// What a recording says of its cameras, before any rectification. Of right and depth camera there is one at most.
 struct Calibration {
   Camera left;
   std::optional<StereoPartner> right;
   Pose body_from_left;  // identity where the recording knows no body
+  std::optional<DepthCamera> depth{};
+
+  bool tells_metres() const { return right.has_value() || depth.has_value(); }
+
+  // Of every number, to the last digit.
+  bool operator==(const Calibration&) const = default;
 };
 
 }  // namespace byre

@@ -14,6 +14,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 struct Pose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  bool operator==(const Pose& other) const {
+    return rotation.coeffs() == other.rotation.coeffs() && translation == other.translation;
+  }
 };
 
 inline Eigen::Vector3d operator*(const Pose& a_from_b, const Eigen::Vector3d& point_in_b) {

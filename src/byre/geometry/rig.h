@@ -21,7 +21,7 @@ struct Rig {
   double focal = 0.0;     // pixels
   double cx = 0.0;        // pixels, the same in both images
   double cy = 0.0;        // pixels
-  double baseline = 0.0;  // metres, zero for a monocular rig
+  double baseline = 0.0;  // metres, zero for a monocular rig; with a depth camera that of an imagined pair
   Pose body_from_camera;  // identity where the recording knows no body
 
   bool is_stereo() const { return baseline > 0.0; }

@@ -136,9 +136,10 @@ void Map::remove_keyframe(KeyframeId id) {
   const Pose camera_from_parent = keyframe->camera_from_world * inverse(camera_from_world(parent));
   for (std::size_t i = 0; i < keyframe->sightings.size(); ++i) remove_observation({id, static_cast<int>(i)});
 
+  const int rig = keyframe->rig;
   hand_children_to(id, parent);
   slot(id).keyframe.reset();
-  slot(id).removed = RemovedKeyframe{parent, camera_from_parent};
+  slot(id).removed = RemovedKeyframe{rig, parent, camera_from_parent};
   --keyframe_count_;
 }
 

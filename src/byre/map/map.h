@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/features.h"
+#include "byre/geometry/rectified_change.h"
 #include "byre/map/ids.h"
 
 #include <cstdint>
@@ -58,6 +59,7 @@ struct Keyframe {
 
 // Where a removed keyframe was: a fixed pose relative to its parent, so that frames tracked from it keep theirs.
 struct RemovedKeyframe {
+  int rig = 0;  // index into Map::rigs()
   KeyframeId parent;
   Pose camera_from_parent;
 };
@@ -117,6 +119,10 @@ class Map {
 
   void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
+  // What was seen through a rig, as another calibration of the same camera has it: features, sightings and poses of its
+  // keyframes, and the rig itself. Points stay where they are.
+  void recalibrate(int rig, const RectifiedChange& change);
+  int rig_of(KeyframeId id) const;  // index into rigs(), of a removed keyframe too. Precondition: was once given out
   // Where a removed keyframe lies relative to its parent, with lengths times the scale. Nothing for one still there.
   void scale_removed_keyframe(KeyframeId id, double scale);
   // A reference that does not observe the point is replaced by the point's lowest observation.

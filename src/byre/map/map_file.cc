@@ -14,8 +14,10 @@ namespace {
 
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 2;             // the newest that is read, and written for a map with a plan
-constexpr std::uint32_t kFormatWithoutPlan = 1;  // still written for all others, so that older programs read them
+// Written is the oldest that holds what a map has, so that older programs read as many as can be.
+constexpr std::uint32_t kFormat = 3;             // the newest that is read, and written for refined calibrations
+constexpr std::uint32_t kFormatWithPlan = 2;     // written for a map with a plan
+constexpr std::uint32_t kFormatWithoutPlan = 1;  // written for all others
 
 enum Section : std::size_t {
   kSummary,
@@ -28,19 +30,26 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
-  kPlan,  // from format 2 on
+  kPlan,                 // from format 2 on; empty in format 3 without a plan
+  kRefinedCalibrations,  // from format 3 on
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
     "summary", "notes",  "provenance",   "rigs",  "keyframes", "features",
-    "patches", "points", "observations", "words", "plan"};
+    "patches", "points", "observations", "words", "plan",      "calibrations"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
 constexpr std::size_t section_count(std::uint32_t format) {
-  return format == kFormatWithoutPlan ? std::size_t{kPlan} : std::size_t{kSectionCount};
+  if (format == kFormatWithoutPlan) return kPlan;
+  return format == kFormatWithPlan ? kRefinedCalibrations : kSectionCount;
+}
+
+constexpr std::uint32_t format_of(std::size_t sections) {
+  if (sections == section_count(kFormatWithoutPlan)) return kFormatWithoutPlan;
+  return sections == section_count(kFormatWithPlan) ? kFormatWithPlan : kFormat;
 }
 
 // With its own checksum.
@@ -76,8 +85,13 @@ SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {
   ends.push_back(writer.size());
   write_words(all, stored.vocabulary_checksum, writer);
   ends.push_back(writer.size());
-  if (!stored.plan) return ends;
-  write_plan(*stored.plan, writer);
+  const bool is_refined = std::ranges::any_of(
+      stored.recordings, [](const SourceRecording& recording) { return recording.refined.has_value(); });
+  if (!stored.plan && !is_refined) return ends;
+  if (stored.plan) write_plan(*stored.plan, writer);
+  ends.push_back(writer.size());
+  if (!is_refined) return ends;
+  write_refined_calibrations(stored.recordings, writer);
   ends.push_back(writer.size());
   return ends;
 }
@@ -91,7 +105,7 @@ void write_name(std::string_view name, ByteWriter& writer) {
 void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
   const std::size_t header_size = header_bytes(ends.size());
-  writer.write(ends.size() == kSectionCount ? kFormat : kFormatWithoutPlan);
+  writer.write(format_of(ends.size()));
   writer.write(static_cast<std::uint32_t>(ends.size()));
   writer.write(std::uint64_t{header_size + content.size()});
   std::size_t begin = 0;
@@ -173,7 +187,7 @@ class SectionOpener {
  public:
   SectionOpener(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name), table_(read_table(bytes, name)) {}
 
-  bool has(Section section) const { return section < table_.size(); }
+  bool has(Section section) const { return section < table_.size() && !is_left_empty(section); }
 
   ByteReader operator()(Section section) const {
     const auto& [offset, size, expected_checksum] = table_[section];
@@ -184,6 +198,11 @@ class SectionOpener {
   }
 
  private:
+  // The plan alone may be, where other sections follow it.
+  bool is_left_empty(Section section) const {
+    return section == kPlan && table_.size() == kSectionCount && table_[section].size == 0;
+  }
+
   Bytes bytes_;
   const std::string& name_;
   SectionTable table_;
@@ -219,6 +238,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
   stored.map = Map(Origin::offline, std::move(parts));
   if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
+  if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
 
   ByteReader summary = open(kSummary);
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
+#include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 #include "byre/map/plan_registration.h"
 
@@ -18,10 +18,18 @@ namespace byre {
 // A recording that keyframes of a map come from.
 struct SourceRecording {
   std::string name;         // as the user called it
-  Calibration calibration;  // of the cameras that took its images, before rectification
+  Calibration calibration;  // of the cameras that took its images, before rectification; as it was given
   Timestamp first_time{};   // of its frames, whether keyframes or not
   Timestamp last_time{};
+  std::optional<RefinedCalibration> refined = {};  // by which its images are rectified, where there is one
+
+  const Calibration& present_calibration() const { return refined ? refined->calibration : calibration; }
 };
+
+// What recordings of a map have told of a calibration, the newest of those that were given the same for these cameras;
+// empty when there is none. The left camera may be the only one.
+std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
+                                                    const Calibration& given);
 
 // What the positions of a map are measured in.
 enum class MapScale : std::uint8_t {
@@ -52,9 +60,9 @@ struct StoredMap {
 // stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
-// The same map with all lengths so many times as long: one camera alone tells them but for such a factor, which is
-// positive. Rigs stay as they are. Precondition: the rigs have no baselines and, as their poses are those of the
-// cameras, no arms to a body.
+// The same map with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
+// each image has every point where it was, disparity included. Arms to a body stay, as they were measured.
+// Precondition: ids without gaps, and a factor that is positive.
 Map scaled_copy(const Map& map, double factor);
 
 // All faults of find_faults(Map), and what a stored map must hold beyond them.

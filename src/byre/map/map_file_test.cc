@@ -142,6 +142,43 @@ TEST(MapFile, IsOfTheFirstFormatWithoutAPlanSoThatOlderProgramsReadIt) {
   EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
 }
 
+StoredMap with_refined_calibration(StoredMap stored) {
+  RefinedCalibration refined;
+  refined.calibration = changed(stored.recordings.front().calibration, CalibrationVector::Constant(0.5));
+  refined.change.setConstant(0.5);
+  refined.sigma_before.setConstant(2.0);
+  refined.sigma_after.setConstant(0.125);
+  refined.keyframes = 41;
+  refined.observations = 12345;
+  refined.shift = 0.25;
+  stored.recordings.front().refined = refined;
+  return stored;
+}
+
+TEST(MapFile, KeepsRefinedCalibrationsWithAndWithoutAPlan) {
+  for (const bool has_plan : {false, true}) {
+    const StoredMapScene scene;
+    const StoredMap stored = with_refined_calibration(has_plan ? scene.stored_with_plan() : scene.stored());
+    const MapBytes bytes = write_map(stored);
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, kFormatAt), 3u);
+    const StoredMap read = read_map(bytes, "file");
+    EXPECT_EQ(read.plan.has_value(), has_plan);
+    ASSERT_TRUE(read.recordings.front().refined);
+    const RefinedCalibration& refined = *read.recordings.front().refined;
+    EXPECT_EQ(refined.calibration, stored.recordings.front().refined->calibration);
+    EXPECT_EQ(refined.change, CalibrationVector::Constant(0.5));
+    EXPECT_EQ(refined.sigma_after, CalibrationVector::Constant(0.125));
+    EXPECT_EQ(refined.observations, 12345);
+    EXPECT_EQ(write_map(read), bytes);
+  }
+}
+
+TEST(MapFile, RefusesARefinedCalibrationThatIsNone) {
+  StoredMap stored = with_refined_calibration(StoredMapScene().stored());
+  stored.recordings.front().refined->calibration.left.fx = -1.0;
+  EXPECT_THROW(read_map(write_map(stored), "file"), InputError);
+}
+
 TEST(MapFile, RefusesAPlanInAFileOfTheFirstFormat) {
   MapBytes bytes = write_map(StoredMapScene().stored_with_plan());
   put_at(bytes, kFormatAt, std::uint32_t{1});
@@ -186,10 +223,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{3});
+  put_at(bytes, kFormatAt, std::uint32_t{4});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 3, this program knows formats up to 2 "
+            "barn.byre: header: has format 4, this program knows formats up to 3 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 

@@ -26,7 +26,14 @@ Keypoint read_keypoint(ByteReader& reader) {
   std::array<float, 6> values;
   reader.read_all<float>(values);
   const auto octave = reader.read<std::uint8_t>();
-  return {{values[0], values[1]}, values[2], values[3], values[4], values[5], octave};
+  Keypoint keypoint;
+  keypoint.pixel = {values[0], values[1]};
+  keypoint.disparity = values[2];
+  keypoint.disparity_sigma = values[3];
+  keypoint.angle = values[4];
+  keypoint.response = values[5];
+  keypoint.octave = octave;
+  return keypoint;
 }
 
 std::vector<Keypoint> read_keypoints(ByteReader& reader, std::uint32_t count, const Rig& rig, std::size_t keyframe) {

@@ -4,6 +4,8 @@
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
 
+#include <algorithm>
+
 namespace byre {
 namespace {
 
@@ -156,6 +158,42 @@ Provenance read_provenance(ByteReader reader) {
   }
   reader.require_end();
   return provenance;
+}
+
+void write_refined_calibrations(const std::vector<SourceRecording>& recordings, ByteWriter& writer) {
+  for (const SourceRecording& recording : recordings) {
+    writer.write(recording.refined.has_value());
+    if (!recording.refined) continue;
+    write_calibration(recording.refined->calibration, writer);
+    for (const CalibrationVector* const values :
+         {&recording.refined->change, &recording.refined->sigma_before, &recording.refined->sigma_after}) {
+      for (const double value : *values) writer.write(value);
+    }
+    writer.write(std::int32_t{recording.refined->keyframes});
+    writer.write(std::int32_t{recording.refined->observations});
+    writer.write(recording.refined->shift);
+  }
+}
+
+void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& recordings) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (!read_bool(reader)) continue;
+    RefinedCalibration refined;
+    refined.calibration = read_calibration(reader);
+    for (CalibrationVector* const values : {&refined.change, &refined.sigma_before, &refined.sigma_after}) {
+      for (double& value : *values) value = reader.read<double>();
+    }
+    refined.keyframes = reader.read<std::int32_t>();
+    refined.observations = reader.read<std::int32_t>();
+    refined.shift = reader.read<double>();
+    recordings[i].refined = refined;
+    require_no_fault(reader, fault_in(recordings[i]), "recording", i);
+  }
+  if (std::ranges::none_of(recordings,
+                           [](const SourceRecording& recording) { return recording.refined.has_value(); })) {
+    reader.fail("holds no calibration");
+  }
+  reader.require_end();
 }
 
 void write_rigs(const std::vector<Rig>& rigs, ByteWriter& writer) {

@@ -69,6 +69,10 @@ void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, 
 // Fills in the words of the keyframes and gives the checksum of their vocabulary.
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
 
+void write_refined_calibrations(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
+// Fills in those of the recordings.
+void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& recordings);
+
 void write_plan(const PlanRegistration& registration, ByteWriter& writer);
 PlanRegistration read_plan(ByteReader reader);
 

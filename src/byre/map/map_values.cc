@@ -52,12 +52,28 @@ std::string_view fault_in(const Camera& camera) {
   return is_sound ? "" : "has no proper camera";
 }
 
-std::string_view fault_in(const SourceRecording& recording) {
-  const Calibration& calibration = recording.calibration;
+std::string_view fault_in(const Calibration& calibration) {
   if (const auto fault = fault_in(calibration.left); !fault.empty()) return fault;
   if (const auto fault = fault_in(calibration.body_from_left); !fault.empty()) return fault;
-  if (calibration.right) {
-    if (const auto fault = fault_in(*calibration.right); !fault.empty()) return fault;
+  return calibration.right ? fault_in(*calibration.right) : "";
+}
+
+std::string_view fault_in(const RefinedCalibration& refined) {
+  if (const auto fault = fault_in(refined.calibration); !fault.empty()) return fault;
+  const bool is_sound = refined.change.allFinite() && (refined.sigma_before.array() >= 0.0).all() &&
+                        (refined.sigma_after.array() >= 0.0).all() && refined.sigma_before.allFinite() &&
+                        refined.sigma_after.allFinite() && refined.keyframes >= 0 && refined.observations >= 0 &&
+                        std::isfinite(refined.shift) && refined.shift >= 0.0;
+  return is_sound ? "" : "has no proper refined calibration";
+}
+
+std::string_view fault_in(const SourceRecording& recording) {
+  if (const auto fault = fault_in(recording.calibration); !fault.empty()) return fault;
+  if (recording.refined) {
+    if (const auto fault = fault_in(*recording.refined); !fault.empty()) return fault;
+    if (recording.refined->calibration.right.has_value() != recording.calibration.right.has_value()) {
+      return "has a refined calibration of other cameras";
+    }
   }
   return recording.first_time <= recording.last_time ? "" : "ends before it begins";
 }

@@ -12,6 +12,8 @@ inline constexpr int kMaxImageSize = 16384;  // pixels, width and height
 // one. Reading a map file, and looking for the faults of a map, ask the same.
 std::string_view fault_in(const Pose& pose);
 std::string_view fault_in(const Camera& camera);
+std::string_view fault_in(const Calibration& calibration);
+std::string_view fault_in(const RefinedCalibration& refined);
 std::string_view fault_in(const SourceRecording& recording);
 std::string_view fault_in(const Rig& rig);
 std::string_view fault_in(const Keypoint& keypoint, const Rig& rig);

@@ -39,26 +39,42 @@ std::vector<int> features_that_define_points(const Map& map, KeyframeId id) {
   return features;
 }
 
-bool has_patches(const Features& features) {
-  for (int i = 0; i < features.size(); ++i) {
-    if (features.find_patch(i)) return true;
+// The features in the order that they have in a file, with these patches; order: which feature comes where.
+std::shared_ptr<const Features> for_keeping(const Features& features, const Rig& rig, const std::vector<int>& order,
+                                            const std::vector<int>& kept) {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  std::vector<Patch> patches;
+  std::vector<int> patch_of_keypoint;
+  for (const int i : order) {
+    keypoints.push_back(features.keypoint(i));
+    if (!features.descriptors().empty()) descriptors.push_back(features.descriptor(i));
+    const Patch* const patch = std::ranges::binary_search(kept, i) ? features.find_patch(i) : nullptr;
+    patch_of_keypoint.push_back(patch ? static_cast<int>(patches.size()) : -1);
+    if (patch) patches.push_back(*patch);
   }
-  return false;
+  return std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), std::move(descriptors),
+                                          std::move(patches), std::move(patch_of_keypoint));
 }
 
-std::shared_ptr<const Features> with_patches_of(const std::shared_ptr<const Features>& features, const Rig& rig,
-                                                const std::vector<int>& kept) {
-  if (!features || !has_patches(*features)) return features;
-  std::vector<Patch> patches;
-  std::vector<int> patch_of_keypoint(features->keypoints().size(), -1);
-  for (const int i : kept) {
-    const Patch* const patch = features->find_patch(i);
-    if (!patch) continue;
-    patch_of_keypoint[static_cast<std::size_t>(i)] = static_cast<int>(patches.size());
-    patches.push_back(*patch);
+// Features that were moved may have left the order of their grid. What goes by their numbers follows.
+std::vector<int> sort_features(Keyframe& keyframe, const Rig& rig, const std::vector<int>& kept_patches) {
+  if (!keyframe.frame.features) return {};
+  const Features& features = *keyframe.frame.features;
+  const std::vector<int> order = Features::order_of(rig.width, rig.height, features.keypoints());
+  std::vector<int> number_of(order.size());
+  std::vector<Sighting> sightings(keyframe.sightings.size());
+  std::vector<Word> words(keyframe.words.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto before = static_cast<std::size_t>(order[i]);
+    number_of[before] = static_cast<int>(i);
+    sightings[i] = keyframe.sightings[before];
+    if (!words.empty()) words[i] = keyframe.words[before];
   }
-  return std::make_shared<const Features>(rig.width, rig.height, features->keypoints(), features->descriptors(),
-                                          std::move(patches), std::move(patch_of_keypoint));
+  keyframe.frame.features = for_keeping(features, rig, order, kept_patches);
+  keyframe.sightings = std::move(sightings);
+  keyframe.words = std::move(words);
+  return number_of;
 }
 
 // Rounding makes covariances that are the product of matrices unsymmetric in their last digits.
@@ -73,10 +89,11 @@ Map offline_copy(const Map& online) {
   const Renumbering<KeyframeId> keyframes(online.keyframe_ids());
   const Renumbering<PointId> points(online.point_ids());
   MapParts parts{online.rigs(), {}, {}};
+  std::vector<std::vector<int>> feature_numbers;  // by number of keyframe: of each feature, where it comes now
   for (const KeyframeId id : keyframes.ids()) {
     Keyframe keyframe = *online.find_keyframe(id);
     const Rig& rig = online.rigs()[static_cast<std::size_t>(keyframe.rig)];
-    keyframe.frame.features = with_patches_of(keyframe.frame.features, rig, features_that_define_points(online, id));
+    feature_numbers.push_back(sort_features(keyframe, rig, features_that_define_points(online, id)));
     for (Sighting& sighting : keyframe.sightings) {
       sighting.point = points(sighting.point);
       if (!sighting.point) sighting = {};
@@ -88,6 +105,8 @@ Map offline_copy(const Map& online) {
   for (const PointId id : points.ids()) {
     MapPoint point = *online.find_point(id);
     point.reference.keyframe = keyframes(point.reference.keyframe).value();
+    point.reference.feature =
+        feature_numbers[point.reference.keyframe.number][static_cast<std::size_t>(point.reference.feature)];
     point.covariance = symmetric(point.covariance);
     parts.points.push_back(point);
   }

@@ -45,7 +45,8 @@ std::optional<MapPlace> place_at_pixel(const StoredMap& stored, const Keyframe& 
   const auto recording = static_cast<std::size_t>(keyframe.recording);
   if (recording >= stored.recordings.size()) return std::nullopt;
   const Rig& rig = stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-  const std::optional<Eigen::Vector2d> pixel_in_rig = rectified(pixel, stored.recordings[recording].calibration, rig);
+  const std::optional<Eigen::Vector2d> pixel_in_rig =
+      rectified(pixel, stored.recordings[recording].present_calibration(), rig);
   const Sighting* const sighting = pixel_in_rig ? nearest_sighting(keyframe, *pixel_in_rig) : nullptr;
   std::optional<MapPlace> place = sighting ? place_of_point(stored, *sighting->point) : std::nullopt;
   if (!place || stored.scale != MapScale::metric) return place;

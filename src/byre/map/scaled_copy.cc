@@ -1,37 +1,71 @@
-#include "byre/map/map_file.h"
+#include "byre/map/scaled_copy.h"
+
+#include "byre/geometry/alignment.h"
 
 #include <cassert>
+#include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
 
-// Of a small motion, translation first.
-Matrix6 scaled_covariance(const Matrix6& covariance, double factor) {
-  Vector6 units = Vector6::Ones();
-  units.head<3>().setConstant(factor);
-  return units.asDiagonal() * covariance * units.asDiagonal();
+// A factor within this of one is rounding.
+constexpr double kSame = 1e-12;
+
+MapPoint scaled_copy(MapPoint point, double factor) {
+  point.position_in_world *= factor;
+  point.covariance *= factor * factor;
+  point.min_distance *= static_cast<float>(factor);
+  point.max_distance *= static_cast<float>(factor);
+  return point;
 }
 
 }  // namespace
 
+Calibration scaled(const Calibration& calibration, double factor) {
+  assert(factor > 0.0);
+  Calibration scaled = calibration;
+  if (scaled.right) scaled.right->right_from_left.translation *= factor;
+  return scaled;
+}
+
 Map scaled_copy(const Map& map, double factor) {
   assert(factor > 0.0);
-  Map scaled = map;
+  MapParts parts{map.rigs(), {}, {}};
+  for (Rig& rig : parts.rigs) rig.baseline *= factor;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_keyframe(id);
-    Pose camera_from_world = keyframe.camera_from_world;
-    camera_from_world.translation *= factor;
-    scaled.move_keyframe(id, camera_from_world, scaled_covariance(keyframe.covariance, factor));
+    Keyframe keyframe = *map.find_keyframe(id);
+    keyframe.camera_from_world = scale_lengths(keyframe.camera_from_world, factor);
+    keyframe.covariance = scale_lengths(keyframe.covariance, factor);
+    parts.keyframes.push_back(std::move(keyframe));
   }
-  for (const PointId id : map.point_ids()) {
-    MapPoint point = *map.find_point(id);
-    point.position_in_world *= factor;
-    point.covariance *= factor * factor;
-    point.min_distance *= static_cast<float>(factor);
-    point.max_distance *= static_cast<float>(factor);
-    scaled.update_point(id, point);
+  for (const PointId id : map.point_ids()) parts.points.push_back(scaled_copy(*map.find_point(id), factor));
+  return {map.origin(), std::move(parts)};
+}
+
+StoredMap scaled_copy(const StoredMap& stored, double factor) {
+  StoredMap scaled = stored;
+  scaled.map = scaled_copy(stored.map, factor);
+  for (SourceRecording& recording : scaled.recordings) {
+    if (!recording.calibration.right) continue;
+    if (!recording.refined) recording.refined = RefinedCalibration{.calibration = recording.calibration};
+    recording.refined->calibration = byre::scaled(recording.refined->calibration, factor);
   }
+  if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;
+}
+
+double baseline_factor(const StoredMap& stored, std::size_t recording) {
+  const Calibration& given = stored.recordings.at(recording).calibration;
+  if (!given.right) return 1.0;
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    const Keyframe& keyframe = *stored.map.find_keyframe(id);
+    const Rig& rig = stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+    if (std::cmp_not_equal(keyframe.recording, recording) || !rig.is_stereo()) continue;
+    const double factor = rig.baseline / given.right->right_from_left.translation.norm();
+    return std::abs(factor - 1.0) < kSame ? 1.0 : factor;
+  }
+  return 1.0;
 }
 
 }  // namespace byre

@@ -126,9 +126,15 @@ class CeresBundle {
     }
     for (const int i : roles.observations) {
       const BundleObservation& observation = problem.observations[i];
-      add(observation, problem.rigs[problem.poses[observation.pose].rig]);
+      const int rig = problem.poses[observation.pose].rig;
+      if (problem.calibration && problem.calibration->rig == rig) {
+        add(observation, problem.rigs[rig], *problem.calibration->sensitivity);
+      } else {
+        add(observation, problem.rigs[rig]);
+      }
     }
     if (scale) hold(*scale);
+    if (problem.calibration) expect(*problem.calibration);
   }
 
   ceres::Solver::Summary solve(const BundleOptions& options) {
@@ -152,6 +158,7 @@ class CeresBundle {
 
   const Pose& camera_from_world(std::size_t pose) const { return poses_[pose]; }
   const Eigen::Vector3d& point_in_world(std::size_t point) const { return points_[point]; }
+  const CalibrationVector& calibration_change() const { return calibration_; }
 
  private:
   double* rotation(std::size_t pose) { return poses_[pose].rotation.coeffs().data(); }
@@ -173,6 +180,24 @@ class CeresBundle {
       auto& cost = pose_and_point_costs_.emplace_back(reprojection);
       ceres_.AddResidualBlock(&cost, loss, rotation(pose), translation(pose), position(point));
     }
+  }
+
+  // Where the calibration is sought too; what does not move is held constant.
+  void add(const BundleObservation& observation, const Rig& rig, const CalibrationSensitivity& sensitivity) {
+    const auto [pose, point] = std::pair(observation.pose, observation.point);
+    auto& cost = calibration_costs_.emplace_back(rig, sensitivity, observation);
+    ceres_.AddResidualBlock(&cost, loss_of(observation), rotation(pose), translation(pose), position(point),
+                            calibration_.data());
+    if (!roles_.pose_moves[pose]) {
+      ceres_.SetParameterBlockConstant(rotation(pose));
+      ceres_.SetParameterBlockConstant(translation(pose));
+    }
+    if (!roles_.point_moves[point]) ceres_.SetParameterBlockConstant(position(point));
+  }
+
+  void expect(const BundleCalibration& calibration) {
+    calibration_prior_.emplace(calibration.expected, calibration.information);
+    ceres_.AddResidualBlock(&*calibration_prior_, nullptr, calibration_.data());
   }
 
   void hold(const HeldDistance& scale) {
@@ -205,12 +230,14 @@ class CeresBundle {
       order->AddElementToGroup(rotation(i), 1);
       order->AddElementToGroup(translation(i), 1);
     }
+    if (calibration_prior_) order->AddElementToGroup(calibration_.data(), 1);
     return order;
   }
 
   const Roles& roles_;       // owned by the caller, constant
   std::vector<Pose> poses_;  // written by Ceres, as are the points
   std::vector<Eigen::Vector3d> points_;
+  CalibrationVector calibration_ = CalibrationVector::Zero();  // written by Ceres
   ceres::HuberLoss loss_;
   RotationManifold manifold_;
   // Deques, for Ceres holds the addresses of costs and losses.
@@ -218,7 +245,9 @@ class CeresBundle {
   std::deque<PoseAndPointCost> pose_and_point_costs_;
   std::deque<PoseCost> pose_costs_;
   std::deque<PointCost> point_costs_;
+  std::deque<CalibrationCost> calibration_costs_;
   std::optional<DistanceCost> distance_cost_;
+  std::optional<CalibrationPriorCost> calibration_prior_;
   ceres::Problem ceres_;  // last: refers to all of the above
 };
 
@@ -239,6 +268,7 @@ BundleResult solve(const BundleProblem& problem, const Roles& roles, const std::
   result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
   result.usable = summary.IsSolutionUsable();
   if (!result.usable) return result;
+  result.calibration_change = bundle.calibration_change();
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (roles.pose_moves[i]) result.camera_from_world[i] = bundle.camera_from_world(i);
   }
@@ -281,14 +311,29 @@ std::vector<double> squared_errors(const BundleProblem& problem, const BundleRes
 
 }  // namespace
 
+BundleProblem with_change(BundleProblem problem, const CalibrationVector& change) {
+  if (!problem.calibration) return problem;
+  for (BundleObservation& observation : problem.observations) {
+    if (problem.poses[observation.pose].rig != problem.calibration->rig) continue;
+    const Eigen::Vector3d shift = problem.calibration->sensitivity->at(observation.measured).topRows<3>() * change;
+    observation.measured.head<2>() -= shift.head<2>();
+    if (observation.is_stereo()) observation.measured.z() -= shift.z();
+  }
+  problem.calibration.reset();
+  return problem;
+}
+
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options) {
   const Roles roles = choose_roles(problem);
   const std::optional<HeldDistance> scale = choose_scale(problem, roles);
   BundleResult result = solve(problem, roles, scale, options);
-  result.squared_errors = squared_errors(problem, result);
+  std::optional<BundleProblem> changed;
+  if (problem.calibration) changed = with_change(problem, result.calibration_change);
+  const BundleProblem& calibrated = changed ? *changed : problem;
+  result.squared_errors = squared_errors(calibrated, result);
   if (options.covariance_of_pose >= 0 && result.usable) {
     result.pose_covariance =
-        marginal_covariance(moved(problem, result, roles), scale, options.covariance_of_pose, options.huber_width);
+        marginal_covariance(moved(calibrated, result, roles), scale, options.covariance_of_pose, options.huber_width);
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/geometry/calibration_sensitivity.h"
 #include "byre/geometry/rig.h"
 
 #include <functional>
@@ -31,12 +32,22 @@ struct BundleObservation {
   bool is_stereo() const { return disparity_sigma > 0.0; }
 };
 
+// A calibration that is to be found along with poses and points: that of one rig, as a change of the one given.
+struct BundleCalibration {
+  const CalibrationSensitivity* sensitivity = nullptr;  // owned by the caller, of the rig
+  int rig = 0;                                          // index into BundleProblem::rigs
+  // What is known beforehand, in the parameters' sigmas: where the change is expected, and how surely.
+  CalibrationVector expected = CalibrationVector::Zero();
+  CalibrationMatrix information = CalibrationMatrix::Identity();
+};
+
 // Everything the solver needs, by value; knows nothing of maps.
 struct BundleProblem {
   std::vector<Rig> rigs;
   std::vector<BundlePose> poses;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
+  std::optional<BundleCalibration> calibration;  // empty: the calibration is taken as it is
 };
 
 struct BundleOptions {
@@ -57,6 +68,7 @@ struct BundleResult {
   // Of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones. Empty when
   // none was asked for, the pose did not move, or its observations do not determine it.
   std::optional<Matrix6> pose_covariance;
+  CalibrationVector calibration_change = CalibrationVector::Zero();  // in the parameters' sigmas
   int iterations = 0;
   bool usable = false;  // false when the solver failed: then poses and points are as given
 };
@@ -66,5 +78,9 @@ struct BundleResult {
 // With nothing fixed the first observed pose is held. Where nothing tells the scale (one camera, one pose held), the
 // distance between the held camera and the one that starts farthest from it is.
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options);
+
+// The problem with the measurements that there would be, had the given calibration been so much better; its calibration
+// is no longer sought.
+BundleProblem with_change(BundleProblem problem, const CalibrationVector& change);
 
 }  // namespace byre

@@ -1,5 +1,7 @@
 #include "byre/optimise/bundle_cost.h"
 
+#include <Eigen/Cholesky>
+
 namespace byre {
 
 namespace {
@@ -36,6 +38,46 @@ bool PoseAndPointCost::Evaluate(const double* const* parameters, double* residua
   const Eigen::Matrix3d by_camera = reprojection_.jacobian(point_in_camera);
   write_by_pose(by_camera, rotated_point, jacobians);
   write_by_point(by_camera, rotation, jacobians[2]);
+  return true;
+}
+
+CalibrationCost::CalibrationCost(const Rig& rig, const CalibrationSensitivity& sensitivity,
+                                 const BundleObservation& observation)
+    : cost_({rig, observation.measured, observation.pixel_sigma, observation.disparity_sigma}),
+      rig_(rig),
+      sensitivity_(sensitivity),
+      measured_(observation.measured),
+      per_pixel_(1.0 / observation.pixel_sigma, 1.0 / observation.pixel_sigma,
+                 observation.is_stereo() ? 1.0 / observation.disparity_sigma : 0.0) {}
+
+Eigen::Matrix<double, 3, kCalibrationParameters> CalibrationCost::by_calibration(
+    const Eigen::Vector3d& point_in_camera) const {
+  StereoPixel seen = point_in_camera.z() < kNearestDepth ? measured_ : rig_.project(point_in_camera);
+  if (per_pixel_.z() == 0.0) seen.z() = 0.0;
+  return per_pixel_.asDiagonal() * sensitivity_.at(seen).topRows<3>();
+}
+
+bool CalibrationCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  cost_.Evaluate(parameters, residual, jacobians);
+  const Eigen::Vector3d rotated_point = Eigen::Quaterniond(parameters[0]) * Eigen::Vector3d(parameters[2]);
+  const auto slope = by_calibration(rotated_point + Eigen::Vector3d(parameters[1]));
+  Eigen::Map<Eigen::Vector3d>{residual} += slope * Eigen::Map<const CalibrationVector>(parameters[3]);
+  if (jacobians && jacobians[3]) {
+    Eigen::Map<Eigen::Matrix<double, 3, kCalibrationParameters, Eigen::RowMajor>>{jacobians[3]} = slope;
+  }
+  return true;
+}
+
+CalibrationPriorCost::CalibrationPriorCost(const CalibrationVector& expected, const CalibrationMatrix& information)
+    : expected_(expected), square_root_(information.llt().matrixU()) {}
+
+bool CalibrationPriorCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
+  Eigen::Map<CalibrationVector>{residual} =
+      square_root_ * (Eigen::Map<const CalibrationVector>(parameters[0]) - expected_);
+  if (jacobians && jacobians[0]) {
+    Eigen::Map<Eigen::Matrix<double, kCalibrationParameters, kCalibrationParameters, Eigen::RowMajor>>{jacobians[0]} =
+        square_root_;
+  }
   return true;
 }
 

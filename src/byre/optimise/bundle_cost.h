@@ -1,6 +1,8 @@
 #pragma once
 
+#include "byre/geometry/calibration_sensitivity.h"
 #include "byre/geometry/pose.h"
+#include "byre/optimise/bundle_adjustment.h"
 #include "byre/optimise/reprojection.h"
 
 #include <ceres/sized_cost_function.h>
@@ -20,6 +22,36 @@ class PoseAndPointCost final : public ceres::SizedCostFunction<3, 4, 3, 3> {
 
  private:
   Reprojection reprojection_;  // constant after construction
+};
+
+// Pose, point and the calibration of the cameras move. Parameters: rotation, translation, point, change of calibration.
+// The calibration acts where the point is expected, not where it was measured: there the slope would share the noise of
+// the residual, and hundreds of thousands of measurements would agree on a focal length that is too long.
+class CalibrationCost final : public ceres::SizedCostFunction<3, 4, 3, 3, kCalibrationParameters> {
+ public:
+  // Rig and sensitivity are owned by the caller.
+  CalibrationCost(const Rig& rig, const CalibrationSensitivity& sensitivity, const BundleObservation& observation);
+  bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override;
+
+ private:
+  Eigen::Matrix<double, 3, kCalibrationParameters> by_calibration(const Eigen::Vector3d& point_in_camera) const;
+
+  PoseAndPointCost cost_;  // of the calibration given; constant after construction
+  const Rig& rig_;
+  const CalibrationSensitivity& sensitivity_;
+  StereoPixel measured_;       // constant after construction
+  Eigen::Vector3d per_pixel_;  // residuals by pixels, constant after construction
+};
+
+// What is known of the calibration beforehand. Parameter: change of calibration.
+class CalibrationPriorCost final : public ceres::SizedCostFunction<kCalibrationParameters, kCalibrationParameters> {
+ public:
+  CalibrationPriorCost(const CalibrationVector& expected, const CalibrationMatrix& information);
+  bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override;
+
+ private:
+  CalibrationVector expected_;     // constant after construction
+  CalibrationMatrix square_root_;  // upper, of the information; constant after construction
 };
 
 // The pose moves, the point is trusted. Parameters: rotation, translation.

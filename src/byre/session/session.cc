@@ -1,5 +1,6 @@
 #include "byre/session/session.h"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <utility>
@@ -15,18 +16,23 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+bool has_disparities(const Frame& frame) {
+  return std::ranges::any_of(frame.features->keypoints(), &Keypoint::has_disparity);
+}
+
 }  // namespace
 
 Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary,
                  std::shared_ptr<const OfflineMap> offline)
-    : rig_(rig),
-      options_(options),
+    : options_(options),
+      rig_(rig),
       executor_(std::move(lanes.local)),
       global_(offline ? make_inline_executor() : std::move(lanes.global), options.global) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
   if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
   mission_.emplace(offline, options.mission);
+  calibration_executor_ = std::move(lanes.calibration);
   search_.emplace(std::move(lanes.global), offline, options.relocalise);
 }
 
@@ -40,13 +46,33 @@ void Session::continue_map(Map online) {
   state_ = State::lost;
 }
 
-FrameReport Session::process(const Frame& frame) {
+void Session::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
+  assert(anchored_.empty());
+  if (mission_) {
+    mission_calibrator_.emplace(given, CalibrationOnMapOptions{}, std::move(calibration_executor_));
+  } else {
+    calibrator_.emplace(given, options);
+  }
+}
+
+std::optional<RefinedCalibration> Session::self_calibration() const {
+  if (calibrator_) return calibrator_->result();
+  return mission_calibrator_ ? mission_calibrator_->result() : std::nullopt;
+}
+
+Frame Session::corrected(const Frame& rectified) const {
+  if (calibrator_) return calibrator_->corrected(rectified);
+  return mission_calibrator_ ? mission_calibrator_->corrected(rectified) : rectified;
+}
+
+FrameReport Session::process(const Frame& rectified) {
   FrameReport report;
-  report.time = frame.time;
-  if (!first_frame_) first_frame_ = frame.time;
+  report.time = rectified.time;
+  if (!first_frame_) first_frame_ = rectified.time;
   const Stopwatch mapping_before;
   const auto finished = executor_->collect();
   take_over_results(finished, report);
+  const Frame frame = corrected(rectified);
   start_job();
   const double seconds_before = mapping_before.seconds();
 
@@ -56,6 +82,7 @@ FrameReport Session::process(const Frame& frame) {
 
   const Stopwatch mapping_after;
   ++frames_since_keyframe_;
+  frames_without_depth_ = rig_.is_stereo() && !has_disparities(frame) ? frames_without_depth_ + 1 : 0;
   report.keyframe_added = located.is_new_segment;
   report.start_failure = located.start_failure;
   if (located.is_new_segment) {
@@ -82,6 +109,7 @@ FrameReport Session::process(const Frame& frame) {
 void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
   if (finished) take_over(*finished);
   global_.collect();
+  if (take_over_calibration() || switch_camera()) report.events.push_back(SessionEvent::recalibrated);
   if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
   if (search_) {
     if (const auto found = search_->collect()) consider_place(*found, report);
@@ -117,6 +145,55 @@ void Session::follow(const LengthChanges& changes) {
     if (&pose == &anchored_.back()) velocity_.head<3>() *= change->second;
   }
   for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
+}
+
+// What is in flight was measured by the calibration before, so that it must be over.
+bool Session::take_over_calibration() {
+  if (!calibrator_ || !executor_->idle()) return false;
+  if (const auto refined = global_.take_calibration()) {
+    constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
+    const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
+    recalibrate(*refined);
+    if (is_large && global_.idle()) global_.close_loops(online_, loops_);
+    return true;
+  }
+  if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return false;
+  calibrator_->note_attempt(online_.keyframe_count());
+  global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig_), calibrator_->options());
+  return false;
+}
+
+// The rectified camera turns, as it is made of the real ones in another way.
+void Session::recalibrate(const RefinedCalibration& refined) {
+  const int rig = online_.add_rig(rig_);
+  const RectifiedChange change = calibrator_->take_over(refined);
+  const Pose& turn = change.after_from_before();
+  const auto turn_of = [&](KeyframeId id) {
+    return id.origin == Origin::online && online_.rig_of(id) == rig ? turn : Pose{};
+  };
+  online_.recalibrate(rig, change);
+  rig_ = change.rig();
+  for (AnchoredPose& pose : anchored_) {
+    pose.camera_from_keyframe = turn * pose.camera_from_keyframe * inverse(turn_of(pose.keyframe));
+  }
+  for (LoopEdge& loop : loops_) {
+    loop.keyframe_from_place = turn_of(loop.keyframe) * loop.keyframe_from_place * inverse(turn_of(loop.place));
+  }
+  velocity_ = adjoint(turn) * velocity_;
+  loop_.reset();
+  local_points_of_.reset();
+}
+
+// From here on frames are of another rig; keyframes stay as they were seen.
+bool Session::switch_camera() {
+  const auto change = mission_calibrator_ ? mission_calibrator_->collect() : std::nullopt;
+  if (!change) return false;
+  rig_ = change->rig;
+  for (AnchoredPose& pose : anchored_)
+    pose.camera_from_keyframe = change->after_from_before * pose.camera_from_keyframe;
+  velocity_ = adjoint(change->after_from_before) * velocity_;
+  loop_.reset();
+  return true;
 }
 
 bool Session::correct_online() {
@@ -192,6 +269,7 @@ KeyframeEvidence Session::keyframe_evidence(const HybridTrack& track) const {
   KeyframeEvidence evidence;
   evidence.fresh_inliers = fresh_inliers_;
   evidence.frames_since_last = frames_since_keyframe_;
+  evidence.without_depth = frames_without_depth_;
   evidence.pending = static_cast<int>(pending_.size());
   evidence.offline_inliers = track.offline_inliers;
   const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(track.tracked.reference));
@@ -220,6 +298,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
 
 void Session::finish() {
   if (search_) search_->finish();
+  if (mission_calibrator_) mission_calibrator_->finish();
   while (true) {
     if (const auto finished = executor_->finish()) take_over(*finished);
     global_.finish();
@@ -232,6 +311,12 @@ void Session::finish() {
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
   assert(places_);
+  if (calibrator_ && calibrator_->is_worth_a_last_look(online_.keyframe_count())) {
+    const MapWindow whole = whole_map(map());
+    const auto refined =
+        self_calibrate(whole, calibrator_->state(), online_.add_rig(rig_), calibrator_->options(), hooks.should_stop);
+    if (refined) recalibrate(*refined);
+  }
   FinishReport report = byre::finish_map(online_, *places_, options, hooks);
   follow(report.length_changes);
   return report;

@@ -2,9 +2,11 @@
 
 #include "byre/features/features.h"
 #include "byre/map/map_view.h"
+#include "byre/session/calibrator.h"
 #include "byre/session/executor.h"
 #include "byre/session/global_lane.h"
 #include "byre/session/mission.h"
+#include "byre/session/mission_calibrator.h"
 #include "byre/session/odometry.h"
 #include "byre/session/place_search.h"
 #include "byre/session/segments.h"
@@ -54,10 +56,14 @@ struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
   Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
   Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane)
-      : local(std::move(local_lane)), global(std::move(global_lane)) {}
+      : Lanes(std::move(local_lane), std::move(global_lane), make_inline_executor()) {}
+  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane,
+        std::unique_ptr<Executor> calibration_lane)
+      : local(std::move(local_lane)), global(std::move(global_lane)), calibration(std::move(calibration_lane)) {}
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
+  std::unique_ptr<Executor> calibration;  // of a mission's cameras
 };
 
 // What the caller learns about one frame.
@@ -99,7 +105,14 @@ class Session {
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
   void continue_map(Map online);
 
-  FrameReport process(const Frame& frame);
+  // The calibration by which the frames are rectified may err, and is refined from what is seen. Call it before the
+  // first frame.
+  void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
+
+  // What is known of the calibration by now; empty until it was refined.
+  std::optional<RefinedCalibration> self_calibration() const;
+
+  FrameReport process(const Frame& rectified);
 
   // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
   void hurry() { global_.hurry(); }
@@ -153,6 +166,10 @@ class Session {
   void take_over(const FinishedJob& job);
   bool take_over_correction();
   void follow(const LengthChanges& changes);
+  void recalibrate(const RefinedCalibration& refined);
+  bool take_over_calibration();
+  bool switch_camera();
+  Frame corrected(const Frame& rectified) const;
   bool correct_online();
   void consider_place(const FoundPlace& found, FrameReport& report);
   bool is_refuted_by(const FoundPlace& found, const Agreement& agreement) const;
@@ -204,11 +221,13 @@ class Session {
   Pose predict(Timestamp time) const;
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_world) const;
 
-  // Constant after construction.
-  Rig rig_;
-  SessionOptions options_;
+  SessionOptions options_;  // constant after construction
 
   // Owned by the calling thread.
+  Rig rig_;
+  std::unique_ptr<Executor> calibration_executor_;       // until calibration begins
+  std::optional<Calibrator> calibrator_;                 // of a session that maps
+  std::optional<MissionCalibrator> mission_calibrator_;  // of a mission
   std::unique_ptr<Executor> executor_;
   GlobalLane global_;
   std::optional<Mission> mission_;     // on an offline map
@@ -239,6 +258,7 @@ class Session {
   std::vector<PointId> local_points_;           // online ones around a keyframe,
   std::optional<KeyframeId> local_points_of_;   // this one; empty when the map has changed since
   int frames_since_keyframe_ = 0;
+  int frames_without_depth_ = 0;         // since one had disparities, of a rig that gives them
   int last_inliers_ = 0;                 // in the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with the present reference keyframe
   std::vector<SeenPoint> seen_;          // in the last frame

@@ -28,6 +28,8 @@ std::string_view to_string(SessionEvent event) {
       return "loop found";
     case SessionEvent::map_corrected:
       return "map corrected";
+    case SessionEvent::recalibrated:
+      return "recalibrated";
   }
   return "";
 }

@@ -18,7 +18,8 @@ enum class SessionEvent : std::uint8_t {
   restarted,            // a new piece of online map was begun, for the way back was not found
   online_corrected,     // the online map was moved so that it agrees with the offline one
   loop_found,           // the online map met itself: its ends are fused, or a correction was begun
-  map_corrected         // a correction of the whole online map was taken over
+  map_corrected,        // a correction of the whole online map was taken over
+  recalibrated          // what the map tells of the calibration was taken over
 };
 
 std::string_view to_string(SessionEvent event);

@@ -81,6 +81,9 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   }
   last_confirmed_ = frame.time;
   if (is_pose_proven()) last_proven_ = frame.time;
+  if (mission_calibrator_ && is_pose_proven() && !track.maps_disagree) {
+    mission_calibrator_->note(frame, rig_, track.tracked, map());
+  }
 }
 
 void Session::remember_mission(const Frame& frame, const HybridTrack& track, double step, FrameReport& report) {

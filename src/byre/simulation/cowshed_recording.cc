@@ -1,6 +1,7 @@
 #include "byre/simulation/cowshed_recording.h"
 
 #include "byre/input/input_error.h"
+#include "byre/simulation/calibration_error.h"
 #include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/seeded_draws.h"
 
@@ -24,6 +25,7 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
   require(options.image_divisor >= 1 && options.image_divisor <= 16, "images can be divided by 1 to 16");
   require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");
+  require_sensible(options.camera);
   return options;
 }
 
@@ -74,35 +76,40 @@ FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
   return course;
 }
 
+struct CowshedRecording::RobotCamera {
+  PixelRays pixels;
+  ImageSensor sensor;
+  Pose body_from_camera;
+  double delay_s;  // by which it is exposed later than the left one
+};
+
 // What stays the same for all frames.
 struct CowshedRecording::Scene {
-  struct RobotCamera {
-    PixelRays pixels;
-    ImageSensor sensor;
-    Pose body_from_camera;
-  };
-
   explicit Scene(const CowshedRecordingOptions& options)
       : barn(build_cowshed(options.barn)),
         pictures(draw_barn_pictures(options.barn.seed, options.threads)),
         still(lit(barn, options.threads)),
         renderer(still, pictures, barn.air, options.threads),
-        calibration(feeding_robot_calibration(options.image_divisor)) {
+        calibration(feeding_robot_calibration(options.image_divisor)),
+        told_calibration(perturbed(calibration, options.camera.calibration_level, options.camera.calibration_seed)) {
     const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
-    add_camera(options, calibration.left, calibration.body_from_left);
-    add_camera(options, calibration.right->camera, body_from_right);
+    add_camera(options, calibration.left, calibration.body_from_left, StereoSide::left);
+    add_camera(options, calibration.right->camera, body_from_right, StereoSide::right);
   }
 
-  void add_camera(const CowshedRecordingOptions& options, const Camera& camera, const Pose& body_from_camera) {
-    const std::uint64_t seed =
-        hash(options.barn.seed, static_cast<std::uint64_t>(options.barn.mission), 100 + cameras.size());
-    const ImageSensorOptions sensor{.dirt = static_cast<float>(options.dirt), .seed = seed};
-    cameras.push_back({PixelRays(camera), ImageSensor(camera, sensor), body_from_camera});
-  }
-
-  LitMesh moving_at(double time_s) const {
-    const QuadMesh cows = cows_at(barn.cows, time_s);
-    return {cows, plain_light_at_vertices(cows, still.mean_light()), kMoving, RayScene::Build::quick};
+  void add_camera(const CowshedRecordingOptions& options, const Camera& camera, const Pose& body_from_camera,
+                  StereoSide side) {
+    const bool is_right = side == StereoSide::right;
+    ImageSensorOptions sensor{.vignetting = static_cast<float>(options.camera.vignetting),
+                              .dirt = static_cast<float>(options.dirt),
+                              .blur = lens_blur_of(options.camera, side)};
+    sensor.seed = hash(options.barn.seed, static_cast<std::uint64_t>(options.barn.mission), is_right ? 101 : 100);
+    if (is_right) {
+      sensor.gain = static_cast<float>(options.camera.gain);
+      sensor.offset = static_cast<float>(options.camera.offset);
+    }
+    const double delay_s = is_right ? options.camera.time_offset_s : 0.0;
+    cameras.push_back({PixelRays(camera), ImageSensor(camera, sensor), body_from_camera, delay_s});
   }
 
   const Cowshed barn;
@@ -110,6 +117,7 @@ struct CowshedRecording::Scene {
   const LitMesh still;
   const SceneRenderer renderer;
   const Calibration calibration;
+  const Calibration told_calibration;
   std::vector<RobotCamera> cameras;  // left, right
 };
 
@@ -124,6 +132,10 @@ CowshedRecording::~CowshedRecording() = default;
 
 const Calibration& CowshedRecording::calibration() const {
   return scene_->calibration;
+}
+
+const Calibration& CowshedRecording::told_calibration() const {
+  return scene_->told_calibration;
 }
 
 const Cowshed& CowshedRecording::barn() const {
@@ -149,6 +161,31 @@ Trajectory CowshedRecording::truth() const {
   return truth;
 }
 
+// Seconds by which a row is exposed after the middle of the image.
+double CowshedRecording::row_offset(double row) const {
+  return options_.camera.rolling_shutter_s * ((row + 0.5) / scene_->calibration.left.height - 0.5);
+}
+
+// What a camera sees whose middle row is exposed so many seconds from the start.
+SceneView CowshedRecording::view_at(const RobotCamera& camera, double time_s) const {
+  SceneView view{camera.pixels, course_.world_from_body(time_s) * camera.body_from_camera};
+  if (options_.camera.rolling_shutter_s == 0.0) return view;
+  for (int row = 0; row < camera.pixels.height(); ++row) {
+    view.world_from_camera_by_row.push_back(course_.world_from_body(time_s + row_offset(row)) *
+                                            camera.body_from_camera);
+  }
+  return view;
+}
+
+// From when the first row is exposed until the last one is.
+LitMesh CowshedRecording::moving_at(double time_s) const {
+  const double until_last = row_offset(scene_->calibration.left.height - 1);
+  const QuadMesh begin = cows_at(scene_->barn.cows, time_s - until_last);
+  const std::vector<float> light = plain_light_at_vertices(begin, scene_->still.mean_light());
+  if (until_last == 0.0) return {begin, light, kMoving, RayScene::Build::quick};
+  return {begin, cows_at(scene_->barn.cows, time_s + until_last), light, kMoving, RayScene::Build::quick};
+}
+
 // Pixels by which what is 1.5 m away moves in the image.
 double CowshedRecording::motion_during_exposure(double time_s) const {
   const double half = 0.5 * static_cast<double>(exposure_.time_s);
@@ -166,11 +203,12 @@ std::array<std::vector<float>, 2> CowshedRecording::exposed_radiance(double midd
   std::array<std::vector<float>, 2> mean;
   for (int i = 0; i < count; ++i) {
     const double instant_s = middle_s + ((i + 0.5) / count - 0.5) * static_cast<double>(exposure_.time_s);
-    const LitMesh moving = scene_->moving_at(instant_s);
+    std::optional<LitMesh> moving;
     for (std::size_t camera = 0; camera < 2; ++camera) {
-      const auto& [pixels, sensor, body_from_camera] = scene_->cameras[camera];
-      const SceneView view{pixels, course_.world_from_body(instant_s) * body_from_camera};
-      const std::vector<float> radiance = scene_->renderer.radiance(view, moving, instant_of(i, count));
+      const double delay_s = scene_->cameras[camera].delay_s;
+      if (!moving || delay_s != 0.0) moving = moving_at(instant_s + delay_s);
+      const SceneView view = view_at(scene_->cameras[camera], instant_s + delay_s);
+      const std::vector<float> radiance = scene_->renderer.radiance(view, *moving, instant_of(i, count));
       mean[camera].resize(radiance.size(), 0.0f);
       const float share = 1.0f / static_cast<float>(count);
       for (std::size_t k = 0; k < radiance.size(); ++k) mean[camera][k] += share * radiance[k];
@@ -185,7 +223,8 @@ ImageFrame CowshedRecording::render_next() {
   const std::array<std::vector<float>, 2> radiance = exposed_radiance(seconds_since_start(time));
   const auto image_of = [&](std::size_t camera) {
     const std::uint64_t noise_seed = hash(noise_seed_, static_cast<std::uint64_t>(time.count()), camera);
-    return scene_->cameras[camera].sensor.expose(radiance[camera], exposure_, noise_seed, options_.threads);
+    Image image = scene_->cameras[camera].sensor.expose(radiance[camera], exposure_, noise_seed, options_.threads);
+    return options_.camera.jpeg_quality > 0 ? jpeg_kept(image, options_.camera.jpeg_quality) : image;
   };
   if (next_ == 0) {  // the camera was on before the recording
     constexpr int kFramesToSettle = 12;
@@ -198,30 +237,44 @@ ImageFrame CowshedRecording::render_next() {
 }
 
 std::vector<float> CowshedRecording::left_depths(Timestamp time) const {
-  const Scene::RobotCamera& left = scene_->cameras.front();
-  return scene_->renderer.depths({left.pixels, world_from_body(time) * left.body_from_camera},
-                                 scene_->moving_at(seconds_since_start(time)));
+  const double time_s = seconds_since_start(time);
+  return scene_->renderer.depths(view_at(scene_->cameras.front(), time_s), moving_at(time_s));
+}
+
+// Where the left camera sees a mark of a frame, unhidden and not at the rim; empty where it does not.
+std::optional<MarkSighting> CowshedRecording::sighting_at(const NamedPoint& mark, Timestamp time) const {
+  constexpr double kNearest = 1.0;  // metres
+  constexpr double kRim = 0.06;     // of the image's width
+  constexpr int kRounds = 3;        // of finding the row, and when that is exposed
+  const Camera& camera = scene_->calibration.left;
+  Pose world_from_camera;
+  std::optional<Eigen::Vector2d> pixel(Eigen::Vector2d(0.0, 0.5 * (camera.height - 1)));
+  for (int round = 0; round < kRounds && pixel; ++round) {
+    const double time_s = seconds_since_start(time) + row_offset(pixel->y());
+    world_from_camera = course_.world_from_body(time_s) * scene_->calibration.body_from_left;
+    pixel = camera.project(inverse(world_from_camera) * mark.point_in_world);
+  }
+  const double depth = (inverse(world_from_camera) * mark.point_in_world).z();
+  if (!pixel || depth < kNearest) return std::nullopt;
+  const Eigen::Vector2d rim = Eigen::Vector2d::Constant(kRim * camera.width);
+  if (!camera.contains(*pixel - rim) || !camera.contains(*pixel + rim)) return std::nullopt;
+  const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
+  if (!scene_->still.rays().is_free(origin, mark.point_in_world.cast<float>())) return std::nullopt;
+  return MarkSighting{mark.name, time, *pixel};
 }
 
 std::optional<MarkSighting> CowshedRecording::best_sighting(const NamedPoint& mark) const {
   constexpr std::size_t kStride = 5;  // frames
-  constexpr double kNearest = 1.0;    // metres
-  constexpr double kRim = 0.06;       // of the image's width
-  const Camera& camera = scene_->calibration.left;
-  double nearest = 9.0;  // metres: what is farther is too small to pick
+  double nearest = 9.0;               // metres: what is farther is too small to pick
   std::optional<MarkSighting> best;
   for (std::size_t i = 0; i < times_.size(); i += kStride) {
-    const Pose world_from_camera = world_from_body(times_[i]) * scene_->calibration.body_from_left;
-    const Eigen::Vector3d point_in_camera = inverse(world_from_camera) * mark.point_in_world;
-    const std::optional<Eigen::Vector2d> pixel = camera.project(point_in_camera);
-    const double depth = point_in_camera.z();
-    if (!pixel || depth < kNearest || depth >= nearest) continue;
-    const Eigen::Vector2d rim = Eigen::Vector2d::Constant(kRim * camera.width);
-    if (!camera.contains(*pixel - rim) || !camera.contains(*pixel + rim)) continue;
-    const Eigen::Vector3f origin = world_from_camera.translation.cast<float>();
-    if (!scene_->still.rays().is_free(origin, mark.point_in_world.cast<float>())) continue;
+    const Pose camera_from_world = inverse(world_from_body(times_[i]) * scene_->calibration.body_from_left);
+    const double depth = (camera_from_world * mark.point_in_world).z();
+    if (depth <= 0.0 || depth >= nearest) continue;
+    std::optional<MarkSighting> sighting = sighting_at(mark, times_[i]);
+    if (!sighting) continue;
     nearest = depth;
-    best = MarkSighting{mark.name, times_[i], *pixel};
+    best = std::move(sighting);
   }
   return best;
 }
@@ -236,7 +289,8 @@ std::vector<MarkSighting> CowshedRecording::sightings() const {
 
 void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
                              const std::function<bool(int frames_done)>& go_on) {
-  const EurocWriter writer(recording.calibration(), recording.times(), recording.truth(), folder);
+  const EurocWriter writer(recording.told_calibration(), recording.times(), recording.truth(), folder);
+  if (!recording.is_calibration_exact()) write_true_calibration(recording.calibration(), recording.times(), folder);
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
   write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
                    recording.sightings(), folder / "plan");

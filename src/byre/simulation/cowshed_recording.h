@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/simulation/camera_imperfection.h"
 #include "byre/simulation/cowshed.h"
 #include "byre/simulation/cowshed_plan.h"
 #include "byre/simulation/feeding_robot.h"
@@ -18,7 +19,8 @@ struct CowshedRecordingOptions {
   double frame_rate_hz = 20.0;
   int image_divisor = 1;  // 1: 752 x 480 pixels
   double dirt = 0.0;      // on the lenses: 0 none, 1 a dozen of soft spots each
-  int threads = 0;        // 0: as many as the machine has; changes no byte
+  CameraImperfection camera;
+  int threads = 0;  // 0: as many as the machine has; changes no byte
 };
 
 // Where the robot drives. Missions keep to the same course, a hand's breadth aside and begun elsewhere; where the gate
@@ -33,9 +35,13 @@ class CowshedRecording {
   explicit CowshedRecording(const CowshedRecordingOptions& options);
   ~CowshedRecording();
 
-  const Calibration& calibration() const;
+  const Calibration& calibration() const;       // of the cameras that see
+  const Calibration& told_calibration() const;  // what is told of them: it errs where the options ask for that
   const Cowshed& barn() const;
   const std::vector<Timestamp>& times() const;
+
+  // Whether what is told of the cameras is true.
+  bool is_calibration_exact() const { return options_.camera.calibration_level == 0.0; }
 
   // world_from_body at 200 Hz, frames included.
   Trajectory truth() const;
@@ -45,7 +51,7 @@ class CowshedRecording {
   // Precondition: there is one.
   ImageFrame render_next();
 
-  // Depth along the left camera's axis at each pixel centre, row-major, metres.
+  // Depth along the left camera's axis at each pixel centre, at the instant of its row, row-major, metres.
   std::vector<float> left_depths(Timestamp time) const;
 
   // For each mark that the left camera sees unhidden, the frame that sees it best: large, and not at the rim.
@@ -54,9 +60,15 @@ class CowshedRecording {
  private:
   struct Scene;
 
+  struct RobotCamera;
+
   double seconds_since_start(Timestamp time) const { return to_seconds(time - times_.front()); }
+  double row_offset(double row) const;
+  SceneView view_at(const RobotCamera& camera, double time_s) const;
+  LitMesh moving_at(double time_s) const;
   double motion_during_exposure(double time_s) const;
   std::array<std::vector<float>, 2> exposed_radiance(double middle_s) const;
+  std::optional<MarkSighting> sighting_at(const NamedPoint& mark, Timestamp time) const;
   std::optional<MarkSighting> best_sighting(const NamedPoint& mark) const;
 
   CowshedRecordingOptions options_;

@@ -1,5 +1,6 @@
 #include "byre/simulation/cowshed_recording.h"
 
+#include "byre/dataset/calibration_file.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -155,6 +156,81 @@ TEST_F(CowshedVisit, GivesPicksInTheFrameOfAMapThatBeginsWithItsFirstFrame) {
   }
 }
 
+CowshedRecordingOptions erring_visit(const CameraImperfection& camera) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  options.camera = camera;
+  return options;
+}
+
+TEST_F(CowshedVisit, IsSeenByTheTrueCamerasWhateverTheirCalibrationSays) {
+  CowshedRecording erring(erring_visit({.calibration_level = 1.0, .calibration_seed = 3}));
+  EXPECT_EQ(erring.render_next().left.pixels, frames[0].left.pixels);
+  EXPECT_EQ(erring.calibration().left.fx, recording.calibration().left.fx);
+  EXPECT_NE(erring.told_calibration().left.fx, erring.calibration().left.fx);
+  EXPECT_EQ(recording.told_calibration().left.fx, recording.calibration().left.fx);
+  EXPECT_TRUE(recording.is_calibration_exact());
+  EXPECT_FALSE(erring.is_calibration_exact());
+}
+
+TEST_F(CowshedVisit, IsSeenLaterByTheRightCameraWithATimeOffset) {
+  CowshedRecording late(erring_visit({.time_offset_s = 0.1}));
+  const std::vector<ImageFrame> seen = first_frames(late, 2);
+  EXPECT_EQ(seen[1].left.pixels, frames[1].left.pixels);
+  EXPECT_NE(seen[1].right->pixels, frames[1].right->pixels);
+}
+
+TEST_F(CowshedVisit, IsBrighterSofterAndLossyAsTheCamerasAre) {
+  CowshedRecording bright(erring_visit({.gain = 1.2, .offset = 5.0}));
+  const ImageFrame seen = bright.render_next();
+  EXPECT_EQ(seen.left.pixels, frames[0].left.pixels);
+  EXPECT_NEAR(mean_grey(*seen.right), 1.2f * mean_grey(*frames[0].right) + 5.0f, 5.0f);
+  CowshedRecording lossy(erring_visit({.jpeg_quality = 60}));
+  EXPECT_NE(lossy.render_next().left.pixels, frames[0].left.pixels);
+  CowshedRecording soft(erring_visit({.lens_blur = 2.0}));
+  EXPECT_NE(soft.render_next().left.pixels, frames[0].left.pixels);
+}
+
+double difference_of_rows(const Image& a, const Image& b, int first, int last) {
+  double sum = 0.0;
+  for (int i = first * a.width; i < last * a.width; ++i) {
+    sum += std::abs(int{a.pixels[static_cast<std::size_t>(i)]} - int{b.pixels[static_cast<std::size_t>(i)]});
+  }
+  return sum / ((last - first) * a.width);
+}
+
+TEST(CowshedVisits, AreSeenByTheMiddleRowOfARollingShutterAtTheTimeOfTheFrame) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  options.duration_s = 20.0;
+  CowshedRecording at_once(options);
+  options.camera.rolling_shutter_s = 0.1;
+  CowshedRecording rolling(options);
+  const Image whole = first_frames(at_once, 5).back().left, rolled = first_frames(rolling, 5).back().left;
+  const int middle = whole.height / 2;
+  const double in_the_middle = difference_of_rows(whole, rolled, middle - 2, middle + 2);
+  EXPECT_LT(in_the_middle, 0.4 * difference_of_rows(whole, rolled, whole.height - 12, whole.height));
+  EXPECT_GT(in_the_middle, 0.0);
+}
+
+TEST(CowshedVisits, ShowMarksWhereARollingShutterSeesThem) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  const std::vector<MarkSighting> at_once = CowshedRecording(options).sightings();
+  options.camera.rolling_shutter_s = 0.1;
+  const CowshedRecording rolling(options);
+  const std::vector<MarkSighting> rolled = rolling.sightings();
+  ASSERT_FALSE(rolled.empty());
+  int moved = 0;
+  for (const MarkSighting& sighting : rolled) {
+    const auto mark = std::ranges::find(rolling.barn().marks, sighting.name, &NamedPoint::name);
+    const double row_s = 0.1 * ((sighting.pixel.y() + 0.5) / rolling.calibration().left.height - 0.5);
+    const Pose world_from_body = rolling.world_from_body(sighting.time + from_seconds(row_s));
+    const Vector3d in_camera = inverse(world_from_body * rolling.calibration().body_from_left) * mark->point_in_world;
+    EXPECT_LT((rolling.calibration().left.project(in_camera).value() - sighting.pixel).norm(), 0.01) << sighting.name;
+    const auto before = std::ranges::find(at_once, sighting.name, &MarkSighting::name);
+    moved += before == at_once.end() || (before->pixel - sighting.pixel).norm() > 0.05 ? 1 : 0;
+  }
+  EXPECT_GT(moved, 0);
+}
+
 // Whether nothing stands between two places of the robot, whose body is so wide and high.
 bool is_clear(const RayScene& rays, const Pose& before, const Pose& after) {
   for (const double side : {-0.35, 0.0, 0.35}) {
@@ -260,6 +336,23 @@ TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndHasAFloorPlan) {
   EXPECT_THAT(split_fields(picks.front().text), SizeIs(6));
 }
 
+TEST_F(WrittenCowshed, HasTheCalibrationThatErrsAndTheTrueOneBesideIt) {
+  CowshedRecordingOptions options = small_visit(1, 0);
+  options.duration_s = 0.1;
+  options.image_divisor = 8;
+  options.camera.calibration_level = 1.0;
+  CowshedRecording recording(options);
+  write_cowshed_recording(recording, folder, [](int) { return true; });
+  const Calibration told = open_recording(folder, {})->calibration();
+  EXPECT_NEAR(told.left.fx, recording.told_calibration().left.fx, 1e-9);
+  EXPECT_THAT(told.right->right_from_left, PoseNear(recording.told_calibration().right->right_from_left, 1e-9, 1e-9));
+  const Calibration& truth = recording.calibration();
+  EXPECT_NEAR(read_calibration(folder / "mav0" / "cam0" / "true_sensor.yaml").left.fx, truth.left.fx, 1e-9);
+  const Calibration right = read_calibration(folder / "mav0" / "cam1" / "true_sensor.yaml");
+  EXPECT_NEAR(right.left.cx, truth.right->camera.cx, 1e-9);
+  EXPECT_THAT(right.body_from_left, PoseNear(truth.body_from_left * inverse(truth.right->right_from_left), 1e-9, 1e-9));
+}
+
 TEST_F(WrittenCowshed, StopsWhenItIsTold) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.image_divisor = 8;
@@ -278,6 +371,9 @@ TEST_F(WrittenCowshed, IsRefusedWhenItsOptionsMakeNoSense) {
   EXPECT_THROW(CowshedRecording{options}, InputError);
   options = {};
   options.image_divisor = 0;
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+  options = {};
+  options.camera.gain = 0.0;
   EXPECT_THROW(CowshedRecording{options}, InputError);
   options = {};
   options.dirt = -1.0;

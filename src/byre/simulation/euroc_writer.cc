@@ -54,13 +54,17 @@ void write_lens(std::ofstream& file, const Camera& camera) {
   file << "]\n";
 }
 
+// Precondition: it is the calibration of a pair.
+Pose body_from_right(const Calibration& calibration) {
+  return calibration.body_from_left * inverse(calibration.right->right_from_left);
+}
+
 double mean_rate_hz(const std::vector<Timestamp>& times) {
   if (times.size() < 2) return 0.0;
   return static_cast<double>(times.size() - 1) / to_seconds(times.back() - times.front());
 }
 
-void write_sensor(const fs::path& folder, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
-  const fs::path path = folder / "sensor.yaml";
+void write_sensor(const fs::path& path, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
   std::ofstream file = create(path);
   file << "sensor_type: camera\ncomment: rendered\n\n# Sensor extrinsics wrt. the body-frame.\n";
   write_matrix(file, body_from_camera);
@@ -84,7 +88,7 @@ void write_image_list(const fs::path& folder, const std::vector<Timestamp>& time
 
 void write_camera(const fs::path& folder, const Camera& camera, const Pose& body_from_camera,
                   const std::vector<Timestamp>& times) {
-  write_sensor(folder, camera, body_from_camera, mean_rate_hz(times));
+  write_sensor(folder / "sensor.yaml", camera, body_from_camera, mean_rate_hz(times));
   write_image_list(folder, times);
   std::error_code failure;
   fs::create_directories(folder / "data", failure);
@@ -133,10 +137,18 @@ EurocWriter::EurocWriter(const Calibration& calibration, const std::vector<Times
     : mav_(folder / "mav0") {
   write_camera(mav_ / "cam0", calibration.left, calibration.body_from_left, times);
   if (calibration.right) {
-    const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
-    write_camera(mav_ / "cam1", calibration.right->camera, body_from_right, times);
+    write_camera(mav_ / "cam1", calibration.right->camera, body_from_right(calibration), times);
   }
   write_truth(mav_ / "state_groundtruth_estimate0", truth);
+}
+
+void write_true_calibration(const Calibration& calibration, const std::vector<Timestamp>& times,
+                            const fs::path& folder) {
+  const char* const name = "true_sensor.yaml";
+  const fs::path mav = folder / "mav0";
+  write_sensor(mav / "cam0" / name, calibration.left, calibration.body_from_left, mean_rate_hz(times));
+  if (!calibration.right) return;
+  write_sensor(mav / "cam1" / name, calibration.right->camera, body_from_right(calibration), mean_rate_hz(times));
 }
 
 void EurocWriter::write(const ImageFrame& frame) const {

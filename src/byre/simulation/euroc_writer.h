@@ -26,4 +26,9 @@ class EurocWriter {
   std::filesystem::path mav_;  // constant after construction
 };
 
+// Writes a calibration into the folder of a recording, beside the one it has: mav0/cam0/true_sensor.yaml and, of a
+// pair, cam1. Throws InputError when a file cannot be written.
+void write_true_calibration(const Calibration& calibration, const std::vector<Timestamp>& times,
+                            const std::filesystem::path& folder);
+
 }  // namespace byre

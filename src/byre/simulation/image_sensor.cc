@@ -37,7 +37,12 @@ float mean_grey(const Image& image) {
 }
 
 ImageSensor::ImageSensor(const Camera& camera, const ImageSensorOptions& options)
-    : width_(camera.width), height_(camera.height), noise_(options.noise) {
+    : width_(camera.width),
+      height_(camera.height),
+      noise_(options.noise),
+      gain_(options.gain),
+      offset_(options.offset),
+      blur_(camera.width, camera.height, options.blur) {
   const auto half_width = 0.5f * static_cast<float>(width_);
   const auto half_height = 0.5f * static_cast<float>(height_);
   const float corner = half_width * half_width + half_height * half_height;
@@ -78,19 +83,26 @@ void ImageSensor::add_spot(float x, float y, float radius, float strength, std::
 
 Image ImageSensor::expose(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
                           int threads) const {
-  const float scale = kGreyPerLight * exposure.time_s * exposure.gain;
+  if (!blur_.is_sharp()) return sensed(blur_.blurred(radiance, threads), exposure, noise_seed, threads);
+  return sensed(radiance, exposure, noise_seed, threads);
+}
+
+Image ImageSensor::sensed(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
+                          int threads) const {
+  const float gain = exposure.gain * gain_;
+  const float scale = kGreyPerLight * exposure.time_s * gain;
   double sum = 0.0;
   for (const float light : radiance) sum += std::min(scale * light, kBrightestCounted);
   const auto scattered = static_cast<float>(sum / static_cast<double>(radiance.size()));
-  const float read_sigma = kReadSigma * exposure.gain;
+  const float read_sigma = kReadSigma * gain;
   Image image{width_, height_, std::vector<std::uint8_t>(radiance.size())};
   for_each_row(height_, threads, [&](int row) {
     for (int column = 0; column < width_; ++column) {
       const auto i = static_cast<std::size_t>(row * width_ + column);
       const float grey = scale * radiance[i] * transmission_[i] + scattered * veil_[i];
-      const float sigma = std::sqrt(read_sigma * read_sigma + kShotVariance * exposure.gain * grey);
+      const float sigma = std::sqrt(read_sigma * read_sigma + kShotVariance * gain * grey);
       const float noise = noise_ * sigma * normal_from(hash(noise_seed, i, 0));
-      image.pixels[i] = static_cast<std::uint8_t>(std::clamp(grey + noise + 0.5f, 0.0f, 255.0f));
+      image.pixels[i] = static_cast<std::uint8_t>(std::clamp(grey + noise + offset_ + 0.5f, 0.0f, 255.0f));
     }
   });
   return image;

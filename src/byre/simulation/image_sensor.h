@@ -2,6 +2,7 @@
 
 #include "byre/features/image.h"
 #include "byre/geometry/camera.h"
+#include "byre/simulation/lens_blur.h"
 
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,9 @@ struct ImageSensorOptions {
   float vignetting = 0.35f;  // share of the light lost in the corners
   float dirt = 0.0f;         // on the lens: 0 none, 1 a dozen of soft spots
   float noise = 1.0f;        // times that of a usual sensor
+  float gain = 1.0f;         // times what the exposure asks for
+  float offset = 0.0f;       // grey values without light
+  LensBlurOptions blur;
   std::uint64_t seed = 1;
 };
 
@@ -44,11 +48,16 @@ class ImageSensor {
                int threads) const;
 
  private:
+  Image sensed(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
+               int threads) const;
   void add_spot(float x, float y, float radius, float strength, std::uint64_t seed);
 
   int width_;
   int height_;
   float noise_;
+  float gain_;
+  float offset_;
+  LensBlur blur_;
   std::vector<float> transmission_;  // share of the light that comes through, of each pixel
   std::vector<float> veil_;          // share of the image's mean light that dirt scatters there
 };

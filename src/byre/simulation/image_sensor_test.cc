@@ -56,6 +56,26 @@ TEST(ImageSensor, LosesContrastBehindDirt) {
   EXPECT_LT(sigma_of(dirty.expose(stripes, exposure, 1, 1)), 0.97 * sigma_of(clean.expose(stripes, exposure, 1, 1)));
 }
 
+TEST(ImageSensor, AmplifiesAndIsOffsetAsItsOwn) {
+  const ImageSensor usual(kCamera, {.vignetting = 0.0f, .noise = 0.0f});
+  const ImageSensor bright(kCamera, {.vignetting = 0.0f, .noise = 0.0f, .gain = 1.1f, .offset = 5.0f});
+  const float grey = mean_grey(usual.expose(even_light(0.5f), {}, 1, 1));
+  EXPECT_NEAR(mean_grey(bright.expose(even_light(0.5f), {}, 1, 1)), 1.1f * grey + 5.0f, 1.0f);
+  EXPECT_NEAR(mean_grey(bright.expose(even_light(0.0f), {}, 1, 1)), 5.0f, 0.01f);
+}
+
+TEST(ImageSensor, IsSoftInTheCornersBehindALensThatBlurs) {
+  const ImageSensor sensor(kCamera, {.vignetting = 0.0f, .noise = 0.0f, .blur = {1.0f}});
+  std::vector<float> stripes = even_light(0.2f);
+  for (std::size_t i = 0; i < stripes.size(); i += 2) stripes[i] = 0.8f;
+  const Image image = sensor.expose(stripes, {}, 1, 1);
+  const auto contrast = [&](std::size_t column, std::size_t row) {
+    return std::abs(int{image.pixels[row * 160 + column]} - int{image.pixels[row * 160 + column + 1]});
+  };
+  EXPECT_GT(contrast(80, 60), 100);
+  EXPECT_LT(contrast(2, 2), 20);
+}
+
 TEST(ImageSensor, GivesTheSameBytesWithAnyNumberOfThreads) {
   const ImageSensor sensor(kCamera, {});
   const std::vector<float> light = even_light(0.7f);

@@ -27,8 +27,9 @@ float mean_of(const std::vector<float>& values) {
 
 }  // namespace
 
-LitMesh::LitMesh(const QuadMesh& mesh, const std::vector<float>& light, unsigned id, RayScene::Build build)
-    : rays_(mesh, id, build), looks_(mesh.surfaces), mean_light_(mean_of(light)) {
+LitMesh::LitMesh(const QuadMesh& mesh, const QuadMesh& end, const std::vector<float>& light, unsigned id,
+                 RayScene::Build build)
+    : rays_(mesh, end, id, build), looks_(mesh.surfaces), mean_light_(mean_of(light)) {
   facets_.reserve(mesh.quads.size());
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
     const auto& quad = mesh.quads[i];

@@ -12,7 +12,12 @@ class LitMesh {
  public:
   // light: of each vertex, what a white surface sends out there; id: see RayScene.
   LitMesh(const QuadMesh& mesh, const std::vector<float>& light, unsigned id,
-          RayScene::Build build = RayScene::Build::careful);
+          RayScene::Build build = RayScene::Build::careful)
+      : LitMesh(mesh, mesh, light, id, build) {}
+
+  // Of what moves, see RayScene: it looks as it does at the beginning.
+  LitMesh(const QuadMesh& begin, const QuadMesh& end, const std::vector<float>& light, unsigned id,
+          RayScene::Build build);
 
   // By corner where it is an array, in the order of the mesh.
   struct Facet {

@@ -1,35 +1,44 @@
 #include "byre/simulation/ray_casting.h"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 
 namespace byre {
 namespace {
 
 template <typename Value>
-Value* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
-  return static_cast<Value*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Value), count));
+Value* new_buffer(RTCGeometry geometry, RTCBufferType type, unsigned slot, RTCFormat format, std::size_t count) {
+  return static_cast<Value*>(rtcSetNewGeometryBuffer(geometry, type, slot, format, sizeof(Value), count));
 }
 
-RTCGeometry geometry_of(RTCDevice device, const QuadMesh& mesh) {
+void set_vertices(RTCGeometry geometry, unsigned time_step, const std::vector<Eigen::Vector3f>& vertices) {
+  std::ranges::copy(vertices, new_buffer<Eigen::Vector3f>(geometry, RTC_BUFFER_TYPE_VERTEX, time_step,
+                                                          RTC_FORMAT_FLOAT3, vertices.size()));
+}
+
+RTCGeometry geometry_of(RTCDevice device, const QuadMesh& begin, const QuadMesh& end) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-  std::ranges::copy(mesh.vertices, new_buffer<Eigen::Vector3f>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                                               mesh.vertices.size()));
-  std::ranges::copy(mesh.quads, new_buffer<std::array<std::uint32_t, 4>>(geometry, RTC_BUFFER_TYPE_INDEX,
-                                                                         RTC_FORMAT_UINT4, mesh.quads.size()));
+  const bool moves = &begin != &end;
+  rtcSetGeometryTimeStepCount(geometry, moves ? 2 : 1);
+  set_vertices(geometry, 0, begin.vertices);
+  if (moves) set_vertices(geometry, 1, end.vertices);
+  std::ranges::copy(begin.quads, new_buffer<std::array<std::uint32_t, 4>>(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                                          RTC_FORMAT_UINT4, begin.quads.size()));
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
 }  // namespace
 
-RayScene::RayScene(const QuadMesh& mesh, unsigned id, Build build) {
+RayScene::RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Build build) {
+  assert(begin.quads == end.quads && begin.vertices.size() == end.vertices.size());
   device_.reset(rtcNewDevice("threads=1"));  // built by one thread, so that it is built the same each time
   if (!device_) throw std::runtime_error("Embree cannot be started");
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneBuildQuality(scene_.get(), build == Build::careful ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW);
-  if (!mesh.quads.empty()) {
-    const RTCGeometry geometry = geometry_of(device_.get(), mesh);
+  if (!begin.quads.empty()) {
+    const RTCGeometry geometry = geometry_of(device_.get(), begin, end);
     rtcAttachGeometryByID(scene_.get(), geometry, id);
     rtcReleaseGeometry(geometry);  // the scene keeps it
   }

@@ -31,10 +31,20 @@ Value across_facet(const std::array<Value, 4>& corners, const Vector2f& in_facet
 }  // namespace
 
 struct SceneRenderer::PlacedView {
+  struct Placement {
+    Eigen::Matrix3f world_from_camera;  // rotation
+    Vector3f origin;
+  };
+
+  bool rolls() const { return placements.size() > 1; }
+  const Placement& placement(int row) const { return placements[rolls() ? static_cast<std::size_t>(row) : 0]; }
+  float time(int row) const {  // as RayScene counts it
+    return rolls() ? static_cast<float>(row) / static_cast<float>(placements.size() - 1) : 0.0f;
+  }
+
   const PixelRays& pixels;
   const LitMesh& moving;
-  Eigen::Matrix3f world_from_camera;  // rotation
-  Vector3f origin;
+  std::vector<Placement> placements;  // of each row where the shutter rolls, else one
 };
 
 struct SceneRenderer::Target {
@@ -86,21 +96,22 @@ SceneRenderer::Packet SceneRenderer::aimed(const PlacedView& view, std::span<con
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const auto corners = view.pixels.corners(targets[i].column, targets[i].row);
     if (!corners) continue;
+    const PlacedView::Placement& camera = view.placement(targets[i].row);
     RayFan& fan = packet.fans[i];
-    fan.ray = view.world_from_camera * corners->at(0.5f + targets[i].offset.x(), 0.5f + targets[i].offset.y());
-    fan.to_right = view.world_from_camera * Vector3f(corners->top_right - corners->top_left);
-    fan.to_below = view.world_from_camera * Vector3f(corners->bottom_left - corners->top_left);
+    fan.ray = camera.world_from_camera * corners->at(0.5f + targets[i].offset.x(), 0.5f + targets[i].offset.y());
+    fan.to_right = camera.world_from_camera * Vector3f(corners->top_right - corners->top_left);
+    fan.to_below = camera.world_from_camera * Vector3f(corners->bottom_left - corners->top_left);
     packet.valid[i] = -1;
     RTCRay8& rays = packet.rays.ray;
-    rays.org_x[i] = view.origin.x();
-    rays.org_y[i] = view.origin.y();
-    rays.org_z[i] = view.origin.z();
+    rays.org_x[i] = camera.origin.x();
+    rays.org_y[i] = camera.origin.y();
+    rays.org_z[i] = camera.origin.z();
     rays.dir_x[i] = fan.ray.x();
     rays.dir_y[i] = fan.ray.y();
     rays.dir_z[i] = fan.ray.z();
     rays.tnear[i] = kNearest;
     rays.tfar[i] = std::numeric_limits<float>::infinity();
-    rays.time[i] = 0.0f;
+    rays.time[i] = view.time(targets[i].row);
     rays.mask[i] = ~0u;
     rays.id[i] = 0;
     rays.flags[i] = 0;
@@ -189,8 +200,13 @@ std::vector<float> SceneRenderer::smooth_row(const PlacedView& view, int row, co
 }
 
 SceneRenderer::PlacedView SceneRenderer::placed_view(const SceneView& view, const LitMesh& moving) {
-  return {view.pixels, moving, view.world_from_camera.rotation.toRotationMatrix().cast<float>(),
-          view.world_from_camera.translation.cast<float>()};
+  const auto placement = [](const Pose& world_from_camera) -> PlacedView::Placement {
+    return {world_from_camera.rotation.toRotationMatrix().cast<float>(), world_from_camera.translation.cast<float>()};
+  };
+  PlacedView placed{view.pixels, moving, {}};
+  for (const Pose& pose : view.world_from_camera_by_row) placed.placements.push_back(placement(pose));
+  if (placed.placements.empty()) placed.placements.push_back(placement(view.world_from_camera));
+  return placed;
 }
 
 std::vector<float> SceneRenderer::radiance(const SceneView& view, const LitMesh& moving,

@@ -21,6 +21,9 @@ struct Air {
 struct SceneView {
   const PixelRays& pixels;
   Pose world_from_camera;
+  // The same at each row's own instant, where the shutter rolls, else empty. What moves is then seen by the first row
+  // as it is at the beginning, and by the last one as at the end.
+  std::vector<Pose> world_from_camera_by_row{};
 };
 
 // One of the instants that an exposure is made of.

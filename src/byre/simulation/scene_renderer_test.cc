@@ -104,6 +104,53 @@ TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
   EXPECT_THAT(SceneRenderer(still, pictures, {}, 1).radiance({pixels, {}}, moving, {}), Each(FloatEq(2.0f)));
 }
 
+// Seconds do not matter: the first row looks from the beginning of the way, the last one from its end.
+TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
+  const auto camera_at = [&](int row) {
+    return Pose{Eigen::Quaterniond::Identity(), {0.4 * row / (camera.height - 1.0), 0.0, 0.0}};
+  };
+  SceneView view{pixels, {}};
+  for (int row = 0; row < camera.height; ++row) view.world_from_camera_by_row.push_back(camera_at(row));
+  const SceneRenderer renderer(still, pictures, {}, 1);
+  const std::vector<float> radiance = renderer.radiance(view, nothing, {});
+  double above = 0.0, below = 0.0;
+  for (const int row : {camera.height / 2 - 25, camera.height / 2 + 25}) {
+    const auto begin = radiance.begin() + static_cast<std::ptrdiff_t>(row) * camera.width;
+    const std::vector<float> line(begin, begin + camera.width);
+    double u = 0.5 * camera.width;  // of the marker's left edge: the lens bends it a little along the row
+    for (int round = 0; round < 4; ++round) {
+      const double v_of_edge = camera.bearing({u, static_cast<double>(row)}).value().y();
+      const double z_of_edge = camera.bearing({u, static_cast<double>(row)}).value().z();
+      const Vector3d edge(-0.5, v_of_edge / z_of_edge * kMarkerDepth, kMarkerDepth);
+      u = camera.project(inverse(camera_at(row)) * edge).value().x();
+    }
+    const int edge = static_cast<int>(std::lround(u));
+    (row < camera.height / 2 ? above : below) = rise(line, edge - 4, edge + 4);
+    EXPECT_NEAR(rise(line, edge - 4, edge + 4), u, 0.3);
+  }
+  EXPECT_GT(above - below, 5.0);
+}
+
+TEST_F(RenderedMarker, LetsEachRowSeeWhatMovesWhereItIsThen) {
+  QuadMesh begin, end;
+  add_panel(begin, {-2.0f, 9.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
+  add_panel(end, {-1.5f, 9.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
+  const std::vector<float> light(begin.vertices.size(), 1.0f);
+  const LitMesh moving(begin, end, light, 1, RayScene::Build::quick);
+  const SceneView view{pixels, {}, std::vector<Pose>(static_cast<std::size_t>(camera.height))};
+  const std::vector<float> depths = SceneRenderer(still, pictures, {}, 1).depths(view, moving);
+  for (int row = 0; row < camera.height; row += 30) {
+    const double edge = 0.5 * row / (camera.height - 1.0);  // the panel's right end
+    for (int column = 0; column < camera.width; ++column) {
+      const Vector3d ray = camera.bearing({static_cast<double>(column), static_cast<double>(row)}).value();
+      const double x = ray.x() / ray.z();  // where it meets the panel's plane
+      if (x < -1.4 || std::abs(x - edge) < 0.01) continue;
+      const auto i = static_cast<std::size_t>(row * camera.width + column);
+      EXPECT_EQ(depths[i] < 1.5f, x < edge) << "row " << row << ", column " << column;
+    }
+  }
+}
+
 TEST(RayScene, TellsWhetherAWallIsBetweenTwoPoints) {
   const RayScene rays(wall_and_marker(), 0);
   EXPECT_TRUE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.9f}));

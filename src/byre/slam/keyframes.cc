@@ -35,6 +35,7 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
   if (evidence.pending >= (weak ? options.max_pending_when_weak : options.max_pending)) return false;
   if (weak) return true;
   if (evidence.frames_since_last < options.min_frames) return false;
+  if (evidence.without_depth > 0 && evidence.without_depth <= options.max_wait_for_depth) return false;
   return inliers < options.min_tracked_share * evidence.fresh_inliers || evidence.turn > options.max_turn ||
          evidence.shift_share > options.max_shift_share;
 }

@@ -17,6 +17,7 @@ struct KeyframeOptions {
   int min_frames = 2;              // between keyframes, unless tracking is about to fail
   int max_pending = 3;             // keyframes that wait for mapping; more are not made,
   int max_pending_when_weak = 10;  // unless fewer than min_tracked points are left
+  int max_wait_for_depth = 8;      // frames without disparities that a keyframe waits for one that has them
   int enough_offline = 300;        // offline points tracked: the place is known, and needs no keyframe
 };
 
@@ -25,6 +26,7 @@ struct KeyframeEvidence {
   int fresh_inliers = 0;      // points tracked in the first frame with this reference keyframe
   int frames_since_last = 0;  // frames since the last keyframe was made
   int pending = 0;            // keyframes mapping has not worked on yet
+  int without_depth = 0;      // frames, with this one, since one had disparities; none where the rig gives no such
   double turn = 0.0;          // radians, rotation from the reference keyframe
   int offline_inliers = 0;    // of the points tracked, those of an offline map
   double shift_share = 0.0;   // translation from the reference keyframe over the median depth of the tracked points

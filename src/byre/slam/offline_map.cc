@@ -24,8 +24,11 @@ Matrix6 median_covariance(const Map& map) {
 
 }  // namespace
 
-OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary)
-    : map_(std::move(map)), places_(index_of(map_, vocabulary)), frame_covariance_(median_covariance(map_)) {
+OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings)
+    : map_(std::move(map)),
+      places_(index_of(map_, vocabulary)),
+      recordings_(std::move(recordings)),
+      frame_covariance_(median_covariance(map_)) {
   for (const KeyframeId id : map_.keyframe_ids()) {
     const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});

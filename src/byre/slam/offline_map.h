@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/map.h"
+#include "byre/map/map_file.h"
 #include "byre/place/place_index.h"
 
 #include <vector>
@@ -11,10 +11,12 @@ namespace byre {
 class OfflineMap {
  public:
   // Preconditions: the map is an offline one and holds keyframes; those have words of the vocabulary, see add_words.
-  OfflineMap(Map map, const Vocabulary& vocabulary);
+  OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {});
 
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
+
+  const std::vector<SourceRecording>& recordings() const { return recordings_; }  // that it was made from
 
   // How exactly its frame is known where a keyframe stands: what a keyframe's pose is uncertain by relative to the
   // others on the whole, the median of them. The same in all directions.
@@ -27,6 +29,7 @@ class OfflineMap {
  private:
   Map map_;
   PlaceIndex places_;
+  std::vector<SourceRecording> recordings_;
   struct View {
     KeyframeId keyframe;
     Eigen::Vector3d camera_in_world;

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "byre/features/features.h"
+#include "byre/features/image.h"
+#include "byre/geometry/camera.h"
+#include "byre/geometry/rig.h"
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace byre {
+
+struct DepthOptions {
+  int radius = 2;             // pixels, of the square around a corner that its depth is taken from
+  double min_share = 0.4;     // of that square, so much must be of one surface
+  double max_gap = 0.03;      // between neighbours in depth that are of one surface, as a share of it
+  double max_depth = 10.0;    // metres
+  double misalignment = 1.0;  // pixels by which depths may lie beside what they are of
+};
+
+// What a depth image says of a keypoint, in terms of the rig's imagined pair.
+struct DepthReading {
+  float disparity = 0.0f;  // pixels
+  float sigma = 0.0f;      // pixels
+};
+
+// Reads depths where keypoints are.
+class DepthReader {
+ public:
+  // The rig is what the calibration's images are rectified to. Precondition: the calibration has a depth camera.
+  DepthReader(const Calibration& calibration, const Rig& rig);
+
+  // One entry per keypoint, empty where there is no depth, or none that its surroundings agree on. At the edge of a
+  // surface it is the nearer one's. Precondition: the image has the size of the depth camera's.
+  std::vector<std::optional<DepthReading>> read(const DepthImage& image, const std::vector<Keypoint>& keypoints,
+                                                const DepthOptions& options) const;
+
+ private:
+  // Metres, pixel by pixel of the left image as it was taken; zero where there is none.
+  std::vector<float> depths_in_left(const DepthImage& image) const;
+  std::vector<float> warped_to_left(const DepthImage& image) const;
+
+  // Constant after construction.
+  Camera left_;
+  DepthCamera depth_camera_;
+  Rig rig_;
+  std::vector<Eigen::Vector3d> rays_;  // of the depth camera's pixels, with z = 1; empty where it is registered
+};
+
+}  // namespace byre

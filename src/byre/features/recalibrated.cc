@@ -1,0 +1,31 @@
+#include "byre/features/recalibrated.h"
+
+namespace byre {
+namespace {
+
+Keypoint recalibrated(Keypoint keypoint, const RectifiedChange& change) {
+  const RectifiedChange::Corner corner =
+      change({{keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}, keypoint.row_offset});
+  keypoint.pixel = corner.pixel.head<2>().cast<float>().cwiseMax(0.0f).cwiseMin(
+      Eigen::Vector2f(static_cast<float>(change.rig().width - 1), static_cast<float>(change.rig().height - 1)));
+  if (!keypoint.has_disparity()) return keypoint;
+  keypoint.row_offset = static_cast<float>(corner.row_offset);
+  keypoint.disparity = static_cast<float>(corner.pixel.z());
+  if (keypoint.disparity > 0.0f) return keypoint;
+  keypoint.disparity = keypoint.disparity_sigma = -1.0f;  // beyond infinity: too far away to tell
+  return keypoint;
+}
+
+}  // namespace
+
+Features recalibrated(const Features& features, const RectifiedChange& change) {
+  std::vector<Keypoint> keypoints = features.keypoints();
+  for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
+  return features.moved(std::move(keypoints));
+}
+
+Eigen::Vector2f recalibrated(const Eigen::Vector2f& pixel, const RectifiedChange& change) {
+  return change({{pixel.x(), pixel.y(), -1.0}, 0.0}).pixel.head<2>().cast<float>();
+}
+
+}  // namespace byre

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "byre/features/features.h"
+#include "byre/geometry/rectified_change.h"
+
+namespace byre {
+
+// Features as they would be, had their images been rectified by another calibration; in the same order.
+Features recalibrated(const Features& features, const RectifiedChange& change);
+
+// A refined left pixel likewise.
+Eigen::Vector2f recalibrated(const Eigen::Vector2f& pixel, const RectifiedChange& change);
+
+}  // namespace byre

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "byre/geometry/camera.h"
+
+#include <array>
+#include <string_view>
+
+namespace byre {
+
+// What may be wrong with a calibration. Of each camera: focal length, its aspect, principal point, distortion
+// coefficients 1 to 4; and where the right camera looks and lies. The length of the baseline is not among them: images
+// alone never tell it.
+inline constexpr int kParametersPerCamera = 8;
+inline constexpr int kLeftCamera = 0;                            // index of its first parameter
+inline constexpr int kRightCamera = kParametersPerCamera;        // likewise
+inline constexpr int kRightRotation = 2 * kParametersPerCamera;  // three: about x, y, z of the right camera
+inline constexpr int kBaselineTurn = kRightRotation + 3;         // two: about z and y, as the left camera sees it
+inline constexpr int kCalibrationParameters = kBaselineTurn + 2;
+
+using CalibrationVector = Eigen::Matrix<double, kCalibrationParameters, 1>;
+using CalibrationMatrix = Eigen::Matrix<double, kCalibrationParameters, kCalibrationParameters>;
+
+struct CalibrationParameter {
+  std::string_view name;
+  std::string_view unit;
+  double sigma;  // by which a good calibration errs, in that unit; one sigma
+};
+
+const std::array<CalibrationParameter, kCalibrationParameters>& calibration_parameters();
+
+// Whether the parameter means anything to these cameras: not the right one's to a single camera.
+bool has_parameter(const Calibration& calibration, int parameter);
+
+// The calibration with each parameter changed by so many of its sigmas. The camera centres move about the left one's at
+// the same distance; a pinhole camera that gets a distortion becomes radial_tangential.
+Calibration changed(const Calibration& calibration, const CalibrationVector& sigmas);
+
+// What the images of a run have told of the calibration that was given for them.
+struct RefinedCalibration {
+  Calibration calibration;
+  CalibrationVector change = CalibrationVector::Zero();        // of the one given, in the parameters' sigmas
+  CalibrationVector sigma_before = CalibrationVector::Zero();  // likewise
+  CalibrationVector sigma_after = CalibrationVector::Zero();
+  int keyframes = 0;     // that were looked at
+  int observations = 0;  // of points, by those
+  double shift = 0.0;    // pixels, root mean square by which the change moves what is seen, disparity too, turns apart
+};
+
+}  // namespace byre

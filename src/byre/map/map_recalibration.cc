@@ -1,0 +1,35 @@
+#include "byre/features/recalibrated.h"
+#include "byre/map/map.h"
+
+namespace byre {
+namespace {
+
+void recalibrate(Keyframe& keyframe, const RectifiedChange& change) {
+  if (keyframe.frame.features) {
+    keyframe.frame.features = std::make_shared<const Features>(recalibrated(*keyframe.frame.features, change));
+  }
+  for (Sighting& sighting : keyframe.sightings) {
+    if (sighting.point) sighting.pixel = recalibrated(sighting.pixel, change);
+  }
+  keyframe.camera_from_world = change.after_from_before() * keyframe.camera_from_world;
+  keyframe.covariance = move_covariance(keyframe.covariance, change.after_from_before());
+}
+
+}  // namespace
+
+int Map::rig_of(KeyframeId id) const {
+  return slot(id).keyframe ? slot(id).keyframe->rig : slot(id).removed->rig;
+}
+
+void Map::recalibrate(int rig, const RectifiedChange& change) {
+  const auto turn_of = [&](int other) { return other == rig ? change.after_from_before() : Pose{}; };
+  for (KeyframeSlot& slot : keyframes_) {
+    if (slot.keyframe && slot.keyframe->rig == rig) byre::recalibrate(*slot.keyframe, change);
+    if (!slot.removed) continue;
+    const Pose turned = turn_of(slot.removed->rig) * slot.removed->camera_from_parent;
+    slot.removed->camera_from_parent = turned * inverse(turn_of(rig_of(slot.removed->parent)));
+  }
+  rigs_[static_cast<std::size_t>(rig)] = change.rig();
+}
+
+}  // namespace byre

@@ -1,0 +1,132 @@
+#include "byre/map/scaled_copy.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/map/stored_map_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::IsEmpty;
+
+constexpr double kFactor = 1.0 / 1.016;
+
+// The scene with what its rigs say and what its recordings were given made to agree.
+StoredMap consistent_map() {
+  StoredMap stored = StoredMapScene().stored_with_plan();
+  Eigen::Vector3d& given = stored.recordings[0].calibration.right->right_from_left.translation;
+  given *= stored.map.rigs()[0].baseline / given.norm();
+  return stored;
+}
+
+TEST(ScaledCopy, LeavesEveryPointWhereEachImageHasItDisparityIncluded) {
+  const StoredMap before = consistent_map();
+  const StoredMap now = scaled_copy(before, kFactor);
+  int compared = 0;
+  for (const PointId id : before.map.point_ids()) {
+    for (const Observation& seen : before.map.observations(id)) {
+      const auto rig = static_cast<std::size_t>(before.map.find_keyframe(seen.keyframe)->rig);
+      const auto in_camera = [&](const Map& map) {
+        return map.camera_from_world(seen.keyframe) * map.find_point(id)->position_in_world;
+      };
+      if (std::abs(in_camera(before.map).z()) < 0.1) continue;
+      const StereoPixel pixel_before = before.map.rigs()[rig].project(in_camera(before.map));
+      const StereoPixel pixel_now = now.map.rigs()[rig].project(in_camera(now.map));
+      EXPECT_THAT(pixel_now, PointNear(pixel_before, 1e-9 * (1.0 + pixel_before.norm())));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 30);
+}
+
+TEST(ScaledCopy, ChangesWhatIsALengthAndNothingElse) {
+  const StoredMap before = consistent_map();
+  const StoredMap now = scaled_copy(before, kFactor);
+  EXPECT_DOUBLE_EQ(now.map.rigs()[0].baseline, kFactor * before.map.rigs()[0].baseline);
+  EXPECT_EQ(now.map.rigs()[1].baseline, 0.0);
+  EXPECT_EQ(now.map.rigs()[0].body_from_camera.translation, before.map.rigs()[0].body_from_camera.translation);
+  const Keyframe& keyframe_before = *before.map.find_keyframe({Origin::offline, 2});
+  const Keyframe& keyframe_now = *now.map.find_keyframe({Origin::offline, 2});
+  const Matrix6 change = keyframe_now.covariance.cwiseQuotient(keyframe_before.covariance);
+  EXPECT_NEAR(change(0, 0), kFactor * kFactor, 1e-12);
+  EXPECT_NEAR(change(0, 5), kFactor, 1e-12);
+  EXPECT_NEAR(change(5, 5), 1.0, 1e-12);
+  const MapPoint& point_before = *before.map.find_point({Origin::offline, 3});
+  const MapPoint& point_now = *now.map.find_point({Origin::offline, 3});
+  EXPECT_TRUE(point_now.covariance.isApprox(kFactor * kFactor * point_before.covariance, 1e-12));
+  EXPECT_FLOAT_EQ(point_now.min_distance, static_cast<float>(kFactor) * point_before.min_distance);
+  EXPECT_FLOAT_EQ(point_now.max_distance, static_cast<float>(kFactor) * point_before.max_distance);
+  EXPECT_EQ(point_now.reference, point_before.reference);
+  EXPECT_EQ(now.map.observations({Origin::offline, 3}), before.map.observations({Origin::offline, 3}));
+  EXPECT_EQ(now.map.covisible_keyframes({Origin::offline, 0}, 9).size(),
+            before.map.covisible_keyframes({Origin::offline, 0}, 9).size());
+  EXPECT_THAT(find_faults(now), IsEmpty());
+}
+
+TEST(ScaledCopy, LeavesTheMapWhereItLiesOnItsPlan) {
+  const StoredMap before = consistent_map();
+  const StoredMap now = scaled_copy(before, kFactor);
+  const PointId id{Origin::offline, 3};
+  EXPECT_THAT(now.plan.value().plan_from_map * now.map.find_point(id)->position_in_world,
+              PointNear(before.plan.value().plan_from_map * before.map.find_point(id)->position_in_world, 1e-9));
+}
+
+TEST(ScaledCopy, OfACopyIsThatByBothFactors) {
+  const StoredMap stored = consistent_map();
+  const StoredMap back = scaled_copy(scaled_copy(stored, kFactor), 1.0 / kFactor);
+  EXPECT_NEAR(baseline_factor(back, 0), 1.0, 1e-12);
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    EXPECT_THAT(back.map.camera_from_world(id), PoseNear(stored.map.camera_from_world(id), 1e-12, 1e-12));
+  }
+}
+
+TEST(ScaledCalibration, HasAnotherBaselineAndIsElseTheSame) {
+  const Calibration given = consistent_map().recordings[0].calibration;
+  const Calibration longer = scaled(given, 1.02);
+  EXPECT_TRUE(longer.right->right_from_left.translation.isApprox(1.02 * given.right->right_from_left.translation));
+  EXPECT_EQ(longer.right->right_from_left.rotation.coeffs(), given.right->right_from_left.rotation.coeffs());
+  EXPECT_EQ(longer.body_from_left.translation, given.body_from_left.translation);
+  EXPECT_EQ(longer.left.fx, given.left.fx);
+  const Calibration one_camera{given.left, std::nullopt, given.body_from_left};
+  EXPECT_EQ(scaled(one_camera, 1.02).body_from_left.translation, given.body_from_left.translation);
+}
+
+TEST(KnownCalibration, IsNoneWhileTheMapHasTheScaleOfItsBaseline) {
+  const StoredMap stored = consistent_map();
+  EXPECT_EQ(baseline_factor(stored, 0), 1.0);
+  EXPECT_FALSE(known_calibration(stored.recordings, stored.recordings[0].calibration));
+}
+
+TEST(KnownCalibration, HasTheMapsBaselineOnceThatWasCorrected) {
+  const StoredMap stored = scaled_copy(consistent_map(), kFactor);
+  const Calibration given = consistent_map().recordings[0].calibration;
+  EXPECT_NEAR(baseline_factor(stored, 0), kFactor, 1e-12);
+  EXPECT_EQ(baseline_factor(stored, 1), 1.0) << "one camera";
+  const auto known = known_calibration(stored.recordings, given);
+  ASSERT_TRUE(known);
+  EXPECT_NEAR(known->calibration.right->right_from_left.translation.norm(), stored.map.rigs()[0].baseline, 1e-12);
+}
+
+TEST(KnownCalibration, IsNoneForCamerasThatTheMapDoesNotKnow) {
+  const StoredMap stored = scaled_copy(consistent_map(), kFactor);
+  Calibration other = consistent_map().recordings[0].calibration;
+  other.right->right_from_left.translation.x() += 1e-6;
+  EXPECT_FALSE(known_calibration(stored.recordings, other));
+  other = consistent_map().recordings[0].calibration;
+  other.left.fx += 1.0;
+  EXPECT_FALSE(known_calibration(stored.recordings, other));
+}
+
+TEST(KnownCalibration, OfAPairIsAlsoThatOfItsLeftCamera) {
+  const StoredMap stored = scaled_copy(consistent_map(), kFactor);
+  Calibration left = consistent_map().recordings[0].calibration;
+  left.right.reset();
+  const auto known = known_calibration(stored.recordings, left);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->calibration.left, left.left);
+  EXPECT_FALSE(known->calibration.right);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "byre/session/calibrator.h"
+#include "byre/slam/calibration_on_map.h"
+
+#include <memory>
+#include <optional>
+
+namespace byre {
+
+// Refines the calibration of a mission's cameras on the points of its offline map, a little with each frame. What takes
+// long, how features change by it, is worked out beside. Called from the session's thread.
+class MissionCalibrator {
+ public:
+  MissionCalibrator(const Calibration& given, const CalibrationOnMapOptions& options,
+                    std::unique_ptr<Executor> executor);
+
+  Frame corrected(const Frame& frame) const { return calibrator_.corrected(frame); }
+  const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
+
+  // A frame, as corrected, whose pose is beyond doubt.
+  void note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map);
+
+  // How the rectified camera changes from this frame on.
+  struct Switch {
+    Pose after_from_before;  // a turn
+    Rig rig;
+  };
+  std::optional<Switch> collect();  // once per frame; empty unless there is a better calibration
+  void finish() { executor_->finish(); }
+
+ private:
+  // What a job came to.
+  struct Outcome {
+    RefinedCalibration refined;
+    std::optional<RectifiedChange> from_given;
+    Pose after_from_before;
+  };
+
+  CalibrationOnMap on_map_;
+  Calibrator calibrator_;
+  std::unique_ptr<Executor> executor_;
+  std::shared_ptr<Outcome> outcome_;  // written by the job, read when that has been collected
+  int next_frames_ = 60;              // that must have been noted until the next look
+};
+
+}  // namespace byre

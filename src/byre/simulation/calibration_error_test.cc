@@ -1,0 +1,110 @@
+#include "byre/simulation/calibration_error.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/simulation/feeding_robot.h"
+#include "byre/simulation/rendered_room.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::Each;
+using ::testing::Not;
+
+constexpr int kSeeds = 1000;
+
+// The root mean square of a number over many errors.
+double sigma_of(double level, const std::function<double(const CalibrationError&)>& number) {
+  double sum = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const double value = number(draw_calibration_error(level, static_cast<std::uint64_t>(seed)));
+    sum += value * value;
+  }
+  return std::sqrt(sum / kSeeds);
+}
+
+TEST(CalibrationError, IsNoneAtLevelZero) {
+  const Calibration calibration = euroc_like_calibration(1);
+  const Calibration told = perturbed(calibration, 0.0, 7);
+  EXPECT_EQ(told.left.fx, calibration.left.fx);
+  EXPECT_EQ(told.left.distortion, calibration.left.distortion);
+  EXPECT_EQ(told.right->right_from_left.rotation.coeffs(), calibration.right->right_from_left.rotation.coeffs());
+  EXPECT_EQ(draw_calibration_error(0.0, 7).right_turned.norm(), 0.0);
+}
+
+TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
+  constexpr double kTolerance = 0.08;  // of a deviation, three times what a thousand draws vary by
+  const auto expect_sigma = [&](double sigma, const std::function<double(const CalibrationError&)>& number) {
+    EXPECT_NEAR(sigma_of(1.0, number) / sigma, 1.0, kTolerance);
+    EXPECT_NEAR(sigma_of(3.0, number) / sigma, 3.0, 3.0 * kTolerance);
+  };
+  expect_sigma(4e-4, [](const CalibrationError& error) { return error.left.focal; });
+  expect_sigma(0.15, [](const CalibrationError& error) { return error.right.centre.y(); });
+  expect_sigma(1e-3, [](const CalibrationError& error) { return error.left.distortion[1]; });
+  expect_sigma(1e-4, [](const CalibrationError& error) { return error.right.distortion[3]; });
+  expect_sigma(0.01 * std::numbers::pi / 180.0, [](const CalibrationError& error) { return error.right_turned.z(); });
+  expect_sigma(1e-4, [](const CalibrationError& error) { return error.right_moved.x(); });
+}
+
+TEST(CalibrationError, IsTheSameForTheSameSeedAndInProportionToItsLevel) {
+  const CalibrationError good = draw_calibration_error(1.0, 5), again = draw_calibration_error(1.0, 5);
+  const CalibrationError worn = draw_calibration_error(3.0, 5), other = draw_calibration_error(1.0, 6);
+  EXPECT_EQ(good.left.focal, again.left.focal);
+  EXPECT_EQ(good.right_turned, again.right_turned);
+  EXPECT_NE(good.left.focal, other.left.focal);
+  EXPECT_NEAR(worn.left.focal, 3.0 * good.left.focal, 1e-15);
+  EXPECT_THAT(worn.right_turned, PointNear(Eigen::Vector3d(3.0 * good.right_turned), 1e-15));
+}
+
+TEST(CalibrationError, OfARobotIsTheSameInAllItsRecordings) {
+  const CalibrationError error = draw_calibration_error(1.0, 1);
+  for (const Calibration& calibration : {euroc_like_calibration(1), feeding_robot_calibration(2)}) {
+    const Calibration told = perturbed(calibration, 1.0, 1);
+    EXPECT_NEAR(told.left.fx / calibration.left.fx, 1.0 + error.left.focal, 1e-12);
+    EXPECT_NEAR(told.left.fy / calibration.left.fy, 1.0 + error.left.focal, 1e-12);
+    EXPECT_NEAR(told.right->camera.cx - calibration.right->camera.cx, error.right.centre.x(), 1e-12);
+    EXPECT_NEAR(told.left.distortion[0] - calibration.left.distortion[0], error.left.distortion[0], 1e-12);
+    const Pose true_from_told =
+        calibration.right->right_from_left * inverse(told.right->right_from_left);  // of the right camera
+    EXPECT_THAT(true_from_told, PoseNear(Pose{rotation_exp(error.right_turned), error.right_moved}, 1e-12, 1e-12));
+    EXPECT_THAT(told.body_from_left, PoseNear(calibration.body_from_left, 1e-12, 1e-12));
+  }
+}
+
+TEST(CalibrationError, GivesAPinholeCameraALensAndLeavesOneCameraAlone) {
+  Calibration calibration;
+  calibration.left = {.width = 640, .height = 480, .fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5};
+  const Calibration told = perturbed(calibration, 1.0, 1);
+  EXPECT_EQ(told.left.model, CameraModel::radial_tangential);
+  EXPECT_THAT(std::vector<double>(told.left.distortion.begin(), told.left.distortion.begin() + 4), Each(Not(0.0)));
+  EXPECT_FALSE(told.right);
+}
+
+// What calibration tools report of a good calibration, and a good deal more of a worn one.
+TEST(CalibrationError, MovesPixelsByTenthsAtLevelOne) {
+  const Camera camera = euroc_like_calibration(1).left;
+  const auto moved = [&](double level) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+      const Camera told = perturbed(euroc_like_calibration(1), level, seed).left;
+      for (double u = 60.0; u < camera.width; u += 90.0) {
+        const Eigen::Vector3d ray = camera.bearing({u, 0.5 * u}).value();
+        sum += (told.project(ray).value() - camera.project(ray).value()).squaredNorm();
+        ++count;
+      }
+    }
+    return std::sqrt(sum / count);
+  };
+  EXPECT_GT(moved(1.0), 0.15);
+  EXPECT_LT(moved(1.0), 0.45);
+  EXPECT_NEAR(moved(3.0), 3.0 * moved(1.0), 0.1 * moved(1.0));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,232 @@
+#include "byre/slam/self_calibration.h"
+
+#include "byre/geometry/calibration_sensitivity.h"
+#include "byre/geometry/median.h"
+#include "byre/optimise/calibration_covariance.h"
+#include "byre/optimise/huber.h"
+#include "byre/slam/determined_calibration.h"
+#include "byre/slam/mapping_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+namespace {
+
+constexpr double kHuberWidth = 2.0;  // sigmas
+constexpr double kMedianOfChiSquare2 = 1.386;
+constexpr double kMedianOfChiSquare3 = 2.366;
+constexpr double kSigmasOfMedian = 1.4826;  // by which the median of absolute deviations is multiplied
+
+// Keyframes of the rig, all or blocks of neighbours spread over the run.
+std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(whole.keyframes.size()); ++i) {
+    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    if (!keyframe.removed && keyframe.keyframe.rig == rig) all.push_back(i);
+  }
+  const auto count = static_cast<int>(all.size());
+  if (count <= limit) return all;
+  constexpr int kBlock = 25;
+  const int blocks = std::max(1, limit / kBlock);
+  std::vector<int> chosen;
+  for (int i = 0; i < count; ++i) {
+    const int begin = (i * blocks / count) * count / blocks;
+    if (i - begin < kBlock) chosen.push_back(all[static_cast<std::size_t>(i)]);
+  }
+  return chosen;
+}
+
+// What is measured of the points that at least two of the keyframes see.
+BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframes) {
+  BundleProblem problem;
+  problem.rigs = whole.rigs;
+  std::vector<int> pose_of(whole.keyframes.size(), -1);
+  for (const int i : keyframes) {
+    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    pose_of[static_cast<std::size_t>(i)] = static_cast<int>(problem.poses.size());
+    problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, false});
+  }
+  for (const WindowPoint& point : whole.points) {
+    if (point.removed) continue;
+    const auto takes_part = [&](const WindowObservation& seen) {
+      return pose_of[static_cast<std::size_t>(seen.keyframe)] >= 0;
+    };
+    if (std::ranges::count_if(point.observations, takes_part) < 2) continue;
+    for (const WindowObservation& seen : point.observations) {
+      if (!takes_part(seen)) continue;
+      BundleObservation observation =
+          bundle_observation(whole.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
+      observation.pose = pose_of[static_cast<std::size_t>(seen.keyframe)];
+      observation.point = static_cast<int>(problem.points.size());
+      problem.observations.push_back(observation);
+    }
+    problem.points.push_back({point.point.position_in_world, false});
+  }
+  return problem;
+}
+
+// A row on which a corner was matched in the right image, against that of the left one.
+struct RowMeasurement {
+  double offset = 0.0;  // pixels
+  double sigma = 1.0;   // pixels
+  Eigen::Matrix<double, 1, kCalibrationParameters> by_calibration;
+};
+
+std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes,
+                                         const CalibrationSensitivity& sensitivity) {
+  std::vector<RowMeasurement> rows;
+  for (const int i : keyframes) {
+    for (const Keypoint& keypoint : whole.keyframes[static_cast<std::size_t>(i)].keyframe.frame.features->keypoints()) {
+      if (!keypoint.has_disparity()) continue;
+      const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
+      rows.push_back({keypoint.row_offset, keypoint.disparity_sigma, sensitivity.at(pixel).row(3)});
+    }
+  }
+  return rows;
+}
+
+// The information of Gaussian knowledge of the calibration, and the change where it is expected.
+struct Knowledge {
+  CalibrationMatrix information = CalibrationMatrix::Zero();
+  CalibrationVector expected = CalibrationVector::Zero();
+};
+
+double robust_scale(std::vector<double> deviations) {
+  return deviations.empty() ? 1.0 : std::max(1.0, kSigmasOfMedian * median(std::move(deviations)));
+}
+
+// Iteratively reweighted least squares; sigmas grow by what the residuals say.
+Knowledge learn_from_rows(const std::vector<RowMeasurement>& rows, const Knowledge& prior) {
+  Knowledge knowledge = prior;
+  constexpr int kRounds = 5;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> residuals, deviations;
+    for (const RowMeasurement& row : rows) {
+      residuals.push_back((row.offset - row.by_calibration.dot(knowledge.expected)) / row.sigma);
+      deviations.push_back(std::abs(residuals.back()));
+    }
+    const double scale = robust_scale(std::move(deviations));
+    CalibrationMatrix information = prior.information;
+    CalibrationVector right_side = prior.information * prior.expected;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double residual = residuals[i] / scale;
+      const double weight = huber_weight(residual * residual, kHuberWidth) / std::pow(scale * rows[i].sigma, 2);
+      information.noalias() += weight * rows[i].by_calibration.transpose() * rows[i].by_calibration;
+      right_side += weight * rows[i].offset * rows[i].by_calibration.transpose();
+    }
+    knowledge = {information, information.ldlt().solve(right_side)};
+  }
+  return knowledge;
+}
+
+// How many times as large as their sigmas the residuals are, squared; at least 1.
+double variance_factor(const BundleProblem& problem, const std::vector<double>& squared_errors) {
+  std::vector<double> ratios;
+  ratios.reserve(squared_errors.size());
+  for (std::size_t i = 0; i < squared_errors.size(); ++i) {
+    ratios.push_back(squared_errors[i] /
+                     (problem.observations[i].is_stereo() ? kMedianOfChiSquare3 : kMedianOfChiSquare2));
+  }
+  return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
+}
+
+// As the calibration found would have measured it.
+BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
+  BundleProblem moved = with_change(problem, solved.calibration_change);
+  moved.calibration = problem.calibration;
+  for (std::size_t i = 0; i < moved.poses.size(); ++i) moved.poses[i].camera_from_world = solved.camera_from_world[i];
+  for (std::size_t i = 0; i < moved.points.size(); ++i) moved.points[i].position_in_world = solved.points_in_world[i];
+  return moved;
+}
+
+// What measurements say by themselves, also where they leave directions open: normal equations.
+struct Learned {
+  CalibrationMatrix information;
+  CalibrationVector right_side;
+
+  void operator/=(double factor) {
+    information /= factor;
+    right_side /= factor;
+  }
+};
+
+Learned difference(const Knowledge& later, const Knowledge& earlier) {
+  return {later.information - earlier.information,
+          later.information * later.expected - earlier.information * earlier.expected};
+}
+
+Knowledge joined(const Knowledge& known, const Learned& learned) {
+  const CalibrationMatrix information = known.information + learned.information;
+  return {information, information.ldlt().solve(known.information * known.expected + learned.right_side)};
+}
+
+// All measurements share an error that looks like a change of the calibration along this vector, one sigma long
+// (Sherman and Morrison's formula).
+Learned with_shared_error(const Learned& learned, const CalibrationVector& error) {
+  const CalibrationVector told = learned.information * error;
+  const double scale = 1.0 / (1.0 + error.dot(told));
+  return {learned.information - scale * told * told.transpose(),
+          learned.right_side - scale * told * error.dot(learned.right_side)};
+}
+
+// Of both focal lengths alike.
+CalibrationVector focal_error(double sigmas) {
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kLeftCamera] = error[kRightCamera] = sigmas;
+  return error;
+}
+
+// Root mean square by which the change moves what is seen, but for what a turn of the camera would do as well: the mean
+// of u and of v.
+double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
+                   const CalibrationVector& change) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum_of_squares = 0.0;
+  for (const BundleObservation& observation : problem.observations) {
+    const Eigen::Vector3d shift = sensitivity.at(observation.measured).topRows<3>() * change;
+    sum += shift;
+    sum_of_squares += shift.squaredNorm();
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(1, problem.observations.size()));
+  return std::sqrt(std::max(0.0, sum_of_squares / count - (sum.head<2>() / count).squaredNorm()));
+}
+
+}  // namespace
+
+std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                                                 const SelfCalibrationOptions& options,
+                                                 const std::function<bool()>& should_stop) {
+  const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
+  if (static_cast<int>(keyframes.size()) < options.min_keyframes) return std::nullopt;
+  const CalibrationSensitivity sensitivity(state.present());
+  const Knowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas), -state.change};
+  const Knowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, sensitivity), prior);
+
+  BundleProblem problem = bundle_of(whole, keyframes);
+  problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
+  BundleOptions bundle_options;
+  bundle_options.max_iterations = options.iterations;
+  bundle_options.huber_width = kHuberWidth;
+  bundle_options.should_stop = should_stop;
+  const BundleResult solved = bundle_adjust(problem, bundle_options);
+  if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
+
+  const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
+  if (!information) return std::nullopt;
+  Learned of_motion = difference({*information, solved.calibration_change}, with_rows);
+  of_motion /= variance_factor(problem, solved.squared_errors);
+  const Knowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(options.focal_sigmas)));
+  RefinedCalibration result = determined_calibration(
+      state.given, posterior.information, state.change + posterior.expected, options.prior_sigmas, options.min_gain);
+  result.keyframes = static_cast<int>(keyframes.size());
+  result.observations = static_cast<int>(problem.observations.size());
+  result.shift = image_shift(problem, sensitivity, result.change);
+  return result;
+}
+
+}  // namespace byre

@@ -1,0 +1,22 @@
+// A real recording by a depth camera turned by hand; one frame in six has a depth image.
+
+#include "mapped_recording.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr const char* kRecording = "tum/freiburg1_rpy";
+
+TEST(DepthCameraInFreiburg1, FollowsEveryFrameInMetresThoughFewHaveDepth) {
+  const auto folder = find_recording(kRecording);
+  if (!folder) GTEST_SKIP() << missing(kRecording);
+  const MappedRecording mapped = map_recording(*folder, {}, make_paced_executor(4), {.camera = CameraChoice::rgbd});
+  EXPECT_LE(frames_without_pose(mapped), 5);
+  // Of 52 mm of movement about its middle while the camera turns; its shutter rolls.
+  EXPECT_LE(position_error(mapped.final, truth_of(*folder)), 0.032);
+}
+
+}  // namespace
+}  // namespace byre
