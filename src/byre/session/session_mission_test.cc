@@ -317,7 +317,7 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   for (const PointId id : map.point_ids()) {  // what stands before a part of one wall
     MapPoint point = *map.find_point(id);
     if (point.position_in_world.x() < 4.0 || std::abs(point.position_in_world.y()) > 0.8) continue;
-    point.position_in_world += Eigen::Vector3d(0.0, 0.035, 0.0);
+    point.position_in_world += Eigen::Vector3d(0.0, 0.06, 0.0);
     map.update_point(id, point);
   }
   Session session = session_on(std::make_shared<const OfflineMap>(std::move(map), vocabulary()));

@@ -184,20 +184,6 @@ std::size_t count_fitting(const Query& query, const Pose& camera_from_world, con
       .agreeing.features.size();
 }
 
-// A compromise between what stayed and what moved fits fewer offline points than the pose that those which stayed have
-// by themselves. Where the online map is right, that lies near its pose.
-bool is_compromise(const Query& query, const Pose& offline, const Pose& online, const MeasuredPoints& measured) {
-  Pose alternative = online;
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    const PartedPoints parted = part_by_agreement(alternative, query.rig, measured, 1.0, query.options.refinement);
-    const auto refined = refine_pose(alternative, query.rig, parted.agreeing.observations, query.options.refinement);
-    if (!refined) break;
-    alternative = refined->camera_from_world;
-  }
-  return 10 * count_fitting(query, alternative, measured) > 11 * count_fitting(query, offline, measured);
-}
-
 // The pose that is believed, the points it was refined on, and matches that were left out of that.
 struct Solution {
   PoseRefinement refined;
@@ -245,12 +231,11 @@ Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& f
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
   opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
-  constexpr double kStrained = 2.0;  // variance factor, as of a pose between two that each part of the points has
-  const bool is_doubtful = opinions.maps_disagree || opinions.offline->variance_factor > kStrained;
-  if (is_doubtful && is_compromise(query, opinions.offline->camera_from_world, opinions.online->camera_from_world,
-                                   found.measured.offline)) {
-    opinions.offline_stands = false;
-    opinions.maps_disagree = true;
+  // A compromise between what stayed and what moved fits fewer offline points than the online pose does.
+  if (opinions.maps_disagree && opinions.offline_stands) {
+    const MeasuredPoints& points = found.measured.offline;
+    opinions.offline_stands = count_fitting(query, opinions.offline->camera_from_world, points) >=
+                              count_fitting(query, opinions.online->camera_from_world, points);
   }
   return opinions;
 }
