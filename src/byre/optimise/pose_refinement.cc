@@ -4,6 +4,7 @@
 #include "byre/optimise/huber.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -23,7 +24,8 @@ struct Sighting {
   StereoPixel measured;
   Eigen::Matrix3d information;  // of the residual in pixels; without a disparity its third row and column are zero
   double weight;
-  double squared_error;  // squared sigmas; infinite at or behind the camera, or when not a number
+  double squared_error;   // squared sigmas; infinite at or behind the camera, or when not a number
+  double tolerant_error;  // the same with the systematic sigma among the sigmas
   bool stereo;
   bool inlier;
 };
@@ -46,20 +48,24 @@ struct Expansion {
   }
 };
 
-// Of the residual: the inverse of the measurement's covariance plus the point's, projected.
-Eigen::Matrix3d residual_information(const PoseObservation& observation, const StereoJacobian& by_point) {
+// The measurement's plus the point's, projected; square pixels.
+Eigen::Matrix3d residual_covariance(const PoseObservation& observation, const StereoJacobian& by_point) {
   const double pixel_variance = observation.pixel_sigma * observation.pixel_sigma;
   const double disparity_variance = observation.disparity_sigma * observation.disparity_sigma;
   Eigen::Matrix3d covariance = by_point * observation.point_covariance * by_point.transpose();
   covariance.diagonal() += Eigen::Vector3d(pixel_variance, pixel_variance, disparity_variance);
-  if (observation.is_stereo()) return covariance.inverse();
+  return covariance;
+}
+
+Eigen::Matrix3d information_of(const Eigen::Matrix3d& covariance, bool stereo) {
+  if (stereo) return covariance.inverse();
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   information.topLeftCorner<2, 2>() = covariance.topLeftCorner<2, 2>().inverse();
   return information;
 }
 
 Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& camera_from_world,
-               const Eigen::Matrix3d& rotation) {
+               const Eigen::Matrix3d& rotation, double systematic_sigma) {
   const bool stereo = observation.is_stereo();
   assert(rig.is_stereo() || !stereo);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -68,28 +74,32 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
                     Eigen::Matrix3d::Zero(),
                     observation.weight,
                     kInfinity,
+                    kInfinity,
                     stereo,
                     false};
   if (!stereo) sighting.measured.z() = 0.0;
   const Eigen::Vector3d point_in_camera = rotation * observation.point_in_world + camera_from_world.translation;
   if (point_in_camera.z() <= 0.0) return sighting;
-  sighting.information = residual_information(observation, rig.projection_jacobian(point_in_camera) * rotation);
+  Eigen::Matrix3d covariance = residual_covariance(observation, rig.projection_jacobian(point_in_camera) * rotation);
+  sighting.information = information_of(covariance, stereo);
   const Eigen::Vector3d error = sighting.measured - rig.project(point_in_camera);
   const double squared_error = error.dot(sighting.information * error);
   if (!std::isfinite(squared_error)) return sighting;
   sighting.squared_error = squared_error;
+  covariance.diagonal().array() += systematic_sigma * systematic_sigma;
+  sighting.tolerant_error = error.dot(information_of(covariance, stereo) * error);
   sighting.inlier = true;
   return sighting;
 }
 
 // Weighs all observations anew at this pose; all in front of the camera are inliers so far.
 std::vector<Sighting> sight(std::span<const PoseObservation> observations, const Rig& rig,
-                            const Pose& camera_from_world) {
+                            const Pose& camera_from_world, double systematic_sigma) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   std::vector<Sighting> sightings;
   sightings.reserve(observations.size());
   for (const PoseObservation& observation : observations) {
-    sightings.push_back(sight(observation, rig, camera_from_world, rotation));
+    sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
   }
   return sightings;
 }
@@ -110,7 +120,7 @@ double variance_factor(const std::vector<Sighting>& sightings) {
 void choose_inliers(std::vector<Sighting>& sightings, const PoseRefinementOptions& options, double factor) {
   for (Sighting& sighting : sightings) {
     const double gate = sighting.stereo ? options.max_squared_error_stereo : options.max_squared_error_mono;
-    sighting.inlier = sighting.squared_error <= gate * factor;
+    sighting.inlier = sighting.squared_error <= gate * factor || sighting.tolerant_error <= gate;
   }
 }
 
@@ -182,13 +192,86 @@ std::optional<Matrix6> inverse_of(const Matrix6& normal_matrix) {
 
 // Weights set priorities, they do not make measurements better: a weighted estimate's covariance is
 // inverse(N) M inverse(N), where M is the normal matrix with the weights squared.
-std::optional<Matrix6> covariance_at(std::vector<Sighting> sightings, const Rig& rig, const Pose& camera_from_world,
-                                     double huber_width) {
-  const Matrix6 normal_matrix = expand(sightings, rig, camera_from_world, huber_width).normal_matrix;
-  const std::optional<Matrix6> inverse = inverse_of(normal_matrix);
-  if (!inverse) return std::nullopt;
+Matrix6 covariance_at(std::vector<Sighting> sightings, const Rig& rig, const Pose& camera_from_world,
+                      const Matrix6& inverse_normal_matrix, double huber_width) {
   for (Sighting& sighting : sightings) sighting.weight *= sighting.weight;
-  return *inverse * expand(sightings, rig, camera_from_world, huber_width).normal_matrix * *inverse;
+  const Matrix6 squared = expand(sightings, rig, camera_from_world, huber_width).normal_matrix;
+  return inverse_normal_matrix * squared * inverse_normal_matrix;
+}
+
+// What the inliers of a region of the image say together.
+struct Region {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();                       // of an error that all of them share
+  Eigen::Vector3d descent = Eigen::Vector3d::Zero();                           // information * that error
+  Eigen::Matrix<double, 6, 3> by_error = Eigen::Matrix<double, 6, 3>::Zero();  // how it pushes the pose
+  int points = 0;
+};
+
+constexpr int kRegionColumns = 4;
+constexpr int kRegionRows = 3;
+using Regions = std::array<Region, static_cast<std::size_t>(kRegionColumns* kRegionRows)>;
+
+Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, const Pose& camera_from_world,
+                       double huber_width) {
+  const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
+  Regions regions;
+  for (const Sighting& sighting : sightings) {
+    if (!sighting.inlier) continue;
+    const Eigen::Vector3d point_in_camera = rotation * sighting.point_in_world + camera_from_world.translation;
+    const Eigen::Vector3d error = sighting.measured - rig.project(point_in_camera);
+    const int column =
+        std::clamp(static_cast<int>(kRegionColumns * sighting.measured.x() / rig.width), 0, kRegionColumns - 1);
+    const int row = std::clamp(static_cast<int>(kRegionRows * sighting.measured.y() / rig.height), 0, kRegionRows - 1);
+    Region& region = regions[static_cast<std::size_t>(row * kRegionColumns + column)];
+    const Eigen::Matrix3d information = huber_weight(sighting.squared_error, huber_width) * sighting.information;
+    const Eigen::Matrix3d push = sighting.weight * rig.projection_jacobian(point_in_camera).transpose() * information;
+    region.information += information;
+    region.descent += information * error;
+    region.by_error.topRows<3>() += push;
+    region.by_error.bottomRows<3>() -= push.colwise().cross(point_in_camera);
+    ++region.points;
+  }
+  return regions;
+}
+
+// Pixels: how far the regions' mean errors lie off more than noise explains. The prior counts as one region.
+double systematic_sigma_of(const Regions& regions, double variance_factor, double prior) {
+  constexpr int kMinPoints = 4;         // of a region that is asked
+  constexpr double kPriorValues = 2.0;  // one region, of two numbers
+  constexpr double kPoseFreedom = 6.0;  // what the pose has taken out of them
+  double excess = 0.0;
+  double values = -kPoseFreedom;
+  for (const Region& region : regions) {
+    if (region.points < kMinPoints) continue;
+    const Eigen::Matrix2d covariance = region.information.topLeftCorner<2, 2>().inverse();
+    excess += (covariance * region.descent.head<2>()).squaredNorm() - variance_factor * covariance.trace();
+    values += 2.0;
+  }
+  values = std::max(0.0, values);
+  const double variance = (kPriorValues * prior * prior + std::max(0.0, excess)) / (kPriorValues + values);
+  return std::sqrt(variance);
+}
+
+// What an error of so many pixels, another in each region, does to the pose.
+Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_normal_matrix, double sigma) {
+  Matrix6 pushes = Matrix6::Zero();
+  for (const Region& region : regions) pushes += region.by_error * region.by_error.transpose();
+  return sigma * sigma * inverse_normal_matrix * pushes * inverse_normal_matrix;
+}
+
+// Empty where the inliers leave a direction open.
+std::optional<PoseRefinement> with_covariance(PoseRefinement refined, std::vector<Sighting> sightings, const Rig& rig,
+                                              const PoseRefinementOptions& options) {
+  const Pose& pose = refined.camera_from_world;
+  const double huber_width = options.huber_width * std::sqrt(refined.variance_factor);
+  const std::optional<Matrix6> inverse = inverse_of(expand(sightings, rig, pose, huber_width).normal_matrix);
+  if (!inverse) return std::nullopt;
+  const Regions regions = gather_regions(sightings, rig, pose, huber_width);
+  refined.covariance = refined.variance_factor * covariance_at(std::move(sightings), rig, pose, *inverse, huber_width);
+  if (options.systematic_sigma <= 0.0) return refined;
+  refined.systematic_sigma = systematic_sigma_of(regions, refined.variance_factor, options.systematic_sigma);
+  refined.covariance += systematic_covariance(regions, *inverse, refined.systematic_sigma);
+  return refined;
 }
 
 }  // namespace
@@ -199,7 +282,8 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   constexpr int kMinInliers = 4;
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
-  std::vector<Sighting> sightings = sight(observations, rig, predicted_camera_from_world);
+  const auto sight_from = [&](const Pose& pose) { return sight(observations, rig, pose, options.systematic_sigma); };
+  std::vector<Sighting> sightings = sight_from(predicted_camera_from_world);
   // Far from the solution all errors are large: gates and loss follow their median down, so that no minority that
   // happens to fit captures the pose.
   for (int round = 0; round < options.rounds; ++round) {
@@ -208,18 +292,14 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
     if (count_inliers(sightings) < kMinInliers) return std::nullopt;
     result.camera_from_world =
         descend(sightings, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
-    sightings = sight(observations, rig, result.camera_from_world);
+    sightings = sight_from(result.camera_from_world);
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
   choose_inliers(sightings, options, result.variance_factor);
   result.inlier_count = count_inliers(sightings);
   if (result.inlier_count < kMinInliers) return std::nullopt;
   for (const Sighting& sighting : sightings) result.inliers.push_back(sighting.inlier);
-  const auto covariance = covariance_at(std::move(sightings), rig, result.camera_from_world,
-                                        options.huber_width * std::sqrt(result.variance_factor));
-  if (!covariance) return std::nullopt;
-  result.covariance = result.variance_factor * *covariance;
-  return result;
+  return with_covariance(std::move(result), std::move(sightings), rig, options);
 }
 
 }  // namespace byre

@@ -27,6 +27,10 @@ struct PoseRefinementOptions {
   double max_squared_error_mono = 5.991;    // 95 % of chi-square with two degrees of freedom
   double max_squared_error_stereo = 7.815;  // 95 %, three degrees
   double max_variance_factor = 9.0;         // see PoseRefinement::variance_factor
+  // Pixels: what calibration, a rolling shutter and the shape of things add to an error, alike in neighbouring points
+  // and neighbouring frames. It widens gates and covariance and weighs nothing, for weights are by what differs from
+  // point to point. A good calibration leaves 0.1 to 0.5.
+  double systematic_sigma = 0.25;
 };
 
 struct PoseRefinement {
@@ -37,12 +41,15 @@ struct PoseRefinement {
   // By which the residuals' variance exceeds the one stated, at least 1: where the map is not settled yet all errors
   // are larger than their sigmas. Gates, loss and covariance are widened by it.
   double variance_factor = 1.0;
+  double systematic_sigma = 0.0;  // pixels, as regions of the image have it in common; see PoseRefinementOptions
 };
 
 // Gauss-Newton on one pose against points of known uncertainty: each residual is whitened by the sum of the
 // measurement's covariance and the point's, projected. Weights decide neither who is an inlier nor make the covariance
-// smaller. The gates also cut the tails of good measurements, which leaves the covariance's variances too small by some
-// 5 % (stereo) to 15 % (mono). Empty when fewer than four observations remain or the normal equations are singular.
+// smaller. What the inliers of a region of the image have in common, beyond noise, is taken for systematic: it adds to
+// the covariance as an error of the whole region, which no number of points averages out. The gates also cut the tails
+// of good measurements, which leaves the covariance's variances too small by some 5 % (stereo) to 15 % (mono). Empty
+// when fewer than four observations remain or the normal equations are singular.
 std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_world, const Rig& rig,
                                           std::span<const PoseObservation> observations,
                                           const PoseRefinementOptions& options);

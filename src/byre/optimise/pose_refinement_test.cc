@@ -3,8 +3,10 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/optimise/optimise_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <Eigen/LU>
 #include <gmock/gmock.h>
@@ -62,13 +64,16 @@ Scene make_scene(unsigned seed, const SceneOptions& options) {
   return scene;
 }
 
+// Where nothing errs but noise.
+constexpr PoseRefinementOptions kNoiseAlone{.systematic_sigma = 0.0};
+
 // The sum of squared errors in units of the covariance over trials.
 double normalised_errors(int trials, const SceneOptions& options, double first_weight) {
   double sum = 0.0;
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = make_scene(static_cast<unsigned>(trial), options);
     for (int i = 0; i < options.points / 2; ++i) scene.observations[i].weight = first_weight;
-    const auto refined = scene.refine();
+    const auto refined = scene.refine(kNoiseAlone);
     if (!refined) return std::numeric_limits<double>::infinity();
     const Vector6 error = log_pose(scene.true_camera_from_world * inverse(refined->camera_from_world));
     sum += error.dot(refined->covariance.inverse() * error);
@@ -287,6 +292,66 @@ TEST(RefinePose, ReportsAMonoCovarianceNotFarBelowItsErrors) {
   constexpr double kDegrees = 6.0 * kTrials;
   EXPECT_NEAR(normalised_errors(kTrials, {.mono_fraction = 1.0, .noise = 1.0}, 1.0), 1.15 * kDegrees,
               3.3 * std::sqrt(2.0 * kDegrees));
+}
+
+// Sharp points, whose errors in a part of the image are all the same beside noise; another in each of 4 x 3 parts.
+Scene scene_with_systematic_errors(unsigned seed, double systematic_sigma) {
+  constexpr double kSharp = 0.06;  // pixels
+  Scene scene = make_scene(seed, {.points = 400, .prediction_metres = 0.01, .prediction_radians = 0.003});
+  Draw draw(1000 + seed);
+  std::vector<Eigen::Vector3d> shared;
+  for (int part = 0; part < 12; ++part) {
+    shared.push_back({draw.normal(systematic_sigma), draw.normal(systematic_sigma), 0.0});
+  }
+  for (PoseObservation& observation : scene.observations) {
+    const int column = std::clamp(static_cast<int>(4.0 * observation.measured.x() / scene.rig.width), 0, 3);
+    const int row = std::clamp(static_cast<int>(3.0 * observation.measured.y() / scene.rig.height), 0, 2);
+    observation.measured += shared[static_cast<std::size_t>(4 * row + column)];
+    observation.measured += Eigen::Vector3d{draw.normal(kSharp), draw.normal(kSharp), draw.normal(kSharp)};
+    observation.pixel_sigma = kSharp;
+    observation.disparity_sigma = kSharp;
+  }
+  return scene;
+}
+
+TEST(RefinePose, KeepsSharpPointsWhoseErrorIsSystematic) {
+  int kept = 0, kept_by_noise = 0;
+  for (unsigned seed = 30; seed < 40; ++seed) {
+    const Scene scene = scene_with_systematic_errors(seed, 0.25);
+    const auto refined = scene.refine();
+    ASSERT_TRUE(refined);
+    kept += refined->inlier_count;
+    if (const auto by_noise = scene.refine(kNoiseAlone)) kept_by_noise += by_noise->inlier_count;
+  }
+  EXPECT_GT(kept, 0.9 * 10 * 400);
+  EXPECT_GT(kept, kept_by_noise);
+}
+
+TEST(RefinePose, ReportsACovarianceThatSystematicErrorsDoNotExceed) {
+  constexpr int kTrials = 50;
+  double known = 0.0, by_noise = 0.0;  // squared errors in units of the covariance, six on average
+  for (unsigned trial = 0; trial < kTrials; ++trial) {
+    const Scene scene = scene_with_systematic_errors(100 + trial, 0.4);
+    const auto add = [&](const std::optional<PoseRefinement>& refined, double& sum) {
+      ASSERT_TRUE(refined);
+      const Vector6 error = log_pose(scene.true_camera_from_world * inverse(refined->camera_from_world));
+      sum += error.dot(refined->covariance.inverse() * error) / kTrials;
+    };
+    add(scene.refine(), known);
+    add(scene.refine(kNoiseAlone), by_noise);
+  }
+  EXPECT_LT(known, 12.0);
+  EXPECT_GT(known, 2.0) << "nor is it far too large";
+  EXPECT_GT(by_noise, 2.0 * known);
+}
+
+TEST(RefinePose, EstimatesTheSystematicPart) {
+  const auto small = scene_with_systematic_errors(7, 0.02).refine();
+  const auto large = scene_with_systematic_errors(7, 0.5).refine();
+  ASSERT_TRUE(small && large);
+  EXPECT_LT(small->systematic_sigma, 0.15);
+  EXPECT_GT(large->systematic_sigma, 0.3);
+  EXPECT_LT(large->systematic_sigma, 0.8);
 }
 
 }  // namespace

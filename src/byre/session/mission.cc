@@ -1,6 +1,7 @@
 #include "byre/session/mission.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace byre {
 
@@ -29,15 +30,27 @@ const std::vector<PointId>& Mission::candidates(const Pose& predicted_camera_fro
 
 void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
   view_ = view_of_offline(evidence, options_.view);
-  const bool held = view_ == OfflineView::held && (!track.maps_disagree || track.offline_is_right);
-  if (!track.offline_is_right) suspension_.note(track.offline_agreed, track.offline_moved);
+  ++frames_;
+  const bool held = view_ == OfflineView::held;
+  if (held) {
+    suspension_.note(track.offline_agreed,
+                     moved_together(offline_->map(), track.offline_agreed, track.offline_moved, options_.suspension));
+  }
   reference_ = held ? track.offline_reference : std::nullopt;
-  if (held && !track.maps_disagree) {
+  if (held && (track.offline_stands || !track.maps_disagree)) {
     distance_since_offline_ = 0.0;
     last_offline_time_ = time;
   } else {
     distance_since_offline_ += step;
   }
+}
+
+std::vector<PointId> Mission::due_again() const {
+  std::vector<PointId> due;
+  if (view_ != OfflineView::held || frames_ % options_.look_again_every != 0) return due;
+  std::ranges::copy_if(local_points_, std::back_inserter(due),
+                       [this](PointId id) { return suspension_.is_suspended(id); });
+  return due;
 }
 
 std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,

@@ -16,10 +16,11 @@ namespace byre {
 struct MissionOptions {
   int local_keyframes = 15;       // offline ones, whose points are looked for in a frame
   double search_distance = 4.0;   // metres about the pose within which offline keyframes are looked for
-  double min_drift = 0.01;        // metres by which the online map may always lie off the offline one,
-  double drift_share = 0.02;      // and of the path since both agreed
+  double min_drift = 0.01;        // metres by which a place found beside tracking may always lie off the pose,
+  double drift_share = 0.02;      // and of the path since offline points last held it
   double min_turn = 0.005;        // radians that it may be turned,
   double turn_per_metre = 0.002;  // and for each metre of that path
+  int look_again_every = 5;       // frames: then suspended points are looked for in their places
   int held_by = 60;               // offline inliers from which the online map around is taken to lie in its place
   double search_after = 0.3;      // metres without offline points: then places are looked for beside tracking
   double restart_after = 1.0;     // seconds without a pose, until a new piece of online map is begun
@@ -48,6 +49,9 @@ class Mission {
 
   // A frame was tracked, so many metres from the one before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
+  // Suspended points around, in frames where they are to be looked for again; else none.
+  std::vector<PointId> due_again() const;
+  void note_again(const PlacedPoints& placed) { suspension_.note_again(placed.agreed, placed.moved); }
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
 
@@ -65,6 +69,7 @@ class Mission {
   OfflineView view_ = OfflineView::off_the_map;
   double distance_since_offline_ = 0.0;  // metres
   std::optional<Timestamp> last_offline_time_;
+  int frames_ = 0;                               // noted
   std::optional<KeyframeId> reference_;          // offline keyframe that showed most of the last frame's points
   std::optional<KeyframeId> candidates_around_;  // of which the points below are
   std::vector<PointId> local_points_;            // suspended ones included

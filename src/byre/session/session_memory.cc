@@ -61,7 +61,7 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   if (without_prediction) begin_confirmation(frame, track.tracked);
   last_inliers_ = static_cast<int>(track.tracked.features.size());
   const KeyframeId reference =
-      track.offline_is_right && track.offline_reference ? *track.offline_reference : track.tracked.reference;
+      track.is_online_off() && track.offline_reference ? *track.offline_reference : track.tracked.reference;
   if (reference_ != reference) fresh_inliers_ = last_inliers_;
   reference_ = reference;
   if (track.online_reference) online_reference_ = track.online_reference;
@@ -101,7 +101,11 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   const bool is_held = now == OfflineView::held && !track.maps_disagree &&
                        track.offline_inliers >= options_.mission.held_by && last_keyframe_;
   if (is_held) last_held_keyframe_ = last_keyframe_->number;
-  if (!track.offline_is_right || waiting_correction_ || !is_pose_confirmed()) return;
+  const std::vector<PointId> due = mission_->due_again();
+  if (!due.empty()) {
+    mission_->note_again(look_for_points(frame, track.tracked.camera_from_world, rig_, map(), due, options_.track));
+  }
+  if (!track.is_online_off() || waiting_correction_ || !is_pose_confirmed()) return;
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const auto correction = mission_->consider(offline_from_online, inverse(*track.from_online).translation,
                                              median_depth(track.tracked, map()));
@@ -230,7 +234,7 @@ Health Session::health_of(const Frame& frame, const Located& located, const Matr
   Health health;
   health.image = frame.condition;
   HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed() && is_pose_proven()};
-  evidence.maps_disagree = located.track && located.track->maps_disagree;
+  evidence.maps_disagree = located.track && located.track->maps_disagree && !located.track->offline_stands;
   evidence.image_fault = image_fault(frame);
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());

@@ -76,7 +76,7 @@ std::optional<HybridTrack> Session::track_from(const Frame& frame, const Pose& p
   std::vector<PointId> candidates;
   if (is_registered()) candidates = mission_->candidates(predicted);
   candidates.insert(candidates.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, rig_, map(), candidates, mission_->drift(), options_.track);
+  return track_hybrid(frame, predicted, rig_, map(), candidates, options_.track);
 }
 
 // Kept until the map or the reference changes: frames come more often than that.

@@ -4,7 +4,9 @@
 #include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace byre {
@@ -57,38 +59,14 @@ bool disagree(const PoseRefinement& one, const PoseRefinement& other, double dep
   return deviation.dot(covariance.ldlt().solve(deviation)) > kMaxSquaredDeviation;
 }
 
-// A pose that few points hold may be less certain than what is known of the drift: then it cannot correct that.
-bool is_sharper_than(const DriftBound& drift, const PoseRefinement& refined) {
-  constexpr double kSigmas = 3.0;
-  return kSigmas * std::sqrt(refined.covariance.topLeftCorner<3, 3>().trace()) <= drift.translation;
-}
-
-std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points,
-                          float radius) {
+// Looked for nearby, and farther where that finds nothing.
+std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points) {
   if (points.empty()) return std::nullopt;
-  return first_pose(query.frame, predicted, query.rig, query.map, points, radius, query.options);
-}
-
-// A first pose for each kind of points: the same one, unless they contradict each other.
-std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted,
-                                       const ByMap<std::vector<ExpectedPoint>>& expected, float radius) {
-  std::optional<Pose> offline, online;
-  if (query.options.offline_policy == OfflinePolicy::first) {
-    offline = guess(query, predicted, expected.offline, radius);
-    const double depth = median_depth(query, expected.offline, predicted);
-    const bool as_predicted =
-        offline && apparent_shift(*offline, predicted, depth, query.rig) < query.options.narrow_radius;
-    if (as_predicted) return ByMap<Pose>{*offline, *offline};
-    if (offline) online = guess(query, predicted, expected.online, radius);
-    const bool contradict =
-        online && apparent_shift(*offline, *online, depth, query.rig) > 0.5 * query.options.narrow_radius;
-    if (offline) return ByMap<Pose>{*offline, contradict ? *online : *offline};
+  for (const float radius : {query.options.search_radius, query.options.wide_radius}) {
+    const auto pose = first_pose(query.frame, predicted, query.rig, query.map, points, radius, query.options);
+    if (pose) return pose;
   }
-  std::vector<ExpectedPoint> all = expected.offline;
-  all.insert(all.end(), expected.online.begin(), expected.online.end());
-  const auto both = guess(query, predicted, all, radius);
-  if (!both) return std::nullopt;
-  return ByMap<Pose>{*both, *both};
+  return std::nullopt;
 }
 
 ByMap<std::vector<ExpectedPoint>> project(const Query& query, const ByMap<std::vector<PointId>>& candidates,
@@ -97,10 +75,46 @@ ByMap<std::vector<ExpectedPoint>> project(const Query& query, const ByMap<std::v
           project_points(query.map, candidates.online, camera_from_world.online, query.rig)};
 }
 
-ByMap<std::vector<GuidedMatch>> match(const Query& query, const ByMap<std::vector<ExpectedPoint>>& expected) {
+// A first pose for each kind of points: the same one, unless they contradict each other.
+std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted,
+                                       const ByMap<std::vector<PointId>>& points) {
+  const ByMap<std::vector<ExpectedPoint>> expected = project(query, points, {predicted, predicted});
+  if (query.options.offline_policy == OfflinePolicy::first) {
+    if (const auto offline = guess(query, predicted, expected.offline)) {
+      const double depth = median_depth(query, expected.offline, predicted);
+      const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
+      if (differ_by(predicted) < query.options.narrow_radius) return ByMap<Pose>{*offline, *offline};
+      const auto online = guess(query, predicted, expected.online);
+      const bool contradict = online && differ_by(*online) > 0.5 * query.options.narrow_radius;
+      return ByMap<Pose>{*offline, contradict ? *online : *offline};
+    }
+  }
+  std::vector<ExpectedPoint> all = expected.offline;
+  all.insert(all.end(), expected.online.begin(), expected.online.end());
+  const auto both = guess(query, predicted, all);
+  if (!both) return std::nullopt;
+  return ByMap<Pose>{*both, *both};
+}
+
+// What was looked for around the guesses, and found.
+struct Found {
+  ByMap<std::vector<ExpectedPoint>> expected;
+  ByMap<MeasuredPoints> measured;
+};
+
+MeasuredPoints match_and_measure(const Query& query, const std::vector<ExpectedPoint>& expected,
+                                 const Pose& camera_from_world) {
   const SearchOptions search{query.options.narrow_radius, 90, 0.9f};
-  return {match_expected(*query.frame.features, query.map, expected.offline, search),
-          match_expected(*query.frame.features, query.map, expected.online, search)};
+  const std::vector<GuidedMatch> matches = match_expected(*query.frame.features, query.map, expected, search);
+  return measure_matches(query.frame, camera_from_world, query.rig, query.map, matches);
+}
+
+Found look_for(const Query& query, const ByMap<std::vector<PointId>>& points, const ByMap<Pose>& guesses) {
+  Found found;
+  found.expected = project(query, points, guesses);
+  found.measured.offline = match_and_measure(query, found.expected.offline, guesses.offline);
+  found.measured.online = match_and_measure(query, found.expected.online, guesses.online);
+  return found;
 }
 
 // A feature that shows a point of each map is left to the offline one.
@@ -124,10 +138,57 @@ std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camer
   return refined;
 }
 
-// The pose that is believed, and the points it was refined on.
+// How many parts of the image an offline pose holds: a part has matches that tell, and most of them fit.
+struct Support {
+  int telling = 0;
+  int fitting = 0;
+};
+
+Support support_of(const Query& query, const PoseRefinement& refined, const MeasuredPoints& measured) {
+  constexpr int kColumns = 4;
+  constexpr int kRows = 3;
+  constexpr int kMinMatches = 3;
+  struct Part {
+    int fit = 0;
+    int elsewhere = 0;
+  };
+  std::array<Part, static_cast<std::size_t>(kColumns * kRows)> parts;
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    const TrackedFeature& feature = measured.features[i];
+    if (!refined.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
+    const int column = std::clamp(static_cast<int>(kColumns * feature.pixel.x()) / query.rig.width, 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(kRows * feature.pixel.y()) / query.rig.height, 0, kRows - 1);
+    Part& part = parts[static_cast<std::size_t>(row * kColumns + column)];
+    ++(refined.inliers[i] ? part.fit : part.elsewhere);
+  }
+  Support support;
+  for (const Part& part : parts) {
+    if (part.fit + part.elsewhere < kMinMatches) continue;
+    ++support.telling;
+    support.fitting += part.fit > part.elsewhere ? 1 : 0;
+  }
+  return support;
+}
+
+// A thing that was moved fits a pose of its own too, but does not fill the image. Precondition: the pose is sound.
+bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
+  constexpr int kMinParts = 4;       // a third of the image,
+  constexpr double kMinShare = 0.6;  // and so much of what tells at all
+  const Support support = support_of(query, offline, measured);
+  return support.fitting >= kMinParts && support.fitting >= kMinShare * support.telling;
+}
+
+// How many of the matches fit a pose by noise and systematic errors alone.
+std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
+  return part_by_agreement(camera_from_world, query.rig, measured, 1.0, query.options.refinement)
+      .agreeing.features.size();
+}
+
+// The pose that is believed, the points it was refined on, and matches that were left out of that.
 struct Solution {
   PoseRefinement refined;
   MeasuredPoints measured;
+  std::vector<TrackedFeature> left_out;
 };
 
 std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world,
@@ -135,7 +196,59 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
   MeasuredPoints both = join(measured, query.options.offline_weight);
   const auto refined = refine_pose(camera_from_world, query.rig, both.observations, query.options.refinement);
   if (!refined || !is_sound(*refined, both.observations.size(), query.options)) return std::nullopt;
-  return Solution{*refined, std::move(both)};
+  return Solution{*refined, std::move(both), {}};
+}
+
+// The pose of one map's points, refined on those and what agrees of the other's.
+Solution solve_led(const Query& query, const PoseRefinement& leader, Origin leading,
+                   const ByMap<MeasuredPoints>& measured) {
+  const bool offline_leads = leading == Origin::offline;
+  PartedPoints followers =
+      part_by_agreement(leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline,
+                        leader.variance_factor, query.options.refinement);
+  const ByMap<MeasuredPoints> agreeing = offline_leads
+                                             ? ByMap<MeasuredPoints>{measured.offline, std::move(followers.agreeing)}
+                                             : ByMap<MeasuredPoints>{std::move(followers.agreeing), measured.online};
+  auto solution = solve_together(query, leader.camera_from_world, agreeing);
+  if (!solution) solution = Solution{leader, offline_leads ? measured.offline : measured.online, {}};
+  solution->left_out = std::move(followers.disagreeing);
+  return *solution;
+}
+
+// What each map says by itself, and of the other.
+struct Opinions {
+  std::optional<PoseRefinement> offline;
+  std::optional<PoseRefinement> online;
+  bool offline_stands = false;
+  bool maps_disagree = false;
+};
+
+Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& found) {
+  Opinions opinions;
+  opinions.offline = refine_alone(query, guesses.offline, found.measured.offline);
+  opinions.online = refine_alone(query, guesses.online, found.measured.online);
+  opinions.offline_stands = opinions.offline && stands(query, *opinions.offline, found.measured.offline);
+  if (!opinions.offline || !opinions.online) return opinions;
+  const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
+  opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
+  // A compromise between what stayed and what moved fits fewer offline points than the online pose does.
+  if (opinions.maps_disagree && opinions.offline_stands) {
+    const MeasuredPoints& points = found.measured.offline;
+    opinions.offline_stands = count_fitting(query, opinions.offline->camera_from_world, points) >=
+                              count_fitting(query, opinions.online->camera_from_world, points);
+  }
+  return opinions;
+}
+
+std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, const Opinions& opinions,
+                              const ByMap<MeasuredPoints>& measured) {
+  if (opinions.offline_stands) return solve_led(query, *opinions.offline, Origin::offline, measured);
+  if (opinions.maps_disagree) return solve_led(query, *opinions.online, Origin::online, measured);
+  auto together = solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured);
+  if (together) return together;
+  if (opinions.online) return Solution{*opinions.online, measured.online, {}};
+  if (opinions.offline) return Solution{*opinions.offline, measured.offline, {}};
+  return std::nullopt;
 }
 
 void sort_by_feature(std::vector<TrackedFeature>& features) {
@@ -158,6 +271,31 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
   result.offline_agreed = std::move(inliers);
 }
 
+HybridTrack told(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
+  HybridTrack result;
+  if (opinions.offline) result.from_offline = opinions.offline->camera_from_world;
+  if (opinions.online) result.from_online = opinions.online->camera_from_world;
+  result.maps_disagree = opinions.maps_disagree;
+  result.offline_stands = opinions.offline_stands;
+
+  std::vector<TrackedFeature> inliers = inliers_of(solution.refined, solution.measured);
+  sort_by_feature(inliers);
+  const SharedPoints shared = count_shared_points(query.map, inliers);
+  result.offline_reference = most_shared(shared, Origin::offline);
+  result.online_reference = most_shared(shared, Origin::online);
+  result.tracked =
+      tracked_frame(solution.refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), query.map);
+  result.tracked.outliers = outliers_of(solution.refined, solution.measured);
+  std::ranges::copy(solution.left_out, std::back_inserter(result.tracked.outliers));
+
+  result.offline_expected = static_cast<int>(found.expected.offline.size());
+  result.offline_matches = static_cast<int>(found.measured.offline.features.size());
+  result.tracked.expected = result.offline_expected + static_cast<int>(found.expected.online.size());
+  result.tracked.matches = result.offline_matches + static_cast<int>(found.measured.online.features.size());
+  tell_offline_points(query, found.measured, result);
+  return result;
+}
+
 }  // namespace
 
 Agreement agreement_of(const Pose& one, const Pose& other) {
@@ -170,55 +308,30 @@ bool is_within(const Agreement& agreement, const DriftBound& drift) {
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const DriftBound& drift, const TrackOptions& options) {
+                                        const TrackOptions& options) {
   const Query query{frame, rig, map, options};
   const ByMap<std::vector<PointId>> points = split(candidates);
-  const ByMap<Pose> predicted{predicted_camera_from_world, predicted_camera_from_world};
-  const ByMap<std::vector<ExpectedPoint>> roughly_expected = project(query, points, predicted);
-  std::optional<ByMap<Pose>> guesses;
-  for (const float radius : {options.search_radius, options.wide_radius}) {
-    if (!guesses) guesses = guess_poses(query, predicted_camera_from_world, roughly_expected, radius);
-  }
+  const auto guesses = guess_poses(query, predicted_camera_from_world, points);
   if (!guesses) return std::nullopt;
-
-  const ByMap<std::vector<ExpectedPoint>> expected = project(query, points, *guesses);
-  const ByMap<std::vector<GuidedMatch>> matches = match(query, expected);
-  const ByMap<MeasuredPoints> measured{measure_matches(frame, guesses->offline, rig, map, matches.offline),
-                                       measure_matches(frame, guesses->online, rig, map, matches.online)};
-  const auto offline = refine_alone(query, guesses->offline, measured.offline);
-  const auto online = refine_alone(query, guesses->online, measured.online);
-
-  HybridTrack result;
-  if (offline) result.from_offline = offline->camera_from_world;
-  if (online) result.from_online = online->camera_from_world;
-  if (offline && online) {
-    result.maps_disagree =
-        disagree(*offline, *online, median_depth(query, expected.offline, *result.from_offline), rig);
-  }
-  result.offline_is_right = result.maps_disagree && is_sharper_than(drift, *offline) &&
-                            is_within(agreement_of(*result.from_offline, *result.from_online), drift);
-
-  std::optional<Solution> solution;
-  if (!result.maps_disagree) solution = solve_together(query, offline ? guesses->offline : guesses->online, measured);
-  const bool prefer_offline = offline && (!online || result.offline_is_right);
-  if (!solution && prefer_offline) solution = Solution{*offline, measured.offline};
-  if (!solution && online) solution = Solution{*online, measured.online};
+  const Found found = look_for(query, points, *guesses);
+  const Opinions opinions = ask_each(query, *guesses, found);
+  const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
+  return told(query, found, opinions, *solution);
+}
 
-  std::vector<TrackedFeature> inliers = inliers_of(solution->refined, solution->measured);
-  sort_by_feature(inliers);
-  const SharedPoints shared = count_shared_points(map, inliers);
-  result.offline_reference = most_shared(shared, Origin::offline);
-  result.online_reference = most_shared(shared, Origin::online);
-  result.tracked =
-      tracked_frame(solution->refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), map);
-  result.offline_expected = static_cast<int>(expected.offline.size());
-  result.offline_matches = static_cast<int>(matches.offline.size());
-  result.tracked.expected = result.offline_expected + static_cast<int>(expected.online.size());
-  result.tracked.outliers = outliers_of(solution->refined, solution->measured);
-  result.tracked.matches = result.offline_matches + static_cast<int>(matches.online.size());
-  tell_offline_points(query, measured, result);
-  return result;
+PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                             const std::vector<PointId>& points, const TrackOptions& options) {
+  const Query query{frame, rig, map, options};
+  const std::vector<ExpectedPoint> expected = project_points(map, points, camera_from_world, rig);
+  const MeasuredPoints measured = match_and_measure(query, expected, camera_from_world);
+  const PartedPoints parted = part_by_agreement(camera_from_world, rig, measured, 1.0, options.refinement);
+  PlacedPoints placed;
+  for (const TrackedFeature& feature : parted.agreeing.features) placed.agreed.push_back(feature.point);
+  for (const TrackedFeature& feature : parted.disagreeing) {
+    if (shows_patch(feature, *frame.features)) placed.moved.push_back(feature.point);
+  }
+  return placed;
 }
 
 }  // namespace byre

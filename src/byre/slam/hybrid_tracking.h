@@ -29,20 +29,33 @@ struct HybridTrack {
   int offline_inliers = 0;
   std::optional<Pose> from_offline;  // camera_from_world, as offline points alone have it
   std::optional<Pose> from_online;   // as online points alone have it
-  bool maps_disagree = false;        // those two are farther apart than noise explains,
-  // By no more than drift explains, and the offline pose is certain enough to tell: then the pose is that one.
-  bool offline_is_right = false;
+  bool maps_disagree = false;        // those two are farther apart than their covariances explain
+  // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
+  bool offline_stands = false;
   std::vector<PointId> offline_agreed;  // inliers, and
   std::vector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
 
+  // The online map does not lie where it should.
+  bool is_online_off() const { return maps_disagree && offline_stands; }
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
-// As track(), for candidates of both maps. Each kind of points gives a pose of its own; where those agree, the pose is
-// refined on both, offline measurements weighing more. Where they do not, one map is wrong hereabouts: the online one
-// when no more than drift needs to be assumed, else things have moved since the offline map was made.
+// As track(), for candidates of both maps. Each kind of points gives a pose of its own. Offline comes first: where one
+// pose fits offline points all over the image it stands, whatever the online map says, and online points are used that
+// agree with it. Offline points that fit one pose in a part of the image only may be a thing that was moved: where the
+// maps disagree the online pose stands, and offline points are used that agree with that.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const DriftBound& drift, const TrackOptions& options);
+                                        const TrackOptions& options);
+
+// Which points a pose that is known has in their places, and which elsewhere.
+struct PlacedPoints {
+  std::vector<PointId> agreed;
+  std::vector<PointId> moved;
+};
+
+// Looks for points where the pose expects them, without a say in it. Those not found are in neither.
+PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                             const std::vector<PointId>& points, const TrackOptions& options);
 
 }  // namespace byre

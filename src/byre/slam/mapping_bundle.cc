@@ -1,3 +1,4 @@
+#include "byre/optimise/pose_refinement.h"
 #include "byre/slam/mapping_steps.h"
 
 #include <algorithm>
@@ -59,9 +60,18 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   return bundle;
 }
 
-bool is_outlier(const BundleObservation& observation, double squared_error, const MappingOptions& options) {
-  return !(squared_error <=
-           (observation.is_stereo() ? options.max_squared_error_stereo : options.max_squared_error_mono));
+// By how many times the squared error of a sighting of an offline point may exceed that of an online one. Online points
+// adapt to what their views have in common, offline ones do not.
+double tolerance_of(const BundleObservation& observation) {
+  const double systematic_sigma = PoseRefinementOptions{}.systematic_sigma;
+  const double sigma = std::max(observation.pixel_sigma, observation.disparity_sigma);
+  return 1.0 + std::pow(systematic_sigma / sigma, 2);
+}
+
+bool is_outlier(const BundleObservation& observation, bool of_offline_point, double squared_error,
+                const MappingOptions& options) {
+  const double gate = observation.is_stereo() ? options.max_squared_error_stereo : options.max_squared_error_mono;
+  return !(squared_error <= gate * (of_offline_point ? tolerance_of(observation) : 1.0));
 }
 
 void take_over(MapWindow& window, const BundleResult& result) {
@@ -91,7 +101,8 @@ void remove_outliers(MapWindow& window, const WindowBundle& bundle, const Bundle
                      const MappingOptions& options) {
   for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
     const BundleObservation& observation = bundle.problem.observations[i];
-    if (!is_outlier(observation, result.squared_errors[i], options)) continue;
+    const bool of_offline_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
+    if (!is_outlier(observation, of_offline_point, result.squared_errors[i], options)) continue;
     const WindowObservation& seen = bundle.observations[i];
     if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
             .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {

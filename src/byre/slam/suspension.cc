@@ -1,8 +1,54 @@
 #include "byre/slam/suspension.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace byre {
+namespace {
+
+struct JudgedPoint {
+  Eigen::Vector3d position_in_world;
+  bool moved = false;
+};
+
+std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
+                                       std::span<const PointId> moved) {
+  std::vector<JudgedPoint> judged;
+  judged.reserve(agreed.size() + moved.size());
+  for (const PointId id : moved) judged.push_back({offline.find_point(id)->position_in_world, true});
+  for (const PointId id : agreed) judged.push_back({offline.find_point(id)->position_in_world, false});
+  return judged;
+}
+
+// Of the nearest judged points about one of them, the share that has moved.
+double share_around(const std::vector<JudgedPoint>& judged, std::size_t point, std::size_t neighbours) {
+  std::vector<std::pair<double, bool>> others;  // squared metres, moved
+  others.reserve(judged.size());
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (i == point) continue;
+    others.push_back({(judged[i].position_in_world - judged[point].position_in_world).squaredNorm(), judged[i].moved});
+  }
+  const std::size_t count = std::min(neighbours, others.size());
+  if (count == 0) return 0.0;
+  std::ranges::nth_element(others, others.begin() + static_cast<std::ptrdiff_t>(count - 1));
+  const auto moved = std::count_if(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count),
+                                   [](const auto& other) { return other.second; });
+  return static_cast<double>(moved) / static_cast<double>(count);
+}
+
+}  // namespace
+
+std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed, std::span<const PointId> moved,
+                                    const SuspensionOptions& options) {
+  const std::vector<JudgedPoint> judged = judged_points(offline, agreed, moved);
+  std::vector<PointId> together;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (share_around(judged, i, static_cast<std::size_t>(options.neighbours)) >= options.min_share) {
+      together.push_back(moved[i]);
+    }
+  }
+  return together;
+}
 
 Suspension::Record& Suspension::record_of(PointId id) {
   if (id.number >= records_.size()) records_.resize(id.number + std::size_t{1});
@@ -19,6 +65,16 @@ void Suspension::note(std::span<const PointId> agreed, std::span<const PointId> 
     if (record.suspended || ++record.excess < options_.frames) continue;
     record.suspended = true;
     ++count_;
+  }
+}
+
+void Suspension::note_again(std::span<const PointId> agreed, std::span<const PointId> moved) {
+  for (const PointId id : moved) record_of(id).in_place = 0;
+  for (const PointId id : agreed) {
+    Record& record = record_of(id);
+    if (!record.suspended || ++record.in_place < options_.frames_to_return) continue;
+    record = {};
+    --count_;
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/map/ids.h"
+#include "byre/map/map.h"
 
 #include <cstdint>
 #include <span>
@@ -9,24 +10,35 @@
 namespace byre {
 
 struct SuspensionOptions {
-  int frames = 8;  // by which a point was found elsewhere more often than in its place
+  int frames = 8;            // by which a point was found elsewhere more often than in its place
+  int neighbours = 6;        // nearest judged points that tell whether it moved with others,
+  double min_share = 0.5;    // of which so many have moved too
+  int frames_to_return = 3;  // in which a suspended point was found in its place again, one after the other
 };
 
-// Offline points that are not where the map has them: what they belong to was moved. They are left out for the rest of
-// the mission; the map itself stays as it is.
+// Of the points that were found elsewhere, those that lie among others of them: a thing that was moved is a cluster in
+// space, and a point that disagrees alone, among neighbours in place, was mistaken for another. All ascending.
+std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed, std::span<const PointId> moved,
+                                    const SuspensionOptions& options);
+
+// Offline points that are not where the map has them: what they belong to was moved. They are left out until they are
+// found in their places again; the map itself stays as it is.
 class Suspension {
  public:
   explicit Suspension(const SuspensionOptions& options) : options_(options) {}
 
-  // Of one frame with a pose: which offline points were found in their places, and which elsewhere.
+  // Of one frame whose pose offline points hold: which of them were found in their places, and which elsewhere.
   void note(std::span<const PointId> agreed, std::span<const PointId> moved);
+  // The same of suspended ones, which were looked for again.
+  void note_again(std::span<const PointId> agreed, std::span<const PointId> moved);
 
   bool is_suspended(PointId id) const;
   int count() const { return count_; }
 
  private:
   struct Record {
-    std::int16_t excess = 0;  // frames that found it elsewhere, less those that found it in its place; not below zero
+    std::int16_t excess = 0;    // frames that found it elsewhere, less those that found it in its place; not below zero
+    std::int16_t in_place = 0;  // frames one after the other that found it in its place while suspended
     bool suspended = false;
   };
   Record& record_of(PointId id);

@@ -52,6 +52,24 @@ MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world
   return measured;
 }
 
+PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                               double max_variance_factor, const PoseRefinementOptions& options) {
+  PoseRefinementOptions at_pose = options;
+  at_pose.rounds = 0;
+  at_pose.max_variance_factor = max_variance_factor;
+  PartedPoints parted;
+  const auto judged = refine_pose(camera_from_world, rig, measured.observations, at_pose);
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    if (!judged || !judged->inliers[i]) {
+      parted.disagreeing.push_back(measured.features[i]);
+      continue;
+    }
+    parted.agreeing.observations.push_back(measured.observations[i]);
+    parted.agreeing.features.push_back(measured.features[i]);
+  }
+  return parted;
+}
+
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
   return refined.inlier_count >= options.min_inliers &&
          refined.inlier_count >= options.min_inlier_share * static_cast<double>(matches);

@@ -21,6 +21,16 @@ struct MeasuredPoints {
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                                const std::vector<GuidedMatch>& matches);
 
+// Matches as a pose that stands already has them.
+struct PartedPoints {
+  MeasuredPoints agreeing;
+  std::vector<TrackedFeature> disagreeing;
+};
+
+// max_variance_factor: by which their errors may exceed their sigmas, as they do for the points that gave the pose.
+PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                               double max_variance_factor, const PoseRefinementOptions& options);
+
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
 

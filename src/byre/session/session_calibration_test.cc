@@ -1,0 +1,143 @@
+// Missions in a world that has not changed, by a camera whose calibration errs: a smooth field of errors in the image,
+// the same in every frame, which no number of points averages out.
+
+#include "byre/geometry/alignment.h"
+#include "byre/session/session.h"
+#include "byre/slam/mission_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr int kFrames = 90;
+
+// Pixels at the corners of the image, as an error of focal length, of the principal point and of the lens makes them.
+struct CalibrationError {
+  double zoom = 0.0;
+  double shift = 0.0;
+  double lens = 0.0;
+  double disparity = 0.0;
+};
+
+Frame seen_through(const CalibrationError& error, const Frame& frame, const Rig& rig) {
+  std::vector<Keypoint> keypoints = frame.features->keypoints();
+  for (Keypoint& keypoint : keypoints) {
+    const double x = 2.0 * keypoint.pixel.x() / rig.width - 1.0;
+    const double y = 2.0 * keypoint.pixel.y() / rig.height - 1.0;
+    const double u = error.zoom * x + error.shift + error.lens * std::sin(std::numbers::pi * x) * (1.0 - y * y);
+    const double v = error.zoom * y - 0.5 * error.shift + error.lens * std::sin(std::numbers::pi * y) * (1.0 - x * x);
+    keypoint.pixel += Eigen::Vector2d(u, v).cast<float>();
+    if (keypoint.has_disparity()) keypoint.disparity += static_cast<float>(error.disparity);
+  }
+  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
+                                                       frame.features->descriptors(), std::vector<Patch>{})};
+}
+
+SimulatedMission visit(std::uint64_t noise_seed) {
+  SimulationOptions options;
+  options.noise_seed = noise_seed;
+  options.pixel_sigma = 0.2;
+  options.disparity_sigma = 0.1;
+  return simulate_mission(simulated_rig(), circling_trajectory(kFrames, 10.0, 2.0, 0.75), options);
+}
+
+const Vocabulary& vocabulary() {
+  static const Vocabulary trained = [] {
+    const SimulatedMission mission = visit(1);
+    std::vector<std::vector<Descriptor>> images;
+    for (std::size_t i = 0; i < mission.frames.size(); i += 4) {
+      images.push_back(mission.frames[i].features->descriptors());
+    }
+    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
+  }();
+  return trained;
+}
+
+std::shared_ptr<const OfflineMap> mapped() {
+  Map map = true_map(visit(1), 4, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+}
+
+struct Outcome {
+  double error = 0.0;            // metres, root mean square over the frames that have a pose
+  double worst_trusted = 0.0;    // metres
+  double offline_inliers = 0.0;  // a frame
+  int poses = 0;
+};
+
+double error_of(const Pose& body, const StampedPose& truth) {
+  return (body.translation - truth.world_from_body.translation).norm();
+}
+
+Outcome outcome_of(Session session, const SimulatedMission& mission, const CalibrationError& error) {
+  Outcome outcome;
+  double squared = 0.0;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    const FrameReport report = session.process(seen_through(error, mission.frames[i], mission.rig));
+    if (!report.map_from_body) continue;
+    const double off = error_of(*report.map_from_body, mission.truth[i]);
+    squared += off * off;
+    outcome.offline_inliers += report.health.offline_inliers;
+    if (report.health.verdict == Verdict::trusted) outcome.worst_trusted = std::max(outcome.worst_trusted, off);
+    ++outcome.poses;
+  }
+  outcome.error = std::sqrt(squared / outcome.poses);
+  outcome.offline_inliers /= outcome.poses;
+  return outcome;
+}
+
+Outcome mission_outcome(bool map_online, const CalibrationError& error) {
+  static const std::shared_ptr<const OfflineMap> offline = mapped();
+  const SimulatedMission mission = visit(2);
+  SessionOptions options;
+  options.map_online = map_online;
+  return outcome_of({mission.rig, options, Lanes(make_inline_executor()), vocabulary(), offline}, mission, error);
+}
+
+// Without any map, laid over the truth as well as it goes.
+double error_without_map(const CalibrationError& error) {
+  const SimulatedMission mission = visit(2);
+  Session session(mission.rig, {}, Lanes(make_inline_executor()));
+  std::vector<Eigen::Vector3d> estimated, truth;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    const FrameReport report = session.process(seen_through(error, mission.frames[i], mission.rig));
+    if (!report.map_from_body) continue;
+    estimated.push_back(report.map_from_body->translation);
+    truth.push_back(mission.truth[i].world_from_body.translation);
+  }
+  const auto truth_from_map = align(estimated, truth, Scale::fixed);
+  double squared = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) squared += (*truth_from_map * estimated[i] - truth[i]).squaredNorm();
+  return std::sqrt(squared / static_cast<double>(truth.size()));
+}
+
+class MissionWithCalibrationError : public ::testing::TestWithParam<CalibrationError> {};
+
+TEST_P(MissionWithCalibrationError, IsNoWorseForMappingBesideTheOfflineMap) {
+  constexpr double kNoise = 0.002;  // metres: what two runs differ by anyhow
+  const Outcome hybrid = mission_outcome(true, GetParam());
+  const Outcome localised = mission_outcome(false, GetParam());
+  EXPECT_EQ(hybrid.poses, kFrames);
+  EXPECT_LE(hybrid.error, 1.1 * localised.error + kNoise);
+  // An error of the zoom shifts every pose on an exact map: no mission that does not calibrate itself can know.
+  EXPECT_LE(hybrid.error, std::max(localised.error, 1.1 * error_without_map(GetParam())) + kNoise);
+  EXPECT_GT(hybrid.offline_inliers, 0.5 * localised.offline_inliers);
+  EXPECT_LT(hybrid.worst_trusted, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Errors, MissionWithCalibrationError,
+    ::testing::Values(CalibrationError{}, CalibrationError{.zoom = 1.0}, CalibrationError{.shift = 1.0},
+                      CalibrationError{.lens = 2.0}, CalibrationError{.disparity = 0.3},
+                      CalibrationError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
+
+}  // namespace
+}  // namespace byre
