@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
-# benchmark runs), checks the formatting, then runs the unit tests under the address and undefined-behaviour sanitizers
-# and those of the threads under the thread sanitizer, and fuzzes the reading of map files. Says which tests were skipped for lack of their recordings.
+# benchmark runs), checks the formatting, then runs the library's unit tests under the address and undefined-behaviour
+# sanitizers and those of the threads under the thread sanitizer, and fuzzes the reading of map files. Says which tests
+# were skipped for lack of their recordings.
 # Usage: test.sh [--quick]        --quick leaves sanitizers and fuzzing out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -63,7 +64,7 @@ headline "Formatting"
 check_format
 
 if ! $quick; then
-  headline "Address and undefined-behaviour sanitizers: unit tests"
+  headline "Address and undefined-behaviour sanitizers: unit tests of the library"
   scripts/build.sh dev byre_unit_tests
   run_tests dev
 

@@ -127,7 +127,7 @@ TEST(SelfCalibration, FindsTheErrorOfAGoodCalibration) {
   const Calibration given = scene_calibration();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const CalibrationVector error = draw_error(seed);
-    const MapOfErringCamera map(given, error, about_the_room, 40);
+    const MapOfErringCamera map(given, error, about_the_room, 60);
     const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
     ASSERT_TRUE(found);
     const Calibration truth = changed(given, error);
