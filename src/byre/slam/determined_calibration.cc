@@ -10,11 +10,19 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   const double prior_information = 1.0 / (prior_sigmas * prior_sigmas);
   CalibrationVector along = directions.eigenvectors().transpose() * expected;
   CalibrationVector variances = directions.eigenvalues().cwiseInverse();
+  int determined = 0;
+  double squared_sigmas = 0.0;  // by which the change along all determined directions differs from none
   for (int i = 0; i < kCalibrationParameters; ++i) {
-    if (directions.eigenvalues()[i] >= min_gain * min_gain * prior_information) continue;
-    along[i] = 0.0;
-    variances[i] = 1.0 / prior_information;
+    if (directions.eigenvalues()[i] >= min_gain * min_gain * prior_information) {
+      ++determined;
+      squared_sigmas += along[i] * along[i] * directions.eigenvalues()[i];
+    } else {
+      along[i] = 0.0;
+      variances[i] = 1.0 / prior_information;
+    }
   }
+  constexpr double kSignificant = 2.0;  // sigmas, root mean square; noise alone makes one
+  if (squared_sigmas < kSignificant * kSignificant * determined) along.setZero();
   RefinedCalibration result;
   result.change = directions.eigenvectors() * along;
   result.sigma_before.setConstant(prior_sigmas);

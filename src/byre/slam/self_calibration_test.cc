@@ -140,14 +140,25 @@ TEST(SelfCalibration, FindsTheErrorOfAGoodCalibration) {
 
 TEST(SelfCalibration, TakesNoNoiseForALongerFocalLength) {
   const Calibration given = scene_calibration();
+  CalibrationVector error = draw_error(4);
+  error[kLeftCamera] = error[kRightCamera] = 0.0;
   constexpr float kSigma = 0.15f;  // pixels
-  const MapOfErringCamera map(given, CalibrationVector::Zero(), about_the_room, 150, kSigma);
+  const MapOfErringCamera map(given, error, about_the_room, 150, kSigma);
   const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
   ASSERT_TRUE(found);
   for (const int focal : {kLeftCamera, kRightCamera}) {
     EXPECT_LT(found->sigma_after[focal], 0.5 * found->sigma_before[focal]);
     EXPECT_LT(std::abs(found->change[focal]), 2.0 * found->sigma_after[focal]);
   }
+}
+
+TEST(SelfCalibration, LeavesACalibrationThatExplainsWhatWasSeenAsItWasGiven) {
+  const Calibration given = scene_calibration();
+  const MapOfErringCamera map(given, CalibrationVector::Zero(), about_the_room, 40);
+  const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->change.isZero(0.0));
+  EXPECT_EQ(found->shift, 0.0);
 }
 
 TEST(SelfCalibration, GoesOnFromWhatIsKnownAsFromTheStart) {
