@@ -15,13 +15,6 @@ endif()
 target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src)
 
-# The sanitizer of undefined behaviour doubles the time of compilation, and is there for the code that is tested. To be
-# named after byre_flags.
-add_library(byre_test_flags INTERFACE)
-if(BYRE_SANITIZE MATCHES undefined)
-  target_compile_options(byre_test_flags INTERFACE -fno-sanitize=undefined)
-endif()
-
 # Every room's test program, so that the unit tests can be built without the programs and examples.
 if(BYRE_BUILD_TESTS)
   add_custom_target(byre_unit_tests)
@@ -52,7 +45,7 @@ function(byre_add_room room)
     foreach(below IN LISTS rooms_below)
       target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${below}>)
     endforeach()
-    target_link_libraries(byre_${room}_tests PRIVATE byre_flags byre_test_flags ${BYRE_ROOM_LIBRARIES} GTest::gmock_main)
+    target_link_libraries(byre_${room}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} GTest::gmock_main)
     target_compile_definitions(byre_${room}_tests PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     byre_precompile(test byre_${room}_tests)
     add_dependencies(byre_unit_tests byre_${room}_tests)

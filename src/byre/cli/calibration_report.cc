@@ -44,6 +44,11 @@ std::string left_as_given(const std::vector<Row>& rows) {
 
 std::string describe_calibration(const RefinedCalibration& refined) {
   if (refined.keyframes == 0) return "as given, but for the length of the baseline";
+  if (refined.was_refused()) {
+    return formatted("as given, though what %d keyframes saw is off it by %.2f px on the whole", refined.keyframes,
+                     refined.shift);
+  }
+  if (refined.change.isZero(0.0)) return formatted("as given, which explains what %d keyframes saw", refined.keyframes);
   const std::string open = left_as_given(rows_of(refined));
   return formatted("refined from %d keyframes, by %.2f px on the whole", refined.keyframes, refined.shift) +
          (open.empty() ? "" : "; left as given: " + open);
@@ -66,6 +71,13 @@ std::string calibration_table(const RefinedCalibration& refined) {
 
 std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined) {
   if (!refined || refined->shift < kFarOffPixels) return std::nullopt;
+  if (refined->was_refused()) {
+    return formatted(
+        "the calibration given is off by %.2f px on the whole, too far to be mended: it is used as it is; calibrate "
+        "the "
+        "cameras anew",
+        refined->shift);
+  }
   return formatted(
       "the calibration given is off by %.2f px on the whole: calibrate the cameras anew, or go on with what "
       "byre calibrate writes",
@@ -85,6 +97,7 @@ nlohmann::ordered_json calibration_json(const RefinedCalibration& refined) {
   return {{"keyframes", refined.keyframes},
           {"observations", refined.observations},
           {"shift_px", refined.shift},
+          {"refused", refined.was_refused()},
           {"parameters", parameters}};
 }
 

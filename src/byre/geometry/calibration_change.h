@@ -43,7 +43,11 @@ struct RefinedCalibration {
   CalibrationVector sigma_after = CalibrationVector::Zero();
   int keyframes = 0;     // that were looked at
   int observations = 0;  // of points, by those
-  double shift = 0.0;    // pixels, root mean square by which the change moves what is seen, disparity too, turns apart
+  // Pixels, root mean square by which the change moves what is seen, disparity too, turns apart. Where there is no
+  // change, of the one that was refused, as too large for an error of a calibration.
+  double shift = 0.0;
+
+  bool was_refused() const { return shift > 0.0 && change.isZero(0.0); }
 };
 
 }  // namespace byre

@@ -27,8 +27,10 @@ class Calibrator {
 
   // Whether a map of so many keyframes has grown enough since the last time for another look.
   bool is_due(int keyframes) const { return keyframes >= (last_keyframes_ ? 2 * *last_keyframes_ : 20); }
-  // The same at the end, when there is no other time.
-  bool is_worth_a_last_look(int keyframes) const { return !last_keyframes_ || 4 * keyframes >= 5 * *last_keyframes_; }
+  // The same at the end, when there is no other time. A look that the end cut short has no result.
+  bool is_worth_a_last_look(int keyframes) const {
+    return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;
+  }
   void note_attempt(int keyframes) { last_keyframes_ = keyframes; }
 
   // From now on that is the present calibration, and from_given how features of the one given change.

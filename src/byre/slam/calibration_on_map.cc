@@ -116,6 +116,7 @@ RefinedCalibration CalibrationOnMap::estimate() const {
       information_ + CalibrationMatrix::Identity() / (options_.prior_sigmas * options_.prior_sigmas);
   RefinedCalibration result = determined_calibration(given_, posterior, posterior.ldlt().solve(right_side_),
                                                      options_.prior_sigmas, options_.min_gain);
+  refuse_implausible(result, given_, options_.prior_sigmas);
   result.keyframes = frames_;
   result.observations = observations_;
   return result;

@@ -230,6 +230,7 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);
+  refuse_implausible(result, state.given, options.prior_sigmas);
   return result;
 }
 

@@ -161,6 +161,21 @@ TEST(SelfCalibration, LeavesACalibrationThatExplainsWhatWasSeenAsItWasGiven) {
   EXPECT_EQ(found->shift, 0.0);
 }
 
+TEST(SelfCalibration, RefusesWhatNoCalibrationErrsBy) {
+  const Calibration given = scene_calibration();
+  CalibrationVector error = draw_error(2, 3.0);
+  const MapOfErringCamera worn(given, error, about_the_room, 40);
+  const auto believed = self_calibrate(worn.window(), {given, CalibrationVector::Zero()}, 0, {});
+  ASSERT_TRUE(believed);
+  EXPECT_FALSE(believed->was_refused());
+  error[kRightRotation + 2] = 60.0;  // 0.6 degrees about the optical axis
+  const MapOfErringCamera knocked(given, error, about_the_room, 40);
+  const auto refused = self_calibrate(knocked.window(), {given, CalibrationVector::Zero()}, 0, {});
+  ASSERT_TRUE(refused);
+  EXPECT_TRUE(refused->was_refused());
+  EXPECT_GT(refused->shift, 0.5) << "pixels: it is told how far off";
+}
+
 TEST(SelfCalibration, GoesOnFromWhatIsKnownAsFromTheStart) {
   const Calibration given = scene_calibration();
   const CalibrationVector error = draw_error(4);
