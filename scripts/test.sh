@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
 # benchmark runs), checks the formatting, then runs the library's unit tests under the address and undefined-behaviour
-# sanitizers and those of the threads under the thread sanitizer, and fuzzes the reading of map files. Says which tests
-# were skipped for lack of their recordings.
-# Usage: test.sh [--quick]        --quick leaves sanitizers and fuzzing out
+# sanitizers, and fuzzes the reading of map files. Says which tests were skipped for lack of their recordings.
+# Usage: test.sh [--quick|--races]   --quick leaves sanitizers and fuzzing out; --races adds the thread sanitizer, to be
+#                                    used after a change to what runs beside the frame thread
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 quick=false
+races=false
 case ${1:-} in
   "") ;;
   --quick) quick=true ;;
-  *) echo "usage: test.sh [--quick]" >&2; exit 2 ;;
+  --races) races=true ;;
+  *) echo "usage: test.sh [--quick|--races]" >&2; exit 2 ;;
 esac
 
 passed=0
@@ -68,9 +70,11 @@ if ! $quick; then
   scripts/build.sh dev byre_unit_tests
   run_tests dev
 
-  headline "Thread sanitizer: tests of the session"
-  scripts/build.sh tsan byre_session_tests
-  run_tests tsan
+  if $races; then
+    headline "Thread sanitizer: tests of the session"
+    scripts/build.sh tsan byre_session_tests
+    run_tests tsan
+  fi
 
   headline "Fuzzing: map files, for 20 s"
   if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then
