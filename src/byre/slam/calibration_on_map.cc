@@ -102,7 +102,8 @@ void CalibrationOnMap::add_rows(const Features& features, const CalibrationVecto
   for (std::size_t i = static_cast<std::size_t>(frames_) % stride; i < features.keypoints().size(); i += stride) {
     const Keypoint& keypoint = features.keypoints()[i];
     if (!keypoint.has_disparity()) continue;
-    const auto row = sensitivity_.at({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}).row(3);
+    const Eigen::Matrix<double, 1, kCalibrationParameters> row =
+        sensitivity_.at({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}).row(3);
     const double sigma = std::hypot(static_cast<double>(keypoint.disparity_sigma), kSystematicSigma);
     const double residual = keypoint.row_offset / sigma;
     const double weight = options_.independence * huber_weight(residual * residual, kHuberWidth) / (sigma * sigma);
