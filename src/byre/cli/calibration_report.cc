@@ -74,8 +74,7 @@ std::optional<std::string> calibration_warning(const std::optional<RefinedCalibr
   if (refined->was_refused()) {
     return formatted(
         "the calibration given is off by %.2f px on the whole, too far to be mended: it is used as it is; calibrate "
-        "the "
-        "cameras anew",
+        "the cameras anew",
         refined->shift);
   }
   return formatted(

@@ -47,7 +47,7 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
 
 std::vector<PointId> Mission::due_again() const {
   std::vector<PointId> due;
-  if (view_ != OfflineView::held || frames_ % options_.look_again_every != 0) return due;
+  if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % options_.look_again_every != 0) return due;
   std::ranges::copy_if(local_points_, std::back_inserter(due),
                        [this](PointId id) { return suspension_.is_suspended(id); });
   return due;

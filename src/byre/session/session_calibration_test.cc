@@ -3,7 +3,7 @@
 
 #include "byre/geometry/alignment.h"
 #include "byre/session/session.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/slam/place_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,14 +47,7 @@ SimulatedMission visit(std::uint64_t noise_seed) {
 }
 
 const Vocabulary& vocabulary() {
-  static const Vocabulary trained = [] {
-    const SimulatedMission mission = visit(1);
-    std::vector<std::vector<Descriptor>> images;
-    for (std::size_t i = 0; i < mission.frames.size(); i += 4) {
-      images.push_back(mission.frames[i].features->descriptors());
-    }
-    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
-  }();
+  static const Vocabulary trained = vocabulary_of(visit(1));
   return trained;
 }
 

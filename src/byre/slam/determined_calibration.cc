@@ -31,12 +31,11 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   return result;
 }
 
-bool refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas) {
+void refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas) {
   constexpr double kImplausible = 5.0;  // sigmas of the prior
-  if (refined.change.cwiseAbs().maxCoeff() <= kImplausible * prior_sigmas) return false;
+  if (refined.change.cwiseAbs().maxCoeff() <= kImplausible * prior_sigmas) return;
   refined.change.setZero();
   refined.calibration = given;
-  return true;
 }
 
 }  // namespace byre

@@ -12,7 +12,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
                                           const CalibrationVector& expected, double prior_sigmas, double min_gain);
 
 // Takes back a change that is larger in any parameter than calibrations err, five times the prior: what was seen does
-// not fit the model, and where a prior gives way so far, the rest of the change is made up. Returns whether it did.
-bool refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas);
+// not fit the model, and where a prior gives way so far, the rest of the change is made up.
+void refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas);
 
 }  // namespace byre

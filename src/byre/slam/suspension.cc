@@ -40,6 +40,7 @@ double share_around(const std::vector<JudgedPoint>& judged, std::size_t point, s
 
 std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed, std::span<const PointId> moved,
                                     const SuspensionOptions& options) {
+  if (moved.empty()) return {};  // as in most frames
   const std::vector<JudgedPoint> judged = judged_points(offline, agreed, moved);
   std::vector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
