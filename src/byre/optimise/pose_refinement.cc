@@ -1,10 +1,10 @@
 #include "byre/optimise/pose_refinement.h"
 
+#include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -207,9 +207,7 @@ struct Region {
   int points = 0;
 };
 
-constexpr int kRegionColumns = 4;
-constexpr int kRegionRows = 3;
-using Regions = std::array<Region, static_cast<std::size_t>(kRegionColumns* kRegionRows)>;
+using Regions = ByImageRegion<Region>;
 
 Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, const Pose& camera_from_world,
                        double huber_width) {
@@ -219,10 +217,7 @@ Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, c
     if (!sighting.inlier) continue;
     const Eigen::Vector3d point_in_camera = rotation * sighting.point_in_world + camera_from_world.translation;
     const Eigen::Vector3d error = sighting.measured - rig.project(point_in_camera);
-    const int column =
-        std::clamp(static_cast<int>(kRegionColumns * sighting.measured.x() / rig.width), 0, kRegionColumns - 1);
-    const int row = std::clamp(static_cast<int>(kRegionRows * sighting.measured.y() / rig.height), 0, kRegionRows - 1);
-    Region& region = regions[static_cast<std::size_t>(row * kRegionColumns + column)];
+    Region& region = regions[image_region_of(sighting.measured.x(), sighting.measured.y(), rig)];
     const Eigen::Matrix3d information = huber_weight(sighting.squared_error, huber_width) * sighting.information;
     const Eigen::Matrix3d push = sighting.weight * rig.projection_jacobian(point_in_camera).transpose() * information;
     region.information += information;

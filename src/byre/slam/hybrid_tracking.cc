@@ -1,10 +1,10 @@
 #include "byre/slam/hybrid_tracking.h"
 
+#include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -145,20 +145,16 @@ struct Support {
 };
 
 Support support_of(const Query& query, const PoseRefinement& refined, const MeasuredPoints& measured) {
-  constexpr int kColumns = 4;
-  constexpr int kRows = 3;
   constexpr int kMinMatches = 3;
   struct Part {
     int fit = 0;
     int elsewhere = 0;
   };
-  std::array<Part, static_cast<std::size_t>(kColumns * kRows)> parts;
+  ByImageRegion<Part> parts;
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     const TrackedFeature& feature = measured.features[i];
     if (!refined.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
-    const int column = std::clamp(static_cast<int>(kColumns * feature.pixel.x()) / query.rig.width, 0, kColumns - 1);
-    const int row = std::clamp(static_cast<int>(kRows * feature.pixel.y()) / query.rig.height, 0, kRows - 1);
-    Part& part = parts[static_cast<std::size_t>(row * kColumns + column)];
+    Part& part = parts[image_region_of(feature.pixel.x(), feature.pixel.y(), query.rig)];
     ++(refined.inliers[i] ? part.fit : part.elsewhere);
   }
   Support support;

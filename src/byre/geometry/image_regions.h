@@ -1,0 +1,27 @@
+#pragma once
+
+#include "byre/geometry/rig.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace byre {
+
+// A grid over the image, for what differs from one part of it to another.
+constexpr int kImageRegionColumns = 4;
+constexpr int kImageRegionRows = 3;
+constexpr int kImageRegions = kImageRegionColumns * kImageRegionRows;
+
+// A value for each region, row after row.
+template <typename Value>
+using ByImageRegion = std::array<Value, static_cast<std::size_t>(kImageRegions)>;
+
+// The region of a pixel of the rig's image; outside the image the nearest one.
+inline std::size_t image_region_of(double u, double v, const Rig& rig) {
+  const int column = std::clamp(static_cast<int>(kImageRegionColumns * u / rig.width), 0, kImageRegionColumns - 1);
+  const int row = std::clamp(static_cast<int>(kImageRegionRows * v / rig.height), 0, kImageRegionRows - 1);
+  return static_cast<std::size_t>(row * kImageRegionColumns + column);
+}
+
+}  // namespace byre
