@@ -27,7 +27,8 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
     : options_(options),
       rig_(rig),
       executor_(std::move(lanes.local)),
-      global_(offline ? make_inline_executor() : std::move(lanes.global), options.global) {
+      global_(offline ? make_inline_executor() : std::move(lanes.global), options.global),
+      hindsight_(options.hindsight) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
   if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
@@ -100,6 +101,7 @@ FrameReport Session::process(const Frame& rectified) {
     lose_pose(image_fault(frame), report);
   }
   conclude(frame, located, report);
+  if (const auto settled = hindsight_.take_settled()) settle(*settled);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
   if (finished) report.job_seconds = finished->seconds;
@@ -165,6 +167,7 @@ bool Session::take_over_calibration() {
 
 // The rectified camera turns, as it is made of the real ones in another way.
 void Session::recalibrate(const RefinedCalibration& refined) {
+  settle_all();
   const int rig = online_.add_rig(rig_);
   const RectifiedChange change = calibrator_->take_over(refined);
   const Pose& turn = change.after_from_before();
@@ -188,6 +191,7 @@ void Session::recalibrate(const RefinedCalibration& refined) {
 bool Session::switch_camera() {
   const auto change = mission_calibrator_ ? mission_calibrator_->collect() : std::nullopt;
   if (!change) return false;
+  settle_all();
   rig_ = change->rig;
   for (AnchoredPose& pose : anchored_)
     pose.camera_from_keyframe = change->after_from_before * pose.camera_from_keyframe;
@@ -293,6 +297,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
   pending_.push_back(id);
   anchored_.back().keyframe = id;
   anchored_.back().camera_from_keyframe = Pose{};
+  hindsight_.forget_from(anchored_.size() - 1);
   start_job();
 }
 
@@ -304,9 +309,10 @@ void Session::finish() {
     global_.finish();
     take_over_correction();
     correct_online();
-    if (pending_.empty()) return;
+    if (pending_.empty()) break;
     start_job();
   }
+  settle_all();
 }
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {

@@ -13,6 +13,7 @@
 #include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/health.h"
+#include "byre/slam/hindsight.h"
 #include "byre/slam/initialisation.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
@@ -46,6 +47,7 @@ struct SessionOptions {
   HealthOptions health;
   ImageConditionOptions image;
   StateOptions state;
+  HindsightOptions hindsight;
   bool map_online = true;          // false: track on the offline map alone
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
 };
@@ -199,6 +201,8 @@ class Session {
   bool is_still_confirming(const HybridTrack& track);
   void look_for_proof(const HybridTrack& track);
   void lose_pose(ImageFault fault, FrameReport& report);
+  void settle(const RememberedFrame& seen);
+  void settle_all();
   bool may_map(const Frame& frame, const HybridTrack& track) const;
   void search_beside(const Frame& frame);
   void add_keyframe(const Frame& frame, const HybridTrack& track);
@@ -265,6 +269,7 @@ class Session {
   std::optional<KeyframeId> reference_;  // of the last frame
   std::vector<KeyframeId> pending_;      // keyframes mapping has not worked on
   std::vector<AnchoredPose> anchored_;   // one per frame with a pose
+  Hindsight hindsight_;                  // numbers are indices into those
   Vector6 velocity_ = Vector6::Zero();   // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
 };
 

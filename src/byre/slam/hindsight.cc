@@ -1,0 +1,76 @@
+#include "byre/slam/hindsight.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace byre {
+namespace {
+
+RememberedPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
+  return {seen.point, {seen.pixel.x(), seen.pixel.y(), keypoint.disparity}, seen.pixel_sigma, keypoint.disparity_sigma};
+}
+
+PoseObservation observation_of(const RememberedPoint& seen, const MapPoint& point, double offline_weight) {
+  PoseObservation observation;
+  observation.point_in_world = point.position_in_world;
+  observation.point_covariance = point.covariance;
+  observation.measured = seen.measured.cast<double>();
+  observation.pixel_sigma = seen.pixel_sigma;
+  observation.disparity_sigma = seen.disparity_sigma;
+  if (seen.point.origin == Origin::offline) observation.weight = offline_weight;
+  return observation;
+}
+
+}  // namespace
+
+// Features are sorted by where they lie in the image, so that every n-th are from all over it.
+void Hindsight::note(std::size_t number, const Features& features, const TrackedFrame& tracked) {
+  const auto offline = std::ranges::count(tracked.features, Origin::offline,
+                                          [](const TrackedFeature& seen) { return seen.point.origin; });
+  if (2 * static_cast<std::size_t>(offline) > tracked.features.size()) return;
+  RememberedFrame frame;
+  frame.number = number;
+  const std::size_t count = std::min(options_.points, tracked.features.size());
+  frame.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const TrackedFeature& seen = tracked.features[i * tracked.features.size() / count];
+    frame.points.push_back(remember(seen, features.keypoint(seen.feature)));
+  }
+  frames_.push_back(std::move(frame));
+}
+
+void Hindsight::forget_from(std::size_t number) {
+  while (!frames_.empty() && frames_.back().number >= number) frames_.pop_back();
+}
+
+std::optional<RememberedFrame> Hindsight::take_settled() {
+  return frames_.size() > options_.frames ? take_oldest() : std::nullopt;
+}
+
+std::optional<RememberedFrame> Hindsight::take_oldest() {
+  if (frames_.empty()) return std::nullopt;
+  RememberedFrame oldest = std::move(frames_.front());
+  frames_.pop_front();
+  return oldest;
+}
+
+std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const Rig& rig,
+                                      const MapView& map, const TrackOptions& tracking,
+                                      const HindsightOptions& options) {
+  std::vector<PoseObservation> observations;
+  observations.reserve(frame.points.size());
+  for (const RememberedPoint& seen : frame.points) {
+    if (const MapPoint* const point = map.find_point(seen.point)) {
+      observations.push_back(observation_of(seen, *point, tracking.offline_weight));
+    }
+  }
+  const double needed = options.min_share * static_cast<double>(observations.size());
+  PoseRefinementOptions refinement = tracking.refinement;
+  refinement.rounds = 2;  // from where it is nearly right
+  const auto refined = refine_pose(camera_from_world, rig, observations, refinement);
+  if (!refined || refined->inlier_count < std::max(needed, static_cast<double>(tracking.min_inliers)))
+    return std::nullopt;
+  return refined->camera_from_world;
+}
+
+}  // namespace byre

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "byre/slam/tracking.h"
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct HindsightOptions {
+  std::size_t frames = 60;   // after which mapping has settled what a frame saw
+  std::size_t points = 300;  // of a frame that are kept, from all over the image
+  double min_share = 0.7;    // of those still in the map that must agree on the pose
+};
+
+// A point and where a frame saw it.
+struct RememberedPoint {
+  PointId point;
+  Eigen::Vector3f measured;  // u, v, disparity; pixels
+  float pixel_sigma = 1.0f;
+  float disparity_sigma = -1.0f;  // negative: no disparity
+};
+
+struct RememberedFrame {
+  std::size_t number = 0;  // the caller's
+  std::vector<RememberedPoint> points;
+};
+
+// What the newest frames saw, kept until mapping has settled it. A frame is tracked on points that were seen a few
+// times only; some seconds later they are known much better, and so is where the frame was taken from.
+class Hindsight {
+ public:
+  explicit Hindsight(const HindsightOptions& options) : options_(options) {}
+
+  // A frame of a higher number than any before. Its features that agreed with the pose are kept.
+  void note(std::size_t number, const Features& features, const TrackedFrame& tracked);
+  // Frames from this number on are not to be looked at again.
+  void forget_from(std::size_t number);
+
+  std::optional<RememberedFrame> take_settled();  // the oldest, once as many wait as options say
+  std::optional<RememberedFrame> take_oldest();
+
+ private:
+  HindsightOptions options_;
+  std::deque<RememberedFrame> frames_;
+};
+
+// Where the frame was taken from, as the map has its points by now. Empty when too few are left or agree.
+std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const Rig& rig,
+                                      const MapView& map, const TrackOptions& tracking,
+                                      const HindsightOptions& options);
+
+}  // namespace byre

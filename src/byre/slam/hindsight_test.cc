@@ -1,0 +1,104 @@
+#include "byre/slam/hindsight.h"
+
+#include "byre/slam/mission_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+// An online map, the first frame of its mission, and what that saw of the map.
+class SeenInHindsight : public testing::Test {
+ protected:
+  const SimulatedMission mission_ = quarter_circle(without_noise());
+  Map map_ = true_map(mission_, 2, Origin::online);
+  const Pose true_pose_ = true_camera_from_world(mission_, 0);
+
+  const Features& features() const { return *mission_.frames[0].features; }
+  std::vector<PointId> seen_points() const {
+    std::vector<PointId> points;
+    for (const Sighting& sighting : map_.find_keyframe(map_.keyframe_ids().front())->sightings) {
+      if (sighting.point) points.push_back(*sighting.point);
+    }
+    return points;
+  }
+  TrackedFrame tracked() const {
+    TrackedFrame result;
+    const Keyframe& keyframe = *map_.find_keyframe(map_.keyframe_ids().front());
+    for (int i = 0; i < std::ssize(keyframe.sightings); ++i) {
+      const Sighting& sighting = keyframe.sightings[static_cast<std::size_t>(i)];
+      if (sighting.point) result.features.push_back({i, *sighting.point, sighting.pixel, sighting.pixel_sigma});
+    }
+    return result;
+  }
+  RememberedFrame remembered(const HindsightOptions& options) const {
+    Hindsight hindsight(options);
+    hindsight.note(0, features(), tracked());
+    return hindsight.take_oldest().value();
+  }
+  std::optional<Pose> pose_of(const RememberedFrame& frame) const {
+    Vector6 off;
+    off << 0.02, -0.01, 0.015, 0.002, 0.001, -0.002;  // as tracked on points that were not known well yet
+    return pose_in_hindsight(frame, exp_pose(off) * true_pose_, mission_.rig, MapView(nullptr, map_), {}, {});
+  }
+};
+
+TEST_F(SeenInHindsight, AFrameLiesWhereTheSettledMapHasIt) {
+  const auto pose = pose_of(remembered({}));
+  ASSERT_TRUE(pose);
+  EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
+}
+
+TEST_F(SeenInHindsight, PointsThatAreGoneCountForNothing) {
+  const RememberedFrame frame = remembered({});
+  const std::vector<PointId> points = seen_points();
+  for (std::size_t i = 0; i < points.size(); i += 2) map_.remove_point(points[i]);
+  const auto pose = pose_of(frame);
+  ASSERT_TRUE(pose);
+  EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
+}
+
+TEST_F(SeenInHindsight, SaysNothingWhereTooFewAreLeftOrAgree) {
+  const RememberedFrame frame = remembered({});
+  RememberedFrame contradicting = frame;
+  for (std::size_t i = 0; i < contradicting.points.size(); i += 2) contradicting.points[i].measured.x() += 30.0f;
+  EXPECT_FALSE(pose_of(contradicting));
+  for (const PointId point : seen_points()) map_.remove_point(point);
+  EXPECT_FALSE(pose_of(frame));
+}
+
+TEST_F(SeenInHindsight, KeepsNoMorePointsThanAskedForAndThoseFromAllOverTheImage) {
+  HindsightOptions options;
+  options.points = 40;
+  const RememberedFrame frame = remembered(options);
+  ASSERT_EQ(frame.points.size(), 40u);
+  const auto [left, right] =
+      std::ranges::minmax(frame.points, {}, [](const RememberedPoint& seen) { return seen.measured.x(); });
+  EXPECT_LT(left.measured.x(), 0.2f * static_cast<float>(mission_.rig.width));
+  EXPECT_GT(right.measured.x(), 0.8f * static_cast<float>(mission_.rig.width));
+}
+
+TEST_F(SeenInHindsight, AFrameIsDueWhenAsManyHaveFollowed) {
+  HindsightOptions options;
+  options.frames = 2;
+  Hindsight hindsight(options);
+  for (const std::size_t number : {3u, 4u}) hindsight.note(number, features(), tracked());
+  EXPECT_FALSE(hindsight.take_settled());
+  hindsight.note(5, features(), tracked());
+  EXPECT_EQ(hindsight.take_settled().value().number, 3u);
+  hindsight.forget_from(5);
+  EXPECT_EQ(hindsight.take_oldest().value().number, 4u);
+  EXPECT_FALSE(hindsight.take_oldest());
+}
+
+// Offline points lie where they lay: there is nothing to be learnt.
+TEST_F(SeenInHindsight, AFrameThatOfflinePointsHoldIsNotKept) {
+  TrackedFrame held = tracked();
+  for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;
+  Hindsight hindsight({});
+  hindsight.note(0, features(), held);
+  EXPECT_FALSE(hindsight.take_oldest());
+}
+
+}  // namespace
+}  // namespace byre
