@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -238,6 +239,82 @@ Degradation dirt(int spots) {
   return [spots](const ImageFrame& images, int) {
     return change_each(images,
                        [&](const Image& image, int camera) { return dirtied(image, spots, seed_of(3, camera)); });
+  };
+}
+
+namespace {
+
+// What cv::flip makes of an image: about the axis of this code.
+Image flipped(const Image& image, int code) {
+  cv::Mat result;
+  cv::flip(as_matrix(image), result, code);
+  return to_image(result);
+}
+
+// Changes the right image alone.
+template <typename Change>
+ImageFrame change_right(const ImageFrame& images, Change change) {
+  ImageFrame changed = images;
+  if (images.right) changed.right = change(*images.right);
+  return changed;
+}
+
+}  // namespace
+
+Degradation frozen() {
+  const auto shown = std::make_shared<std::optional<ImageFrame>>();
+  return [shown](const ImageFrame& images, int step) {
+    if (step == 0) *shown = images;
+    return ImageFrame{images.time, (*shown)->left, (*shown)->right};
+  };
+}
+
+Degradation right_exposed(double times) {
+  return [times](const ImageFrame& images, int step) {
+    return change_right(images, [&](const Image& right) {
+      return times > 0.0 ? exposed(right, times) : without_light(right, seed_of(step, 1));
+    });
+  };
+}
+
+Degradation right_noisy(double sigma) {
+  return [sigma](const ImageFrame& images, int step) {
+    return change_right(images, [&](const Image& right) {
+      cv::Mat grey;
+      as_matrix(right).convertTo(grey, CV_32F);
+      return to_image(grey + white_noise(grey.size(), sigma, seed_of(step, 1)));
+    });
+  };
+}
+
+Degradation right_late(int steps) {
+  const auto waiting = std::make_shared<std::deque<Image>>();
+  return [steps, waiting](const ImageFrame& images, int) {
+    return change_right(images, [&](const Image& right) {
+      waiting->push_back(right);
+      if (std::cmp_greater(waiting->size(), steps + 1)) waiting->pop_front();
+      return waiting->front();
+    });
+  };
+}
+
+Degradation swapped() {
+  return [](const ImageFrame& images, int) {
+    ImageFrame changed = images;
+    if (images.right) std::swap(changed.left, *changed.right);
+    return changed;
+  };
+}
+
+Degradation mirrored() {
+  return [](const ImageFrame& images, int) {
+    return change_each(images, [](const Image& image, int) { return flipped(image, 1); });
+  };
+}
+
+Degradation upside_down() {
+  return [](const ImageFrame& images, int) {
+    return change_each(images, [](const Image& image, int) { return flipped(image, 0); });
   };
 }
 

@@ -47,4 +47,13 @@ Degradation haze(double transmission);
 Degradation dirt(int spots);  // other ones on each lens
 Degradation contrast_loss(double share);
 
+// Cameras that lie. Those that remember images are for one run, step by step.
+Degradation frozen();                     // on the image of step 0
+Degradation right_exposed(double times);  // 0: dead
+Degradation right_noisy(double sigma);    // grey values
+Degradation right_late(int steps);        // the right image is that of so many steps before
+Degradation swapped();                    // left for right
+Degradation mirrored();                   // left to right
+Degradation upside_down();
+
 }  // namespace byre

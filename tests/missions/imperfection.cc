@@ -49,8 +49,15 @@ std::string name_of(const Imperfection& imperfection) {
 }
 
 Calibration told_calibration(const Calibration& calibration, const Imperfection& imperfection) {
-  return perturbed(calibration, imperfection_of(imperfection.condition).calibration_level,
-                   imperfection.calibration_seed);
+  Calibration told =
+      perturbed(calibration, imperfection_of(imperfection.condition).calibration_level, imperfection.calibration_seed);
+  const auto stretch = [&](Camera& camera) {
+    camera.fx *= imperfection.focal_factor;
+    camera.fy *= imperfection.focal_factor;
+  };
+  stretch(told.left);
+  if (told.right) stretch(told.right->camera);
+  return told;
 }
 
 Degradation imperfect_cameras(const Imperfection& imperfection) {

@@ -47,7 +47,8 @@ MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfectio
   Imperfection& of_map = mission_case.map.recipe.imperfection;
   const std::uint64_t apart = mission_case.imperfection.calibration_seed - of_map.calibration_seed;
   of_map = imperfection;
-  mission_case.imperfection = {imperfection.condition, imperfection.calibration_seed + apart};
+  mission_case.imperfection.condition = imperfection.condition;
+  mission_case.imperfection.calibration_seed = imperfection.calibration_seed + apart;
   return mission_case;
 }
 
@@ -72,6 +73,9 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
   flown.frames = run(plan, *recording, mission_case.imperfection, truth_of(mission_case.recording), known.map);
   if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
   flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
+  if (const auto doubt = mission_case.demand.doubt) {
+    flown.score.time_to_doubt = time_to_doubt(flown.frames, *doubt, plan.disturbed_from());
+  }
   return flown;
 }
 
@@ -83,6 +87,14 @@ std::vector<std::string> broken_demands(const MissionCase& mission_case, const M
   if (score.longest_wrong_trust > kMaxWrongTrust) {
     broken.push_back(formatted("poses off by more than 0.2 m are trusted for %.2f s", score.longest_wrong_trust) +
                      formatted(", the worst is off by %.2f m", score.worst_trusted_error));
+  }
+  if (mission_case.demand.is_never_wrong && score.wrongly_trusted > 0) {
+    broken.push_back(formatted("%.0f frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
+                     formatted(", the worst by %.2f m", score.worst_trusted_error));
+  }
+  if (mission_case.demand.doubt && score.time_to_doubt.value_or(1e9) > kMaxTimeToDoubt) {
+    broken.push_back("\"" + std::string(to_string(*mission_case.demand.doubt)) + "\" is told " +
+                     (score.time_to_doubt ? formatted("only after %.2f s", *score.time_to_doubt) : "never"));
   }
   if (mission_case.demand.recovers && !score.recovery) broken.emplace_back("is never trusted again");
   if (mission_case.demand.recovers && score.recovery.value_or(0.0) > kMaxRecovery) {

@@ -23,6 +23,8 @@ struct MapChoice {
 struct Demand {
   bool recovers = true;            // trusted again soon after the disturbance
   double min_trusted_share = 0.0;  // of all frames
+  bool is_never_wrong = false;     // no frame is trusted that is off by more than kMaxTrustedError
+  std::optional<Doubt> doubt{};    // is told within kMaxTimeToDoubt of when the disturbance begins
 };
 
 // A mission that tries the session's health.
@@ -37,8 +39,9 @@ struct MissionCase {
   Imperfection imperfection{};                 // of the mission's camera
 };
 
-inline constexpr double kMaxWrongTrust = 0.5;  // seconds
-inline constexpr double kMaxRecovery = 2.0;    // seconds
+inline constexpr double kMaxWrongTrust = 0.5;   // seconds
+inline constexpr double kMaxRecovery = 2.0;     // seconds
+inline constexpr double kMaxTimeToDoubt = 0.5;  // seconds
 
 // The same with the cameras of map and mission in this condition, and the map's error of calibration drawn by the seed.
 // Where mission and map had one error they still do.
@@ -46,6 +49,9 @@ MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfectio
 
 std::vector<MissionCase> real_mission_cases();
 std::vector<MissionCase> twin_mission_cases();
+
+// What cameras may say that is not so, in the hall and in the rendered room.
+std::vector<MissionCase> lying_mission_cases();
 
 // The first recording that the case needs and that is not there.
 std::optional<RecordingName> missing_recording(const MissionCase& mission_case);

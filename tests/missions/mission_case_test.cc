@@ -25,11 +25,12 @@ std::string name_of_case(const testing::TestParamInfo<MissionCase>& info) {
 
 TEST_P(MissionHealth, IsHonestAndRecovers) {
   const FlownMission flown = fly(GetParam(), maps());
-  EXPECT_GT(flown.score.frames, 79);
+  EXPECT_GE(flown.score.frames, 25);
   EXPECT_THAT(broken_demands(GetParam(), flown.score), testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, MissionHealth, testing::ValuesIn(real_mission_cases()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Lies, MissionHealth, testing::ValuesIn(lying_mission_cases()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Twin, MissionHealth, testing::ValuesIn(twin_mission_cases()), name_of_case);
 
 }  // namespace

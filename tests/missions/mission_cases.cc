@@ -198,4 +198,67 @@ std::vector<MissionCase> twin_mission_cases() {
   return cases;
 }
 
+namespace {
+
+// What is done to a mission, and what it is to say of that.
+struct Lie {
+  const char* name;
+  Plan plan;
+  std::optional<Doubt> doubt;
+  double focal_factor = 1.0;
+};
+
+Plan stuttering(int times_each) {
+  return [=](const std::vector<Timestamp>& times) { return repeated(times, times_each); };
+}
+
+Plan dropping(int kept_every) {
+  return [=](const std::vector<Timestamp>& times) { return dropped(times, kept_every); };
+}
+
+Plan clock_jumping(const Span& span, double jump_seconds) {
+  return [=](const std::vector<Timestamp>& times) { return late(times, span, jump_seconds); };
+}
+
+// Frozen for two seconds only, as what follows is to be found again.
+std::vector<Lie> lies() {
+  const auto always = [](const Degradation& degradation) { return degrade_all(degradation); };
+  return {{"frozen", degrade({1.5, 3.5}, frozen()), Doubt::frozen},
+          {"right_dead", degrade({1.5, 3.5}, right_exposed(0.0)), Doubt::right_camera},
+          {"right_half_as_bright", always(right_exposed(0.5)), {}},
+          {"right_third_as_bright", always(right_exposed(1.0 / 3.0)), {}},
+          {"right_noisy", degrade({1.5, 3.5}, right_noisy(80.0)), {}},
+          {"right_late", degrade({1.5, 3.5}, right_late(1)), {}},
+          {"swapped", always(swapped()), Doubt::cameras_disagree},
+          {"mirrored", always(mirrored()), {}},
+          {"upside_down", always(upside_down()), Doubt::cameras_disagree},
+          {"frames_twice", stuttering(2), {}},
+          {"frames_dropped", dropping(4), {}},
+          {"clock_jump", clock_jumping({2.0, kToTheEnd}, 5.0), {}},
+          {"focal_5_percent_long", as_recorded, Doubt::calibration, 1.05},
+          {"focal_10_percent_long", as_recorded, Doubt::calibration, 1.1},
+          {"focal_20_percent_long", as_recorded, Doubt::calibration, 1.2},
+          {"focal_10_percent_short", as_recorded, Doubt::calibration, 0.9}};
+}
+
+MissionCase told(MissionCase mission_case, const Lie& lie) {
+  mission_case.name += std::string("_lie_") + lie.name;
+  mission_case.plan = lie.plan;
+  mission_case.imperfection.focal_factor = lie.focal_factor;
+  mission_case.demand = {false, 0.0, true, lie.doubt};
+  return mission_case;
+}
+
+}  // namespace
+
+std::vector<MissionCase> lying_mission_cases() {
+  std::vector<MissionCase> cases;
+  for (const Lie& lie : lies()) {
+    cases.push_back(told(in_hall("", frames(150, 250), as_recorded), lie));
+    cases.push_back(told(in_room("", seconds(25.0, 33.0), as_recorded), lie));
+  }
+  for (MissionCase& lying : cases) lying.name.erase(lying.name.find("__"), 1);
+  return cases;
+}
+
 }  // namespace byre

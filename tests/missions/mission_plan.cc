@@ -25,6 +25,11 @@ std::function<ImageFrame(const ImageFrame&)> at_step(const Degradation& degradat
 
 }  // namespace
 
+Timestamp MissionPlan::disturbed_from() const {
+  const auto first = std::ranges::find_if(steps, [](const MissionStep& step) { return step.disturb != nullptr; });
+  return first != steps.end() ? first->time : steps.front().time;
+}
+
 MissionPlan as_recorded(const std::vector<Timestamp>& times) {
   MissionPlan plan;
   for (std::size_t i = 0; i < times.size(); ++i) plan.steps.push_back({static_cast<int>(i), times[i], {}});
@@ -60,6 +65,29 @@ MissionPlan kidnapped(const std::vector<Timestamp>& times, const Span& before, c
   const Timestamp delay = set_down - times[static_cast<std::size_t>(second.front())];
   for (const int frame : second) plan.steps.push_back({frame, times[static_cast<std::size_t>(frame)] + delay, {}});
   plan.undisturbed_from = set_down;
+  return plan;
+}
+
+MissionPlan repeated(const std::vector<Timestamp>& times, int times_each) {
+  MissionPlan plan = as_recorded(times);
+  for (MissionStep& step : plan.steps) step.frame -= step.frame % times_each;
+  return plan;
+}
+
+MissionPlan dropped(const std::vector<Timestamp>& times, int kept_every) {
+  MissionPlan plan = as_recorded(times);
+  std::erase_if(plan.steps, [&](const MissionStep& step) { return step.frame % kept_every != 0; });
+  return plan;
+}
+
+MissionPlan late(const std::vector<Timestamp>& times, const Span& span, double jump_seconds) {
+  MissionPlan plan = as_recorded(times);
+  Timestamp last = times.front();
+  for (MissionStep& step : plan.steps) {
+    if (contains(span, step.time - times.front())) step.time += from_seconds(jump_seconds);
+    step.time = std::max(step.time, last + Timestamp(1));
+    last = step.time;
+  }
   return plan;
 }
 

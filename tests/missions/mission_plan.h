@@ -22,6 +22,9 @@ struct MissionPlan {
   std::vector<MissionStep> steps;
   // From when on nothing disturbs any more; the first step's where nothing ever does, empty where it does to the end.
   std::optional<Timestamp> undisturbed_from;
+
+  // Of the first step whose images are disturbed; of the first one where none is.
+  Timestamp disturbed_from() const;
 };
 
 // Seconds from the beginning of a recording, end exclusive.
@@ -39,5 +42,14 @@ MissionPlan degraded(const std::vector<Timestamp>& times, const Span& span, cons
 // The robot is carried away after the first span and set down where the second begins; times go on as if nothing had
 // happened. For so many seconds before it is set down the images are black.
 MissionPlan kidnapped(const std::vector<Timestamp>& times, const Span& before, const Span& after, double dark_seconds);
+
+// Each image is given so many times in a row, at the times of those it takes the place of.
+MissionPlan repeated(const std::vector<Timestamp>& times, int times_each);
+
+// One image of so many arrives.
+MissionPlan dropped(const std::vector<Timestamp>& times, int kept_every);
+
+// The clock is put forward when the span begins, and back again, as far as time may, when it ends.
+MissionPlan late(const std::vector<Timestamp>& times, const Span& span, double jump_seconds);
 
 }  // namespace byre

@@ -69,6 +69,10 @@ double worst_trusted(std::span<const MissionFrame> frames, const std::optional<S
   return worst;
 }
 
+bool is_wrongly_trusted(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map) {
+  return is_trusted(frame) && position_error(frame, truth_from_map).value_or(0.0) > kMaxTrustedError;
+}
+
 // A row of wrong frames lasts until the next frame comes that is not wrong.
 double longest_wrong_trust(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map) {
   Timestamp longest{0};
@@ -76,7 +80,7 @@ double longest_wrong_trust(std::span<const MissionFrame> frames, const std::opti
   for (const MissionFrame& frame : frames) {
     const Timestamp now = frame.report.time;
     if (since) longest = std::max(longest, now - *since);
-    const bool is_wrong = is_trusted(frame) && position_error(frame, truth_from_map).value_or(0.0) > kMaxTrustedError;
+    const bool is_wrong = is_wrongly_trusted(frame, truth_from_map);
     if (!is_wrong) since.reset();
     if (is_wrong && !since) since = now;
   }
@@ -91,6 +95,18 @@ std::optional<double> recovery_after(std::span<const MissionFrame> frames, Times
 }
 
 }  // namespace
+
+std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, Doubt doubt, Timestamp from) {
+  const auto told = std::ranges::find_if(frames, [&](const MissionFrame& frame) {
+    return frame.report.time >= from && frame.report.health.doubt == doubt;
+  });
+  if (told == frames.end()) return std::nullopt;
+  const auto posed = std::ranges::find_if(frames, [&](const MissionFrame& frame) {
+    return frame.report.time >= from && frame.report.map_from_body.has_value();
+  });
+  const Timestamp begin = posed == frames.end() ? from : posed->report.time;
+  return std::max(0.0, to_seconds(told->report.time - begin));
+}
 
 std::optional<double> position_error(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map) {
   if (!frame.report.map_from_body) return std::nullopt;
@@ -107,6 +123,8 @@ MissionScore score(std::span<const MissionFrame> frames, const std::optional<Sim
       std::ranges::count_if(frames, [](const MissionFrame& frame) { return frame.report.map_from_body.has_value(); }),
       frames.size());
   score.trusted = share(std::ranges::count_if(frames, is_trusted), frames.size());
+  score.wrongly_trusted = static_cast<int>(std::ranges::count_if(
+      frames, [&](const MissionFrame& frame) { return is_wrongly_trusted(frame, truth_from_map); }));
   score.worst_trusted_error = worst_trusted(frames, truth_from_map);
   score.longest_wrong_trust = longest_wrong_trust(frames, truth_from_map);
   if (undisturbed_from) score.recovery = recovery_after(frames, *undisturbed_from);

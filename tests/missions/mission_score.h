@@ -21,11 +21,13 @@ struct MissionScore {
   int frames = 0;
   double coverage = 0.0;             // share of frames with a pose, whatever their verdict
   double trusted = 0.0;              // share of frames that are trusted
+  int wrongly_trusted = 0;           // frames that are trusted and off by more than kMaxTrustedError
   double worst_trusted_error = 0.0;  // infinite for a trusted pose on the wrong map
   double longest_wrong_trust = 0.0;  // seconds in a row in which poses off by more than kMaxTrustedError were trusted
   std::optional<double> recovery;    // seconds from when nothing disturbs any more to the first trusted pose
   double rmse = 0.0;                 // of all poses whose truth is known
-  double within_bound = 0.0;         // share of errors inside the 95 % bound of the covariance; untrusted poses apart
+  std::optional<double> time_to_doubt;  // see below; where it was asked for
+  double within_bound = 0.0;  // share of errors inside the 95 % bound of the covariance; untrusted poses apart
 };
 
 inline constexpr double kMaxTrustedError = 0.2;  // metres
@@ -34,6 +36,10 @@ inline constexpr double kMaxTrustedError = 0.2;  // metres
 // MissionPlan.
 MissionScore score(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map,
                    const std::optional<Timestamp>& undisturbed_from);
+
+// Seconds until the first frame with this doubt, from then, or from the first pose if that comes later: without a pose
+// nobody steers by one. Empty where none has it.
+std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, Doubt doubt, Timestamp from);
 
 // Of the pose a report gives: empty without pose or truth, infinite on a map of another place.
 std::optional<double> position_error(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map);

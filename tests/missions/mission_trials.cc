@@ -70,6 +70,7 @@ std::optional<TrialOptions> parse(std::span<char*> arguments) {
 std::vector<MissionCase> all_cases() {
   std::vector<MissionCase> cases = real_mission_cases();
   std::ranges::move(twin_mission_cases(), std::back_inserter(cases));
+  std::ranges::move(lying_mission_cases(), std::back_inserter(cases));
   return cases;
 }
 
@@ -112,26 +113,31 @@ void write_trace(const FlownMission& flown, const fs::path& file) {
   if (!out) throw InputError(file.string(), "cannot be written");
 }
 
-std::string recovery_of(const MissionScore& score) {
-  if (!score.recovery) return "never";
+std::string formatted_seconds(double seconds) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f", *score.recovery);
+  std::snprintf(text.data(), text.size(), "%.2f", seconds);
   return text.data();
+}
+
+std::string recovery_of(const MissionScore& score) {
+  return score.recovery ? formatted_seconds(*score.recovery) : "never";
 }
 
 void print_heading() {
   std::printf(
       "| case | recording | map's camera | mission's | frames | coverage %% | trusted %% | worst trusted error m | "
-      "longest wrong trust s | "
-      "recovery s | RMSE mm | within 95 %% bound %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "longest wrong trust s | wrongly trusted | time to doubt s | "
+      "recovery s | RMSE mm | within 95 %% bound %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void print_row(const MissionCase& mission_case, const MissionScore& score) {
-  std::printf("| %s | %s | %s | %s | %d | %.1f | %.1f | %.3f | %.2f | %s | %.1f | %.1f |\n", mission_case.name.c_str(),
-              mission_case.recording.name.c_str(), name_of(mission_case.map.recipe.imperfection).c_str(),
-              name_of(mission_case.imperfection).c_str(), score.frames, 100.0 * score.coverage, 100.0 * score.trusted,
-              score.worst_trusted_error, score.longest_wrong_trust, recovery_of(score).c_str(), 1e3 * score.rmse,
-              100.0 * score.within_bound);
+  std::printf("| %s | %s | %s | %s | %d | %.1f | %.1f | %.3f | %.2f | %d | %s | %s | %.1f | %.1f |\n",
+              mission_case.name.c_str(), mission_case.recording.name.c_str(),
+              name_of(mission_case.map.recipe.imperfection).c_str(), name_of(mission_case.imperfection).c_str(),
+              score.frames, 100.0 * score.coverage, 100.0 * score.trusted, score.worst_trusted_error,
+              score.longest_wrong_trust, score.wrongly_trusted,
+              score.time_to_doubt ? formatted_seconds(*score.time_to_doubt).c_str() : "-", recovery_of(score).c_str(),
+              1e3 * score.rmse, 100.0 * score.within_bound);
   std::fflush(stdout);
 }
 

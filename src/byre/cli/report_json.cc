@@ -35,6 +35,7 @@ Json health_json(const Health& health) {
           {"rotation_sigma_rad", health.rotation_sigma},
           {"distance_since_offline_m", health.distance_since_offline},
           {"seconds_since_offline", health.seconds_since_offline},
+          {"focal_error_percent", 100.0 * health.focal_error},
           {"image", to_json(health.image)}};
 }
 

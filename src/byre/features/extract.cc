@@ -6,10 +6,12 @@
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
+#include "byre/input/byte_stream.h"
 #include "byre/input/input_error.h"
 
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -40,6 +42,24 @@ void require_size(int width, int height, std::size_t pixels, const Camera& camer
 cv::Mat as_matrix(const Image& image, const Camera& camera) {
   require_size(image.width, image.height, image.pixels.size(), camera);
   return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// The right image as the left camera would expose it. Images are compared by their grey values, so that a camera that
+// is much darker than the other would match nothing; small differences are left to what compares.
+cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, const ImageCondition& of_right) {
+  constexpr float kMinContrast = 1.0f;       // grey values: below there is nothing to bring out
+  constexpr float kAlike = 1.25f;            // ratio of contrasts
+  constexpr float kMaxGain = 6.0f;           // beyond, steps between grey values are what would match
+  constexpr float kAlikeBrightness = 25.0f;  // grey values
+  if (of_left.contrast < kMinContrast || of_right.contrast < kMinContrast) return right;
+  const float ratio = of_left.contrast / of_right.contrast;
+  const bool is_alike =
+      ratio < kAlike && ratio > 1.0f / kAlike && std::abs(of_left.brightness - of_right.brightness) < kAlikeBrightness;
+  if (is_alike) return right;
+  const float gain = std::clamp(ratio, 1.0f / kMaxGain, kMaxGain);
+  cv::Mat exposed;
+  right.convertTo(exposed, CV_8U, gain, of_left.brightness - gain * of_right.brightness);
+  return exposed;
 }
 
 // What was measured of each keypoint, where it was.
@@ -187,12 +207,17 @@ Extraction Extractor::extract(const ImageFrame& images) {
   Described described = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
 
-  if (stereo) state_->match_right(right, described.keypoints);
-  if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
   Extraction extraction;
-  extraction.frame.time = images.time;
-  extraction.frame.condition = measure_condition(images.left);
-  extraction.frame.features =
+  Frame& frame = extraction.frame;
+  frame.time = images.time;
+  frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
+  frame.condition = measure_condition(images.left);
+  if (stereo) {
+    frame.right_condition = measure_condition(*images.right);
+    state_->match_right(exposed_as_left(right, *frame.condition, *frame.right_condition), described.keypoints);
+  }
+  if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
+  frame.features =
       std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
                                        std::move(described.descriptors), std::move(described.patches));
   extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),

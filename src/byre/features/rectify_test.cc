@@ -331,6 +331,12 @@ TEST(Rectifier, RefusesCamerasThatLookInOppositeDirections) {
   EXPECT_THROW(Rectifier({pinhole(), StereoPartner{pinhole(), half_turn}, Pose{}}), InputError);
 }
 
+TEST(Rectifier, RefusesABaselineThatMustBeInAnotherUnit) {
+  Pose in_millimetres;
+  in_millimetres.translation.x() = -110.0;
+  EXPECT_THROW(Rectifier({pinhole(), StereoPartner{pinhole(), in_millimetres}, Pose{}}), InputError);
+}
+
 TEST(Rectifier, RefusesCamerasWhoseFieldsDoNotOverlap) {
   // Each sees 65 degrees across; turned apart by 80.
   EXPECT_NE(refusal(pinhole(), right_from_left({0.1, 0.0, 0.0}, {0.0, 1.4, 0.0})), "accepted");

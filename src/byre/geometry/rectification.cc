@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace byre {
 namespace {
@@ -66,6 +67,11 @@ Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
   if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < 0.5) {
     throw InputError("calibration", "the right camera does not lie to the right of the left one",
                      "check the extrinsic calibration; left and right may be swapped");
+  }
+  constexpr double kLongestBaseline = 10.0;  // metres, that any robot carries
+  if (left_from_right.translation.norm() > kLongestBaseline) {
+    throw InputError("calibration", "the baseline is " + std::to_string(left_from_right.translation.norm()) + " m long",
+                     "check the unit of the extrinsic calibration: lengths are in metres");
   }
   const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d z_axis = (mean_axis - mean_axis.dot(x_axis) * x_axis).normalized();

@@ -28,7 +28,9 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       rig_(rig),
       executor_(std::move(lanes.local)),
       global_(offline ? make_inline_executor() : std::move(lanes.global), options.global),
-      hindsight_(options.hindsight) {
+      hindsight_(options.hindsight),
+      input_watch_(options.input),
+      focal_check_(options.focal) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
   if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
@@ -74,6 +76,7 @@ FrameReport Session::process(const Frame& rectified) {
   const auto finished = executor_->collect();
   take_over_results(finished, report);
   const Frame frame = corrected(rectified);
+  input_ = input_watch_.look_at(frame);
   start_job();
   const double seconds_before = mapping_before.seconds();
 
@@ -101,7 +104,7 @@ FrameReport Session::process(const Frame& rectified) {
     lose_pose(image_fault(frame), report);
   }
   conclude(frame, located, report);
-  if (const auto settled = hindsight_.take_settled()) settle(*settled);
+  if (const auto overdue = hindsight_.take_overdue()) settle(*overdue);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
   if (finished) report.job_seconds = finished->seconds;
@@ -167,7 +170,6 @@ bool Session::take_over_calibration() {
 
 // The rectified camera turns, as it is made of the real ones in another way.
 void Session::recalibrate(const RefinedCalibration& refined) {
-  settle_all();
   const int rig = online_.add_rig(rig_);
   const RectifiedChange change = calibrator_->take_over(refined);
   const Pose& turn = change.after_from_before();
@@ -309,10 +311,9 @@ void Session::finish() {
     global_.finish();
     take_over_correction();
     correct_online();
-    if (pending_.empty()) break;
+    if (pending_.empty()) return;
     start_job();
   }
-  settle_all();
 }
 
 FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
@@ -333,6 +334,7 @@ void Session::finish_mission(const FinishOptions& options, const FinishHooks& ho
   if (online_.keyframe_count() == 0) return;
   const MapWindow whole = whole_map(map());
   follow(apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_));
+  settle_all();
 }
 
 Trajectory Session::final_trajectory() const {

@@ -12,9 +12,11 @@
 #include "byre/session/segments.h"
 #include "byre/session/session_event.h"
 #include "byre/slam/finishing.h"
+#include "byre/slam/focal_check.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hindsight.h"
 #include "byre/slam/initialisation.h"
+#include "byre/slam/input_watch.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/loop_closing.h"
@@ -48,6 +50,8 @@ struct SessionOptions {
   ImageConditionOptions image;
   StateOptions state;
   HindsightOptions hindsight;
+  InputWatchOptions input;
+  FocalCheckOptions focal;
   bool map_online = true;          // false: track on the offline map alone
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
 };
@@ -270,7 +274,11 @@ class Session {
   std::vector<KeyframeId> pending_;      // keyframes mapping has not worked on
   std::vector<AnchoredPose> anchored_;   // one per frame with a pose
   Hindsight hindsight_;                  // numbers are indices into those
-  Vector6 velocity_ = Vector6::Zero();   // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
+  InputWatch input_watch_;
+  InputEvidence input_;  // of the last frame
+  FocalCheck focal_check_;
+  bool is_focal_asked_ = false;         // in the present frame
+  Vector6 velocity_ = Vector6::Zero();  // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
 };
 
 }  // namespace byre

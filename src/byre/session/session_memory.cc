@@ -67,7 +67,7 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   if (track.online_reference) online_reference_ = track.online_reference;
   anchored_.push_back({frame.time, reference, track.tracked.camera_from_world * inverse(camera_from_world(reference)),
                        segments_.present()});
-  hindsight_.note(anchored_.size() - 1, *frame.features, track.tracked);
+  if (mission_) hindsight_.note(anchored_.size() - 1, *frame.features, track.tracked);
   last_body_ = body;
   has_pose_ = true;
   if (mission_ && is_registered()) remember_mission(frame, track, step, report);
@@ -251,6 +251,9 @@ Health Session::health_of(const Frame& frame, const Located& located, const Matr
   HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed() && is_pose_proven()};
   evidence.maps_disagree = located.track && located.track->maps_disagree && !located.track->offline_stands;
   evidence.image_fault = image_fault(frame);
+  evidence.input = input_;
+  evidence.is_miscalibrated = focal_check_.is_off();
+  health.focal_error = focal_check_.error();
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
   if (mission_) {

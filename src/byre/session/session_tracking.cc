@@ -54,8 +54,12 @@ Vector6 Session::velocity_to(Timestamp time, const Pose& camera_from_world) cons
 
 Session::Located Session::locate(const Frame& frame) {
   Located located;
+  is_focal_asked_ = mission_ && focal_check_.is_due();
   const bool can_search = mission_ || places_;
   if (!anchored_.empty() && (has_pose_ || !can_search)) located.track = find_pose(frame);
+  if (located.track && located.track->focal) {
+    focal_check_.note(*located.track->focal, static_cast<std::size_t>(located.track->offline_matches));
+  }
   if (located.track && !is_still_confirming(*located.track)) located.track.reset();
   if (!located.track && can_search) {
     located.track = relocalise(frame);
@@ -76,7 +80,9 @@ std::optional<HybridTrack> Session::track_from(const Frame& frame, const Pose& p
   std::vector<PointId> candidates;
   if (is_registered()) candidates = mission_->candidates(predicted);
   candidates.insert(candidates.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, rig_, map(), candidates, options_.track);
+  TrackOptions options = options_.track;
+  options.weigh_focal_lengths = is_focal_asked_;
+  return track_hybrid(frame, predicted, rig_, map(), candidates, options);
 }
 
 // Kept until the map or the reference changes: frames come more often than that.

@@ -3,10 +3,24 @@
 namespace byre {
 namespace {
 
+// What is wrong with the input, which may be why nothing is found; none when nothing is known to be.
+Doubt fault_of_input(const HealthEvidence& evidence) {
+  if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
+  if (evidence.input.is_repeated) return Doubt::frozen;
+  if (evidence.is_miscalibrated) return Doubt::calibration;
+  if (evidence.input.right_fault != ImageFault::none) return Doubt::right_camera;
+  return evidence.input.cameras_disagree ? Doubt::cameras_disagree : Doubt::none;
+}
+
 // Why the pose is of no use; none when it is.
 Doubt reason_against(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
-  if (!evidence.pose_found) return evidence.image_fault == ImageFault::none ? Doubt::no_pose : Doubt::blinded;
-  if (!evidence.registered) return Doubt::not_registered;
+  if (!evidence.pose_found || !evidence.registered) {
+    const Doubt cause = fault_of_input(evidence);
+    if (cause != Doubt::none && !(evidence.pose_found && cause == Doubt::blinded)) return cause;
+    return evidence.pose_found ? Doubt::not_registered : Doubt::no_pose;
+  }
+  if (evidence.input.frozen_seconds > options.max_frozen) return Doubt::frozen;
+  if (evidence.is_miscalibrated) return Doubt::calibration;
   if (!evidence.confirmed) return Doubt::unconfirmed;
   const double drift = options.drift_share * health.distance_since_offline;
   const double uncertainty = options.sigmas * health.position_sigma;
@@ -27,6 +41,8 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
 
 // What asks for care; none when nothing does.
 Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  const Doubt input = fault_of_input(evidence);
+  if (input != Doubt::none && input != Doubt::blinded) return input;
   if (evidence.maps_disagree && health.agreement && health.agreement->translation > options.max_disagreement) {
     return Doubt::maps_disagree;
   }
@@ -76,6 +92,14 @@ std::string_view to_string(Doubt doubt) {
       return "pose is uncertain";
     case Doubt::maps_disagree:
       return "offline and online points disagree";
+    case Doubt::frozen:
+      return "camera repeats its image";
+    case Doubt::right_camera:
+      return "right camera is blinded";
+    case Doubt::cameras_disagree:
+      return "left and right images do not fit";
+    case Doubt::calibration:
+      return "calibration does not fit the map";
   }
   return "";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/image_condition.h"
+#include "byre/slam/input_watch.h"
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +29,11 @@ enum class Doubt : std::uint8_t {
   few_offline_points,  // inside the mapped area, but the pose is held by online points
   clustered,           // the points lie in a small part of the image
   uncertain,           // they leave the pose open by more than is useful
-  maps_disagree        // offline and online points give different poses
+  maps_disagree,       // offline and online points give different poses
+  frozen,              // the camera gives the same image again
+  right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
+  cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
+  calibration          // points of the map fit the images by another focal length
 };
 
 std::string_view to_string(Doubt doubt);
@@ -55,6 +60,7 @@ struct Health {
   double rotation_sigma = 0.0;          // radians
   double distance_since_offline = 0.0;  // metres travelled since offline points last held the pose
   double seconds_since_offline = 0.0;
+  double focal_error = 0.0;             // share by which the focal length seems too long, by the offline map
   std::optional<ImageCondition> image;  // empty for simulated frames
 };
 
@@ -70,6 +76,7 @@ struct HealthOptions {
   int expected_offline_points = 80;  // so many should be in view,
   double min_offline_share = 0.04;   // of those expected: fewer agree by chance where a building repeats itself
   double max_changed_path = 5.0;     // unless for less than these metres
+  double max_frozen = 0.15;          // seconds that a camera may give the same image, until the pose is of no use
 };
 
 // What is known of a frame beside its measures.
@@ -79,6 +86,8 @@ struct HealthEvidence {
   bool confirmed = true;       // over several frames, since it was found
   bool maps_disagree = false;  // beyond what the uncertainties of both explain
   ImageFault image_fault = ImageFault::none;
+  InputEvidence input{};
+  bool is_miscalibrated = false;  // see FocalCheck
 };
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose

@@ -130,7 +130,37 @@ INSTANTIATE_TEST_SUITE_P(
                     h.online_inliers = 200;
                     h.distance_since_offline = 8.0;
                   }),
-                  kPose, Verdict::degraded, Doubt::few_offline_points}));
+                  kPose, Verdict::degraded, Doubt::few_offline_points},
+        Judgement{"an image that came twice",
+                  good(),
+                  {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.05}},
+                  Verdict::degraded,
+                  Doubt::frozen},
+        Judgement{"a camera that stands still",
+                  good(),
+                  {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.3}},
+                  Verdict::untrusted,
+                  Doubt::frozen},
+        Judgement{"a dark right camera",
+                  good(),
+                  {.pose_found = true, .input = {.right_fault = ImageFault::dark}},
+                  Verdict::degraded,
+                  Doubt::right_camera},
+        Judgement{"cameras out of step",
+                  good(),
+                  {.pose_found = true, .input = {.cameras_disagree = true}},
+                  Verdict::degraded,
+                  Doubt::cameras_disagree},
+        Judgement{"no pose with cameras out of step",
+                  {},
+                  {.input = {.cameras_disagree = true}},
+                  Verdict::untrusted,
+                  Doubt::cameras_disagree},
+        Judgement{"another focal length",
+                  good(),
+                  {.pose_found = true, .is_miscalibrated = true},
+                  Verdict::untrusted,
+                  Doubt::calibration}));
 
 }  // namespace
 }  // namespace byre

@@ -23,17 +23,14 @@ PoseObservation observation_of(const RememberedPoint& seen, const MapPoint& poin
 
 }  // namespace
 
-// Features are sorted by where they lie in the image, so that every n-th are from all over it.
 void Hindsight::note(std::size_t number, const Features& features, const TrackedFrame& tracked) {
   const auto offline = std::ranges::count(tracked.features, Origin::offline,
                                           [](const TrackedFeature& seen) { return seen.point.origin; });
   if (2 * static_cast<std::size_t>(offline) > tracked.features.size()) return;
   RememberedFrame frame;
   frame.number = number;
-  const std::size_t count = std::min(options_.points, tracked.features.size());
-  frame.points.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const TrackedFeature& seen = tracked.features[i * tracked.features.size() / count];
+  frame.points.reserve(tracked.features.size());
+  for (const TrackedFeature& seen : tracked.features) {
     frame.points.push_back(remember(seen, features.keypoint(seen.feature)));
   }
   frames_.push_back(std::move(frame));
@@ -43,7 +40,7 @@ void Hindsight::forget_from(std::size_t number) {
   while (!frames_.empty() && frames_.back().number >= number) frames_.pop_back();
 }
 
-std::optional<RememberedFrame> Hindsight::take_settled() {
+std::optional<RememberedFrame> Hindsight::take_overdue() {
   return frames_.size() > options_.frames ? take_oldest() : std::nullopt;
 }
 

@@ -10,9 +10,8 @@
 namespace byre {
 
 struct HindsightOptions {
-  std::size_t frames = 60;   // after which mapping has settled what a frame saw
-  std::size_t points = 300;  // of a frame that are kept, from all over the image
-  double min_share = 0.7;    // of those still in the map that must agree on the pose
+  std::size_t frames = 2000;  // that wait for the end; what comes before those is settled earlier. 10 kB each
+  double min_share = 0.7;     // of the points still in the map, which must agree on the pose
 };
 
 // A point and where a frame saw it.
@@ -34,12 +33,13 @@ class Hindsight {
  public:
   explicit Hindsight(const HindsightOptions& options) : options_(options) {}
 
-  // A frame of a higher number than any before. Its features that agreed with the pose are kept.
+  // A frame of a higher number than any before. Not kept where mostly offline points hold it, which stay where they
+  // are.
   void note(std::size_t number, const Features& features, const TrackedFrame& tracked);
   // Frames from this number on are not to be looked at again.
   void forget_from(std::size_t number);
 
-  std::optional<RememberedFrame> take_settled();  // the oldest, once as many wait as options say
+  std::optional<RememberedFrame> take_overdue();  // the oldest, where more wait than options say
   std::optional<RememberedFrame> take_oldest();
 
  private:

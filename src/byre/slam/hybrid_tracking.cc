@@ -313,7 +313,11 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   const Opinions opinions = ask_each(query, *guesses, found);
   const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
-  return told(query, found, opinions, *solution);
+  HybridTrack result = told(query, found, opinions, *solution);
+  if (options.weigh_focal_lengths) {
+    result.focal = weigh_focal_lengths(guesses->offline, rig, found.measured.offline.observations, options.refinement);
+  }
+  return result;
 }
 
 PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/slam/focal_check.h"
 #include "byre/slam/health.h"
 #include "byre/slam/tracking.h"
 
@@ -32,6 +33,7 @@ struct HybridTrack {
   bool maps_disagree = false;        // those two are farther apart than their covariances explain
   // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
   bool offline_stands = false;
+  std::optional<FocalEvidence> focal;   // of the offline points, where they were asked
   std::vector<PointId> offline_agreed;  // inliers, and
   std::vector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
 

@@ -56,6 +56,7 @@ struct TrackOptions {
   OfflinePolicy offline_policy = OfflinePolicy::first;
   double offline_weight = 2.0;  // of an offline point's measurement, against 1 of an online one's
   PoseRefinementOptions refinement;
+  bool weigh_focal_lengths = false;  // whether offline points are asked what they make of others, see FocalCheck
 };
 
 // Points seen by a keyframe and by those most covisible with it; ascending, bounded whatever the map's size.

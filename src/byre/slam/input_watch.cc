@@ -1,0 +1,48 @@
+#include "byre/slam/input_watch.h"
+
+#include "byre/geometry/median.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+double blend(std::optional<double> before, double now, double memory) {
+  return before ? memory * *before + (1.0 - memory) * now : now;
+}
+
+}  // namespace
+
+InputEvidence InputWatch::look_at(const Frame& frame) {
+  InputEvidence evidence;
+  note_repetition(frame, evidence);
+  if (frame.condition && frame.right_condition) note_pair(frame, evidence);
+  return evidence;
+}
+
+// A sensor's noise makes no two images alike, however still it stands.
+void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
+  evidence.is_repeated = frame.content != 0 && frame.content == last_content_;
+  if (!evidence.is_repeated) first_shown_ = frame.time;
+  evidence.frozen_seconds = to_seconds(frame.time - first_shown_);
+  last_content_ = frame.content;
+}
+
+void InputWatch::note_pair(const Frame& frame, InputEvidence& evidence) {
+  if (fault_of(*frame.condition, options_.image) != ImageFault::none) return;
+  evidence.right_fault = fault_of(*frame.right_condition, options_.image);
+  if (evidence.right_fault != ImageFault::none || frame.features->size() < options_.min_features) return;
+  std::vector<float> row_errors;
+  for (const Keypoint& keypoint : frame.features->keypoints()) {
+    if (keypoint.has_disparity()) row_errors.push_back(std::abs(keypoint.row_offset));
+  }
+  constexpr std::size_t kEnough = 10;  // for a median
+  const double matched = static_cast<double>(row_errors.size()) / frame.features->size();
+  matched_ = blend(matched_, matched, options_.memory);
+  if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median(std::move(row_errors)), options_.memory);
+  evidence.cameras_disagree = *matched_ < options_.min_matched || row_error_.value_or(0.0) > options_.max_row_error;
+}
+
+}  // namespace byre

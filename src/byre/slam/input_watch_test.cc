@@ -1,0 +1,102 @@
+#include "byre/slam/input_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr ImageCondition kGoodImage{100.0f, 20.0f, 0.0f, 0.8f};
+constexpr ImageCondition kBlackImage{1.0f, 0.2f, 1.0f, 0.0f};
+
+// A pair of which so many of 200 features were found in the right image, so many rows off.
+Frame pair_with(int matched, float row_offset) {
+  std::vector<Keypoint> keypoints(200);
+  for (int i = 0; i < matched; ++i) {
+    Keypoint& keypoint = keypoints[static_cast<std::size_t>(i)];
+    keypoint.disparity = 10.0f;
+    keypoint.disparity_sigma = 0.2f;
+    keypoint.row_offset = i % 2 == 0 ? row_offset : -row_offset;
+  }
+  Frame frame;
+  frame.features = std::make_shared<const Features>(640, 480, keypoints, std::vector<Descriptor>(keypoints.size()),
+                                                    std::vector<Patch>{});
+  frame.condition = frame.right_condition = kGoodImage;
+  return frame;
+}
+
+Frame at(double seconds, std::uint64_t content) {
+  Frame frame = pair_with(120, 0.2f);
+  frame.time = from_seconds(seconds);
+  frame.content = content;
+  return frame;
+}
+
+bool disagree_after(int frames, const Frame& frame) {
+  InputWatch watch({});
+  bool disagree = false;
+  for (int i = 0; i < frames; ++i) disagree = watch.look_at(frame).cameras_disagree;
+  return disagree;
+}
+
+TEST(InputWatch, TellsForHowLongAnImageIsRepeated) {
+  InputWatch watch({});
+  EXPECT_FALSE(watch.look_at(at(0.0, 7)).is_repeated);
+  EXPECT_FALSE(watch.look_at(at(0.1, 8)).is_repeated);
+  const InputEvidence once = watch.look_at(at(0.2, 8));
+  EXPECT_TRUE(once.is_repeated);
+  EXPECT_NEAR(once.frozen_seconds, 0.1, 1e-9);
+  EXPECT_NEAR(watch.look_at(at(0.3, 8)).frozen_seconds, 0.2, 1e-9);
+  const InputEvidence moving = watch.look_at(at(0.4, 9));
+  EXPECT_FALSE(moving.is_repeated);
+  EXPECT_EQ(moving.frozen_seconds, 0.0);
+}
+
+TEST(InputWatch, SimulatedFramesWithoutImagesAreNotTakenForRepeated) {
+  InputWatch watch({});
+  watch.look_at(at(0.0, 0));
+  EXPECT_FALSE(watch.look_at(at(0.1, 0)).is_repeated);
+}
+
+TEST(InputWatch, PairsThatFitAreLeftAlone) {
+  EXPECT_FALSE(disagree_after(10, pair_with(90, 0.3f)));
+  EXPECT_FALSE(disagree_after(10, pair_with(80, 0.7f))) << "as a worn calibration has them";
+}
+
+TEST(InputWatch, PairsThatShareNothingOrLieOnOtherRowsDisagree) {
+  EXPECT_TRUE(disagree_after(1, pair_with(4, 0.3f)));
+  EXPECT_TRUE(disagree_after(1, pair_with(90, 1.0f)));
+}
+
+TEST(InputWatch, OneBadPairAmongGoodOnesIsForgiven) {
+  InputWatch watch({});
+  for (int i = 0; i < 5; ++i) watch.look_at(pair_with(120, 0.2f));
+  EXPECT_FALSE(watch.look_at(pair_with(4, 0.2f)).cameras_disagree);
+}
+
+TEST(InputWatch, ABlindRightCameraIsToldAsSuch) {
+  InputWatch watch({});
+  Frame frame = pair_with(0, 0.0f);
+  frame.right_condition = kBlackImage;
+  const InputEvidence evidence = watch.look_at(frame);
+  EXPECT_EQ(evidence.right_fault, ImageFault::dark);
+  EXPECT_FALSE(evidence.cameras_disagree);
+}
+
+TEST(InputWatch, WhereTheLeftImageIsOfNoUseTheRightOneIsNotBlamed) {
+  InputWatch watch({});
+  Frame frame = pair_with(0, 0.0f);
+  frame.condition = frame.right_condition = kBlackImage;
+  const InputEvidence evidence = watch.look_at(frame);
+  EXPECT_EQ(evidence.right_fault, ImageFault::none);
+  EXPECT_FALSE(evidence.cameras_disagree);
+}
+
+TEST(InputWatch, OneCameraAloneHasNoPairToJudge) {
+  InputWatch watch({});
+  Frame frame = pair_with(0, 0.0f);
+  frame.right_condition.reset();
+  EXPECT_FALSE(watch.look_at(frame).cameras_disagree);
+}
+
+}  // namespace
+}  // namespace byre
