@@ -19,6 +19,7 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
+Action declare_check(CLI::App& command);
 Action declare_calibrate(CLI::App& command);
 Action declare_refine(CLI::App& command);
 Action declare_scale(CLI::App& command);

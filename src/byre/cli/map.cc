@@ -1,5 +1,6 @@
 #include "byre/cli/autosave.h"
 #include "byre/cli/calibration_report.h"
+#include "byre/cli/check_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_options.h"
@@ -113,7 +114,10 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   MapRecord record = record_of(options);
   const auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, options.extended.has_value());
-  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  if (!options.quiet) {
+    show_warnings(std::cerr, recording->warnings());
+    show_check(std::cerr, *recording);
+  }
   std::optional<Map> extended = take_extended(options, record);
   record.about.recordings.push_back(describe_source(options.recording, *recording));
   take_known_calibration(record.about.recordings);

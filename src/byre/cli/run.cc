@@ -1,3 +1,4 @@
+#include "byre/cli/check_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/event_log.h"
 #include "byre/cli/interrupt.h"
@@ -129,7 +130,10 @@ void write_results(const RunOptions& options, const MapRun& run, const MapProtoc
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
-  if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
+  if (!options.quiet) {
+    show_warnings(std::cerr, opened.recording->warnings());
+    show_check(std::cerr, *opened.recording);
+  }
   const std::optional<Truth> truth = load_truths(options);
   MapProtocol protocol = protocol_of(options, *opened.recording);
   protocol.is_metric = opened.is_metric;

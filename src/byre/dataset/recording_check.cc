@@ -1,0 +1,256 @@
+#include "byre/dataset/recording_check.h"
+
+#include "byre/features/extract.h"
+#include "byre/geometry/image_regions.h"
+#include "byre/geometry/median.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+namespace byre {
+namespace {
+
+double median_or_zero(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : median(values);
+}
+
+std::string formatted(const char* format, double value) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+class CameraSum {
+ public:
+  void add(const ImageCondition& condition) {
+    brightness_.push_back(condition.brightness);
+    contrast_.push_back(condition.contrast);
+    sharpness_.push_back(condition.sharpness);
+    ++check_.images;
+    ++check_.by_fault[static_cast<std::size_t>(fault_of(condition, {}))];
+  }
+
+  CameraCheck result() const {
+    CameraCheck check = check_;
+    check.brightness = median_or_zero(brightness_);
+    check.contrast = median_or_zero(contrast_);
+    check.sharpness = median_or_zero(sharpness_);
+    return check;
+  }
+
+ private:
+  CameraCheck check_;
+  std::vector<double> brightness_, contrast_, sharpness_;
+};
+
+class PairSum {
+ public:
+  explicit PairSum(const Rig& rig) : rig_(rig) {}
+
+  void add(const Features& features) {
+    std::vector<double> errors;
+    for (const Keypoint& keypoint : features.keypoints()) {
+      if (!keypoint.has_disparity()) continue;
+      errors.push_back(std::abs(keypoint.row_offset));
+      by_region_[image_region_of(keypoint.pixel.x(), keypoint.pixel.y(), rig_)].push_back(keypoint.row_offset);
+    }
+    ++pairs_;
+    if (features.size() > 0) matched_.push_back(static_cast<double>(errors.size()) / features.size());
+    if (!errors.empty()) row_errors_.push_back(median(std::move(errors)));
+  }
+
+  PairCheck result() const { return {pairs_, median_or_zero(matched_), median_or_zero(row_errors_), common_error()}; }
+
+ private:
+  // Medians, as what is matched wrong lies anywhere.
+  double common_error() const {
+    constexpr std::size_t kEnough = 30;  // features of a region, over all pairs
+    double sum = 0.0;
+    int regions = 0;
+    for (const std::vector<double>& offsets : by_region_) {
+      if (offsets.size() < kEnough) continue;
+      sum += std::pow(median(offsets), 2);
+      ++regions;
+    }
+    return regions == 0 ? 0.0 : std::sqrt(sum / regions);
+  }
+
+  Rig rig_;
+  int pairs_ = 0;
+  std::vector<double> matched_, row_errors_;
+  ByImageRegion<std::vector<double>> by_region_;
+};
+
+void check_times(const std::vector<Timestamp>& times, RecordingCheck& check) {
+  constexpr double kGap = 1.5;  // usual intervals
+  check.frames = static_cast<int>(times.size());
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(to_seconds(times[i] - times[i - 1]));
+  if (intervals.empty()) return;
+  const double usual = median(intervals);
+  check.rate_hz = usual > 0.0 ? 1.0 / usual : 0.0;
+  check.gaps = static_cast<int>(std::ranges::count_if(intervals, [&](double s) { return s > kGap * usual; }));
+  check.longest_gap_s = std::ranges::max(intervals);
+}
+
+// Of pairs of frames that follow each other, the first ones.
+std::vector<int> spread_over(int frames, int samples) {
+  std::vector<int> first;
+  const int count = std::max(1, std::min(samples, frames / 2));
+  for (int i = 0; i < count; ++i) first.push_back(static_cast<int>(static_cast<long long>(i) * frames / count));
+  return first;
+}
+
+// Looks at frames and adds up what they are like.
+class FrameSum {
+ public:
+  explicit FrameSum(const Calibration& calibration)
+      : is_pair_(calibration.right.has_value()), extractor_(calibration, {}), pair_(extractor_.rig()) {}
+
+  const Rig& rig() const { return extractor_.rig(); }
+
+  void look_at(const std::optional<ImageFrame>& images, std::uint64_t content_before, RecordingCheck& check) {
+    ++check.looked_at;
+    content_ = 0;
+    if (!images) {
+      ++check.unreadable;
+      return;
+    }
+    const Frame frame = extractor_.extract(*images).frame;
+    content_ = frame.content;
+    if (content_before != 0 && content_before == content_) ++check.repeated;
+    left_.add(*frame.condition);
+    features_.push_back(frame.features->size());
+    if (frame.right_condition) {
+      right_.add(*frame.right_condition);
+      pair_.add(*frame.features);
+    } else if (is_pair_) {
+      ++check.without_right;
+    }
+  }
+
+  std::uint64_t content() const { return content_; }  // of the last frame; 0 where it could not be read
+
+  void tell(RecordingCheck& check) const {
+    check.left = left_.result();
+    check.features = median_or_zero(features_);
+    if (right_.result().images == 0) return;
+    check.right = right_.result();
+    check.pair = pair_.result();
+  }
+
+ private:
+  bool is_pair_;
+  Extractor extractor_;
+  CameraSum left_, right_;
+  PairSum pair_;
+  std::vector<double> features_;
+  std::uint64_t content_ = 0;
+};
+
+void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
+  if (check.rate_hz > 0.0 && check.rate_hz < 5.0) {
+    findings.push_back({false, formatted("only %.1f frames a second", check.rate_hz),
+                        "drive slowly: what turns out of view between two frames cannot be followed"});
+  }
+  if (check.gaps > check.frames / 50) {
+    findings.push_back(
+        {false,
+         formatted("%.0f gaps between frames", check.gaps) + formatted(", the longest %.2f s", check.longest_gap_s),
+         "look for what is too slow while recording: the disk, the cable, the encoder"});
+  }
+  if (check.unreadable > 0) {
+    findings.push_back({check.unreadable > check.looked_at / 10,
+                        formatted("%.0f of the images looked at cannot be read", check.unreadable),
+                        "record again, or leave them out with --frames"});
+  }
+  if (check.repeated > check.looked_at / 20) {
+    findings.push_back({true, formatted("%.0f images are the same as the one before, bit by bit", check.repeated),
+                        "the camera or its driver stands still; a robot steered by it would not know that it moves"});
+  }
+}
+
+void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding>& findings) {
+  constexpr std::array<std::string_view, 5> kRemedies = {
+      "", "give it more light, a longer exposure or more gain", "expose it for shorter",
+      "take the cap off, clean the lens, look for what covers it", "focus the lens, expose it for shorter"};
+  for (std::size_t i = 1; i < camera.by_fault.size(); ++i) {
+    if (camera.by_fault[i] <= camera.images / 20) continue;
+    findings.push_back({camera.by_fault[i] > camera.images / 2,
+                        formatted("%.0f", camera.by_fault[i]) + formatted(" of %.0f ", camera.images) + name +
+                            " images are " + std::string(to_string(static_cast<ImageFault>(i))),
+                        std::string(kRemedies[i])});
+  }
+}
+
+void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
+  constexpr double kFewMatched = 0.12, kFarOffRow = 0.8, kFarOffCalibration = 0.5;
+  if (check.without_right > check.looked_at / 20) {
+    findings.push_back({false, formatted("%.0f frames have no right image", check.without_right),
+                        "look for what drops them, or use one camera with --camera left"});
+  }
+  if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
+  if (check.pair->matched < kFewMatched) {
+    findings.push_back(
+        {true, formatted("only %.1f %% of the features are found in the right image", 100.0 * check.pair->matched),
+         "left and right may be swapped, upside down or out of step, or the calibration another one's"});
+  } else if (check.pair->row_error > kFarOffRow) {
+    findings.push_back({true, formatted("features of the right image lie %.2f px off their row", check.pair->row_error),
+                        "the cameras are out of step, or one was moved since they were calibrated: see to the trigger, "
+                        "then \"byre calibrate\""});
+  } else if (check.pair->calibration_error > kFarOffCalibration) {
+    findings.push_back({false, formatted("the calibration is off by about %.2f px", check.pair->calibration_error),
+                        "\"byre calibrate\" finds a better one from a minute of motion"});
+  }
+}
+
+void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
+  if (check.field_of_view_deg < 30.0 || check.field_of_view_deg > 170.0) {
+    findings.push_back({false, formatted("a field of view of %.0f degrees", check.field_of_view_deg),
+                        "see that the calibration is of this camera at this resolution"});
+  }
+  if (check.baseline_m > 0.0 && (check.baseline_m < 0.01 || check.baseline_m > 2.0)) {
+    findings.push_back({false, formatted("a baseline of %.4f m", check.baseline_m),
+                        "see that the extrinsic calibration is in metres"});
+  }
+  if (check.features < 200.0 && check.left.of_no_use() <= check.left.images / 2) {
+    findings.push_back({false, formatted("only %.0f features in an image", check.features),
+                        "look at things with texture; clean the lens; see to light and focus"});
+  }
+}
+
+}  // namespace
+
+RecordingCheck check_recording(Recording& recording, int samples, const std::function<bool()>& should_stop) {
+  RecordingCheck check;
+  check_times(recording.times(), check);
+  FrameSum sum(recording.calibration());
+  const Camera& camera = recording.calibration().left;
+  check.field_of_view_deg = 2.0 * std::atan(0.5 * camera.width / camera.fx) * 180.0 / std::numbers::pi;
+  check.baseline_m = recording.calibration().right ? sum.rig().baseline : 0.0;
+  for (const int first : spread_over(recording.size(), samples)) {
+    if (should_stop && should_stop()) break;
+    sum.look_at(recording.read(first), 0, check);
+    const std::uint64_t before = sum.content();
+    if (first + 1 < recording.size()) sum.look_at(recording.read(first + 1), before, check);
+  }
+  sum.tell(check);
+  return check;
+}
+
+std::vector<Finding> findings_of(const RecordingCheck& check) {
+  std::vector<Finding> findings;
+  add_times(check, findings);
+  add_camera(check.left, check.right ? "left" : "camera's", findings);
+  if (check.right) add_camera(*check.right, "right", findings);
+  add_pair(check, findings);
+  add_rig(check, findings);
+  std::ranges::stable_sort(findings, std::ranges::greater{}, &Finding::is_grave);
+  return findings;
+}
+
+}  // namespace byre
