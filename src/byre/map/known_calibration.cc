@@ -1,19 +1,24 @@
 #include "byre/map/map_file.h"
 
 namespace byre {
+namespace {
+
+// A map keeps nothing of a depth camera, and one camera may be the left one of a pair.
+bool is_of_these_cameras(const Calibration& known, const Calibration& given) {
+  return known.left == given.left && known.body_from_left == given.body_from_left &&
+         (!given.right || known.right == given.right);
+}
+
+}  // namespace
 
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
                                                     const Calibration& given) {
-  Calibration cameras = given;
-  cameras.depth.reset();  // a map keeps nothing of it
   for (auto recording = recordings.rbegin(); recording != recordings.rend(); ++recording) {
-    if (!recording->refined) continue;
-    Calibration known = recording->calibration;
-    known.depth.reset();
-    RefinedCalibration refined = *recording->refined;
-    if (!given.right) known.right = refined.calibration.right = std::nullopt;
-    refined.calibration.depth = given.depth;
-    if (known == cameras) return refined;
+    if (!recording->refined || !is_of_these_cameras(recording->calibration, given)) continue;
+    std::optional<RefinedCalibration> refined = recording->refined;
+    if (!given.right) refined->calibration.right.reset();
+    refined->calibration.depth = given.depth;
+    return refined;
   }
   return std::nullopt;
 }
