@@ -23,11 +23,12 @@ std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, 
                                                  const PoseRefinementOptions& options);
 
 struct FocalCheckOptions {
-  double max_error = 0.02;  // share of the focal length; a worn calibration is off by 0.003
-  int min_points = 60;      // of a frame that counts
-  int asked_first = 5;      // frames, one after the other
-  int asked_every = 20;     // frames, from then on
-  double memory = 0.8;      // of what frames told, from one to the next
+  double max_error =
+      0.03;  // share of the focal length; a worn calibration is off by 0.003, hand-held frames say up to 0.022
+  int min_points = 60;   // of a frame that counts
+  int asked_first = 5;   // frames, one after the other
+  int asked_every = 20;  // frames, from then on
+  double memory = 0.85;  // of what frames told, from one to the next
 };
 
 // Whether the points of a map that is right fit what a camera sees by the focal length it is said to have. A pose alone
