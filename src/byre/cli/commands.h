@@ -14,6 +14,9 @@ enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, inte
 // any other exception for a failure at work. Gives interrupted when it was stopped by Ctrl-C, else done.
 using Action = std::function<ExitCode(std::ostream& result)>;
 
+// Declares all commands; the one on the command line becomes the action when that is parsed.
+void declare_commands(CLI::App& app, Action& action);
+
 // Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
 // the command line is parsed.
 Action declare_demo(CLI::App& command);

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/evaluation_report.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/dataset/recording.h"
@@ -92,19 +93,20 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
 }
 
 void declare_inputs(CLI::App& command, EvaluateOptions& options) {
-  command.add_option("--estimate", options.estimate, "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
+  add_input(command, Input::recording, "--estimate", options.estimate,
+            "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--truth", options.truth, "True trajectory in any of these formats, or the recording that holds it")
+  add_input(command, Input::recording, "--truth", options.truth,
+            "True trajectory in any of these formats, or the recording that holds it")
       ->type_name("FILE|FOLDER")
       ->required();
-  command.add_option("--times", options.times, "Times of KITTI poses, and the frames that should have a pose")
+  add_input(command, Input::file, "--times", options.times,
+            "Times of KITTI poses, and the frames that should have a pose")
       ->type_name("FILE");
-  CLI::Option* const frames_of =
-      command
-          .add_option("--frames-of", options.frames_of, "Recording whose frames should have a pose, for the coverage")
-          ->type_name("FOLDER|VIDEO");
+  CLI::Option* const frames_of = add_input(command, Input::recording, "--frames-of", options.frames_of,
+                                           "Recording whose frames should have a pose, for the coverage")
+                                     ->type_name("FOLDER|VIDEO");
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
   command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
       ->type_name("body|camera")
@@ -140,7 +142,8 @@ Action declare_evaluate(CLI::App& command) {
   declare_inputs(command, *options);
   declare_protocol(command, *options);
   command.add_flag("--json", options->json, "Print the report as JSON");
-  command.add_option("--aligned", options->aligned, "Also write the estimate as aligned to the truth, in TUM format")
+  add_output(command, Output::trajectory, "--aligned", options->aligned,
+             "Also write the estimate as aligned to the truth, in TUM format")
       ->type_name("FILE");
   command.footer(kFooter);
   return [options](std::ostream& result) {

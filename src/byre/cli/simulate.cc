@@ -1,4 +1,5 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/imperfection_options.h"
 #include "byre/cli/report_json.h"
@@ -140,7 +141,9 @@ Action declare_simulate(CLI::App& command) {
   declare_visit(cowshed, options->recording);
   declare_camera(cowshed, options->recording);
   declare_imperfection(cowshed, options->imperfection);
-  cowshed.add_option("-o,--output", options->output, "Folder for the recording")->type_name("FOLDER")->required();
+  add_output(cowshed, Output::folder, "-o,--output", options->output, "Folder for the recording")
+      ->type_name("FOLDER")
+      ->required();
   cowshed.add_flag("--json", options->json, "Print the report as JSON");
   cowshed.add_flag("--quiet", options->quiet, "Show no progress");
   cowshed.footer(kFooter);

@@ -1,5 +1,6 @@
 #include "byre/cli/view_options.h"
 
+#include "byre/cli/file_arguments.h"
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,15 +15,14 @@ CLI::Option* declare_port(CLI::App& command, const std::string& name, int& port,
 }
 
 CLI::Option* declare_address(CLI::App& command, ViewOptions& options) {
-  return command
-      .add_option("--bind", options.server.address,
+  return add_text(command, "--bind", options.server.address,
                   "Address of this machine to serve at, 0.0.0.0 for all; whoever asks needs the token in the address "
                   "that is shown (127.0.0.1: this machine alone, without a token)")
       ->type_name("ADDRESS");
 }
 
 CLI::Option* declare_plan(CLI::App& command, ViewOptions& options, const std::string& what) {
-  return command.add_option("--plan", options.plan, what)->type_name("FILE");
+  return add_input(command, Input::plan, "--plan", options.plan, what)->type_name("FILE");
 }
 
 }  // namespace

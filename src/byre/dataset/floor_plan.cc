@@ -90,17 +90,6 @@ FloorPlan read_map_server_plan(const fs::path& path) {
   return plan;
 }
 
-std::optional<fs::path> find_world_file(const fs::path& image) {
-  const std::string extension = image.extension().string();
-  if (extension.size() < 3) return std::nullopt;
-  const std::array<std::string, 3> extensions = {{{'.', extension[1], extension.back(), 'w'}, extension + "w", ".wld"}};
-  for (const std::string& other : extensions) {
-    const fs::path path = fs::path(image).replace_extension(other);
-    if (fs::exists(path)) return path;
-  }
-  return std::nullopt;
-}
-
 std::array<double, 6> read_six_numbers(const fs::path& path) {
   const std::vector<TextLine> lines = read_lines(path);
   std::array<double, 6> numbers{};
@@ -142,6 +131,17 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
 }
 
 }  // namespace
+
+std::optional<fs::path> find_world_file(const fs::path& image) {
+  const std::string extension = image.extension().string();
+  if (extension.size() < 3) return std::nullopt;
+  const std::array<std::string, 3> extensions = {{{'.', extension[1], extension.back(), 'w'}, extension + "w", ".wld"}};
+  for (const std::string& other : extensions) {
+    const fs::path path = fs::path(image).replace_extension(other);
+    if (fs::exists(path)) return path;
+  }
+  return std::nullopt;
+}
 
 FloorPlan read_floor_plan(const fs::path& path) {
   const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
