@@ -4,6 +4,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/interrupt.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/pace_option.h"
 #include "byre/cli/progress.h"
@@ -148,7 +149,7 @@ Action declare_benchmark(CLI::App& command) {
       ->type_name("FOLDER");
   command.add_option("--runs", options->runs, "Runs of each arm, instead of the protocol's")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostRuns).description(""));
+      ->check(between(1, kMostRuns));
   add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...");
   declare_pace(command, options->run.pace);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,

@@ -4,6 +4,7 @@
 #include "byre/cli/demo_table.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/input/input_error.h"
 
@@ -61,15 +62,15 @@ Action declare_demo(CLI::App& command) {
   command.add_option("--seed", options->seed, "Which barn")->type_name("N")->capture_default_str();
   command.add_option("--duration", options->duration_s, "Of the first visit; the second takes a quarter longer")
       ->type_name("SECONDS")
-      ->check(CLI::Range(1.0, 3600.0).description(""))
+      ->check(between(1.0, 3600.0))
       ->capture_default_str();
   command.add_option("--rate", options->frame_rate_hz, "Stereo pairs in a second")
       ->type_name("HZ")
-      ->check(CLI::Range(1.0, 60.0).description(""))
+      ->check(between(1.0, 60.0))
       ->capture_default_str();
   command.add_option("--divide", options->image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
       ->type_name("N")
-      ->check(CLI::Range(1, 8).description(""))
+      ->check(between(1, 8))
       ->capture_default_str();
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary to recognise places with (the one byre comes with)")

@@ -2,12 +2,14 @@
 
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -43,7 +45,9 @@ std::optional<HeightBand> parse_heights(std::string_view text) {
   const auto [colon, error] = std::from_chars(text.data(), end, heights.low);
   if (error != std::errc() || colon == end || *colon != ':') return std::nullopt;
   const auto [last, second_error] = std::from_chars(colon + 1, end, heights.high);
-  if (second_error != std::errc() || last != end || !(heights.low < heights.high)) return std::nullopt;
+  if (second_error != std::errc() || last != end || !(heights.low < heights.high) ||
+      !std::isfinite(heights.high - heights.low))
+    return std::nullopt;
   return heights;
 }
 
@@ -94,17 +98,17 @@ void declare_outputs(CLI::App& command, DrawOptions& options) {
   command
       .add_option("--at", options.at_s, "Moment of the camera picture, from the recording's first frame (the last one)")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber.description(""))
+      ->check(from(0.0))
       ->needs(map);
   add_output(command, Output::video, "--video", options.video, "Both pictures of every frame: .mp4")
       ->type_name("FILE")
       ->needs(map);
   command.add_option("--speed", options.speed, "Of the video, in times of the recording's own (1)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.01, 1000.0).description(""));
+      ->check(between(0.01, 1000.0));
   command.add_option("--width", options.width, "Of the plan picture (1200)")
       ->type_name("PIXELS")
-      ->check(CLI::Range(200, 8000).description(""));
+      ->check(between(200, 8000));
 }
 
 void require_extension(const std::optional<fs::path>& file, const char* option,

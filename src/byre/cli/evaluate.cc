@@ -1,7 +1,9 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/evaluation_report.h"
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
+#include "byre/cli/output_file.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
@@ -87,7 +89,7 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
     throw InputError(options.estimate.string(), "no pose has truth at its time",
                      "the estimate is from " + span_of(estimate) + ", the truth from " + span_of(truth));
   }
-  if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned);
+  if (options.aligned) write_whole(*options.aligned, aligned_trajectory(estimate, *report));
   const auto print = options.json ? to_json : to_text;
   result << print(*report, options.estimate.string(), options.truth.string());
 }
@@ -128,10 +130,10 @@ void declare_protocol(CLI::App& command, EvaluateOptions& options) {
       ->check(CLI::IsMember({"causal", "final"}).description(""));
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(-1e6, 1e6).description(""));
+      ->check(between(-1e6, 1e6));
   command.add_option("--max-gap", options.max_gap_s, "Longest gap in the truth to interpolate across")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(between(0.0, 1e6))
       ->capture_default_str();
 }
 

@@ -2,12 +2,11 @@
 
 #include "byre/cli/file_content.h"
 #include "byre/dataset/files_read.h"
-#include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 #include "byre/viewer/web_map.h"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -118,9 +117,13 @@ std::vector<fs::path> files_of(const Read& read) {
   return {};
 }
 
-// Where the file comes to be: beside its end, where that is no link.
-fs::path target_of(const fs::path& path) {
+// The file that a path stands for, also by links, whether it is there or not.
+fs::path target_of(fs::path path) {
+  constexpr int kMostLinks = 40;
   std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
   const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
   return error ? path : target;
 }
@@ -388,15 +391,7 @@ void require_safe_files(CLI::App& command) {
 }
 
 void require_files_or_folders(CLI::App& command) {
-  for (const Read& read : arguments_of(command).inputs) {
-    struct stat status {};
-    if (stat(read.path.c_str(), &status) != 0) {
-      if (errno != ELOOP) continue;  // what is not there is told by who wants to read it
-      throw InputError(read.path.string(), "is a link that leads round in a circle", "name a file or folder");
-    }
-    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) continue;
-    throw InputError(read.path.string(), "is a pipe or a device, not a file", "save what comes from it, and name that");
-  }
+  for (const Read& read : arguments_of(command).inputs) refuse_pipe(read.path);
 }
 
 void check_when_parsed(CLI::App& command, std::function<void()> check) {

@@ -3,6 +3,7 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/import_colmap_run.h"
 #include "byre/cli/interrupt.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
@@ -71,7 +72,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   const ColmapModel model = read_colmap_model(options.model);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
+  const InterruptCatcher interrupt({options.map});
   const ColmapImport imported = run_with_progress(model, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
   if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
@@ -97,7 +98,7 @@ Action declare_import_colmap(CLI::App& command) {
       command
           .add_option("--scale", options->scale, "Length of the model's unit; without it the map has no metric scale")
           ->type_name("METRES")
-          ->check(CLI::Range(1e-9, 1e9).description(""));
+          ->check(between(1e-9, 1e9));
   add_input(command, Input::recording, "--body-of", options->body_of,
             "Recording whose calibration says where the camera sits in the body (body and camera are one)")
       ->type_name("FOLDER")

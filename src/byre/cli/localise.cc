@@ -137,7 +137,9 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
   add_words(stored, vocabulary);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
+  std::vector<fs::path> outputs;
+  if (options.trajectory) outputs.push_back(*options.trajectory);
+  const InterruptCatcher interrupt(outputs);
   const Work work = localise_all(options, stored, vocabulary, interrupt);
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
   if (options.trajectory) write_found(work, *options.trajectory);

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/interrupt.h"
 #include "byre/input/input_error.h"
 
 #include <exception>
@@ -16,7 +17,7 @@ using namespace byre::cli;
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input (a file, a calibration, a recording),\n"
-    "130 stopped by Ctrl-C.\n"
+    "130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (the terminal was closed).\n"
     "\"byre COMMAND --help\" explains a command.";
 
 int report(const std::string& message, ExitCode code) {
@@ -28,7 +29,9 @@ int run(const Action& action, CLI::App& app) {
   try {
     require_files_or_folders(app);
     const ExitCode code = action(std::cout);
-    if (!std::cout.flush()) throw std::runtime_error("the result cannot be written to the standard output");
+    const bool is_told = static_cast<bool>(std::cout.flush());
+    if (code == interrupted) return exit_code_of_interrupt();  // who listened may be gone with the terminal
+    if (!is_told) throw std::runtime_error("the result cannot be written to the standard output");
     return code;
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
@@ -49,12 +52,15 @@ int main(int argc, char** argv) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("byre: error: ") + error.what() + "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
   });
+  let_writing_fail();
   Action action;
   declare_commands(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // also --help and --version, which succeed
     return app.exit(error) == done ? done : wrong_usage;
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
   }
   if (!action) return report("name a command, as \"byre --help\" lists them", wrong_usage);
   return run(action, app);

@@ -2,6 +2,7 @@
 
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/pace_option.h"
 
@@ -28,8 +29,8 @@ constexpr const char* kFooter = R"(Examples:
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
 KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
-points and redundant keyframes are removed. Ctrl-C stops after the current frame, leaves this out and still writes all
-files, then the exit code is 130; "byre refine" makes up for it. A second Ctrl-C ends the program at once.)";
+points and redundant keyframes are removed. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
+writes all files, then the exit code is 130 or 143; "byre refine" makes up for it. A second one ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
@@ -65,7 +66,7 @@ void declare_building(CLI::App& command, MapOptions& options) {
   command
       .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 1e6).description(""));
+      ->check(between(0.1, 1e6));
   command.add_flag("--no-loops", options.no_loops,
                    "Recognise no places and leave out what comes after the last frame; for comparison");
   command.add_flag("--no-self-calibration", options.no_self_calibration,

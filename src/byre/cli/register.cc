@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/register_report.h"
 #include "byre/cli/register_run.h"
@@ -82,12 +83,12 @@ Action declare_register(CLI::App& command) {
                                   ->type_name("MAP");
   command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")
       ->type_name("METRES")
-      ->check(CLI::Range(1e-4, 100.0).description(""));
+      ->check(between(1e-4, 100.0));
   command
       .add_option("--body-height", options->registering.registration.body_height,
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
-      ->check(CLI::Range(-100.0, 100.0).description(""));
+      ->check(between(-100.0, 100.0));
   command
       .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
       ->needs(output);

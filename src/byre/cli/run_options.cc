@@ -3,6 +3,7 @@
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/pace_option.h"
 
@@ -34,8 +35,8 @@ Without --map all is mapped, as "byre map" does it, finishing included. With tru
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
 With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C; docs/viewer.md says more.
-Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
-a pose. docs/mission.md describes the events and what health means.)";
+Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
+when no frame got a pose, or events could not be written. docs/mission.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
@@ -68,7 +69,7 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(-1e6, 1e6).description(""))
+      ->check(between(-1e6, 1e6))
       ->needs(truth);
   add_input(command, Input::file, "--vocabulary", options.vocabulary,
             "Vocabulary to look places up with (the one byre comes with)")
@@ -115,7 +116,7 @@ void declare_tracking(CLI::App& command, TrackOptions& track) {
           "--offline-weight", track.offline_weight,
           formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
       ->type_name("FACTOR")
-      ->check(CLI::Range(1e-3, 1e3).description(""));
+      ->check(between(1e-3, 1e3));
   command
       .add_option(
           "--offline-policy", track.offline_policy,

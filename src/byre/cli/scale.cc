@@ -1,6 +1,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/scale_run.h"
 
@@ -52,7 +53,7 @@ Action declare_scale(CLI::App& command) {
   add_text(command, "--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
   command.add_option("--metres", options->metres, "How far they are from each other")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(above_zero())
       ->required();
   add_output(command, Output::map, "-o,--output", options->output, "The map with lengths in metres")
       ->type_name("MAP")

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/view_run.h"
@@ -80,12 +81,12 @@ Action declare_view(CLI::App& command) {
   command.add_flag("--overwrite", options->overwrite, "The output may be the map itself")->needs(output);
   command.add_option("--pick-sigma", options->pick_sigma, "How well points are picked, one sigma (0.05)")
       ->type_name("METRES")
-      ->check(CLI::Range(1e-4, 100.0).description(""));
+      ->check(between(1e-4, 100.0));
   command
       .add_option("--body-height", options->registration.body_height,
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
-      ->check(CLI::Range(-100.0, 100.0).description(""));
+      ->check(between(-100.0, 100.0));
   command.add_flag("--quiet", options->quiet, "Tell nothing but the address");
   check_when_parsed(command, [options] { require_consistent(*options); });
   command.footer(kFooter);

@@ -1,6 +1,7 @@
 #include "byre/cli/view_options.h"
 
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,7 +12,7 @@ namespace {
 CLI::Option* declare_port(CLI::App& command, const std::string& name, int& port, const std::string& what) {
   return command.add_option(name, port, what + " (" + std::to_string(port) + "; 0: one that is free)")
       ->type_name("PORT")
-      ->check(CLI::Range(0, 65535).description(""));
+      ->check(between(0, 65535));
 }
 
 CLI::Option* declare_address(CLI::App& command, ViewOptions& options) {

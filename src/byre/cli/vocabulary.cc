@@ -3,6 +3,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
@@ -122,17 +123,14 @@ void declare_train(CLI::App& command, TrainOptions& options) {
       ->required();
   declare_output(command, options.output);
   const auto add_number = [&command](const char* name, int& value, int min, int max, const char* meaning) {
-    command.add_option(name, value, meaning)
-        ->type_name("N")
-        ->check(CLI::Range(min, max).description(""))
-        ->capture_default_str();
+    command.add_option(name, value, meaning)->type_name("N")->check(between(min, max))->capture_default_str();
   };
   add_number("--branching", options.tree.branching, 2, 255, "Children of a node of the tree");
   add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree; it has at most branching^depth words");
   add_number("--features", options.features, 1, 1'000'000, "Features to take from an image at most");
   command.add_option("--seed", options.tree.seed, "Of the random choices in clustering")
       ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(from(0.0))
       ->capture_default_str();
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.footer(kTrainFooter);

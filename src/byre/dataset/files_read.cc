@@ -103,7 +103,7 @@ Files files_of_recording(const fs::path& recording) {
   Files files;
   if (!is_folder(recording)) {
     files.push_back(recording);
-    if (is_video_file(recording)) add_calibrations(recording.parent_path(), files);
+    if (is_file(recording) && is_video_file(recording)) add_calibrations(recording.parent_path(), files);
     return files;
   }
   add_calibrations(recording, files);
