@@ -79,6 +79,7 @@ Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport
 }
 
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
+  if (options.aligned) require_writable(*options.aligned);
   const Trajectory estimate = load_trajectory(options.estimate, options.times);
   const Trajectory truth = true_path(options);
   Protocol protocol = options.protocol;

@@ -33,6 +33,7 @@ constexpr std::array kInputs = {
     std::pair(Input::images, "reads images"), std::pair(Input::folder, "reads folder")};
 constexpr std::array kOutputs = {std::pair(Output::map, "writes map"),
                                  std::pair(Output::refined_map, "writes refined map"),
+                                 std::pair(Output::updated_map, "writes updated map"),
                                  std::pair(Output::viewed_map, "writes viewed map"),
                                  std::pair(Output::trajectory, "writes trajectory"),
                                  std::pair(Output::json, "writes JSON"),
@@ -88,6 +89,23 @@ std::optional<Identity> identity_of(const fs::path& path) {
   return Identity{status.st_dev, status.st_ino};
 }
 
+// A terminal, a pipe: reading and writing it are two things.
+bool is_special(const fs::path& path) {
+  std::error_code error;
+  return fs::is_other(path, error);
+}
+
+// The file that a path stands for, also by links, whether it is there or not.
+fs::path target_of(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
+  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  return error ? path : target;
+}
+
 struct Read {
   Input input{};
   std::string argument;
@@ -115,17 +133,6 @@ std::vector<fs::path> files_of(const Read& read) {
       return images_below(read.path);
   }
   return {};
-}
-
-// The file that a path stands for, also by links, whether it is there or not.
-fs::path target_of(fs::path path) {
-  constexpr int kMostLinks = 40;
-  std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
-    path = path.parent_path() / fs::read_symlink(path, error);
-  }
-  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
-  return error ? path : target;
 }
 
 // All that is written for an output, but for what comes into folders whose content is the command's own.
@@ -177,14 +184,29 @@ Arguments arguments_of(CLI::App& command) {
   return arguments;
 }
 
-// Which argument reads a file or folder.
-std::map<Identity, const Read*> owners_of(const std::vector<Read>& inputs) {
-  std::map<Identity, const Read*> owners;
+// Which argument reads a file or folder: those that are there by what they are, those that were named by their name
+// too.
+struct Owners {
+  std::map<Identity, const Read*> by_identity;
+  std::map<fs::path, const Read*> by_name;
+
+  const Read* find(const fs::path& file) const {
+    const auto identity = identity_of(file);
+    const auto same = identity ? by_identity.find(*identity) : by_identity.end();
+    if (same != by_identity.end()) return same->second;
+    const auto named = by_name.find(target_of(file));
+    return named != by_name.end() && !is_special(file) ? named->second : nullptr;
+  }
+};
+
+Owners owners_of(const std::vector<Read>& inputs) {
+  Owners owners;
   for (const Read& read : inputs) {
+    owners.by_name.emplace(target_of(read.path), &read);
     std::vector<fs::path> files = files_of(read);
     files.push_back(read.path);
     for (const fs::path& file : files) {
-      if (const auto identity = identity_of(file)) owners.emplace(*identity, &read);
+      if (const auto identity = identity_of(file)) owners.by_identity.emplace(*identity, &read);
     }
   }
   return owners;
@@ -192,19 +214,19 @@ std::map<Identity, const Read*> owners_of(const std::vector<Read>& inputs) {
 
 // A map may take the place of the map that it was made of.
 bool may_be(const Written& written, const Read& read) {
-  if (written.output != Output::refined_map && written.output != Output::viewed_map) return false;
+  constexpr std::array kInPlace = {Output::refined_map, Output::updated_map, Output::viewed_map};
+  if (std::ranges::count(kInPlace, written.output) == 0) return false;
   return read.input == Input::file && read.argument == "MAP";
 }
 
-void require_not_read(const Written& written, const fs::path& file, const std::map<Identity, const Read*>& owners) {
-  const auto identity = identity_of(file);
-  const auto owner = identity ? owners.find(*identity) : owners.end();
-  if (owner == owners.end() || may_be(written, *owner->second)) return;
-  throw CLI::ValidationError(written.argument, file.string() + " is read, for " + owner->second->argument +
+void require_not_read(const Written& written, const fs::path& file, const Owners& owners) {
+  const Read* const owner = owners.find(file);
+  if (owner == nullptr || may_be(written, *owner)) return;
+  throw CLI::ValidationError(written.argument, file.string() + " is read, for " + owner->argument +
                                                    ", so it may not be written: name another file");
 }
 
-void require_not_read(const Written& written, const std::map<Identity, const Read*>& owners) {
+void require_not_read(const Written& written, const Owners& owners) {
   // The files of a model may be put beside those of a recording.
   std::error_code error;
   const bool is_shared_folder = written.output == Output::colmap_model && fs::is_directory(written.path, error);
@@ -250,6 +272,7 @@ std::string_view kind_of(const Written& written, const fs::path& file) {
       return file == written.path ? "map" : "table of picks";
     case Output::map:
     case Output::refined_map:
+    case Output::updated_map:
       return "map";
     case Output::trajectory:
       return "trajectory";
@@ -278,6 +301,7 @@ bool may_replace(const Written& written, const fs::path& file, FileContent conte
       return content == (file == written.path ? FileContent::map : FileContent::table);
     case Output::map:
     case Output::refined_map:
+    case Output::updated_map:
       return content == FileContent::map;
     case Output::trajectory:
       return content == FileContent::trajectory;
@@ -380,9 +404,11 @@ void declare_no_overwrite(CLI::App& command) {
 
 void require_safe_files(CLI::App& command) {
   const Arguments arguments = arguments_of(command);
-  const std::map<Identity, const Read*> owners = owners_of(arguments.inputs);
-  for (const Written& written : arguments.outputs) require_not_read(written, owners);
-  require_distinct(arguments.outputs);
+  if (!arguments.outputs.empty()) {  // else nobody needs to know all that is read
+    const Owners owners = owners_of(arguments.inputs);
+    for (const Written& written : arguments.outputs) require_not_read(written, owners);
+    require_distinct(arguments.outputs);
+  }
   if (wants_no_overwrite(command)) require_nothing_replaced(command, arguments);
   for (const Written& written : arguments.outputs) {
     if (is_device_name(written.path)) continue;

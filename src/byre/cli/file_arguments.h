@@ -24,7 +24,8 @@ enum class Input : std::uint8_t {
 enum class Output : std::uint8_t {
   map,
   refined_map,  // the map that was read is replaced by it, unless another file is named
-  viewed_map,   // may be the map that was read; with picks beside it
+  updated_map,  // may be the map that was read
+  viewed_map,   // the same, with picks beside it
   trajectory,
   json,
   picture,  // as its name ends: .svg or .png

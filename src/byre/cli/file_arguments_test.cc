@@ -208,9 +208,11 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// By design refine and, when it is allowed to, view replace the map that they read.
+// By design refine, register and, when it is allowed to, view replace the map that they read.
 bool may_replace(CLI::Option& output, CLI::Option& input) {
-  const bool is_in_place = output_of(output) == Output::refined_map || output_of(output) == Output::viewed_map;
+  const auto written = output_of(output);
+  const bool is_in_place =
+      written == Output::refined_map || written == Output::updated_map || written == Output::viewed_map;
   return is_in_place && input.get_name() == "MAP";
 }
 
@@ -252,6 +254,8 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
     }
   }
   EXPECT_GT(pairs, 200);
+  EXPECT_THAT(CommandLine().fault_of({"map", "rec", "--extend", "none.byre", "-o", "./none.byre"}),
+              HasSubstr("so it may not be written"));  // also where there is no such file
 }
 
 TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {

@@ -78,7 +78,7 @@ Action declare_register(CLI::App& command) {
   add_input(command, Input::file, "--points", options->picks, "Points picked in the map and on the plan: a CSV file")
       ->type_name("FILE")
       ->required();
-  CLI::Option* const output = add_output(command, Output::map, "-o,--output", options->output,
+  CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
                                          "The map with its place on the plan (none is written)")
                                   ->type_name("MAP");
   command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")

@@ -5,6 +5,7 @@
 #include "byre/dataset/recording.h"
 #include "byre/input/text_file.h"
 
+#include <algorithm>
 #include <exception>
 #include <optional>
 #include <system_error>
@@ -117,6 +118,9 @@ Files files_of_recording(const fs::path& recording) {
   for (const char* const list : {"rgb.txt", "depth.txt"}) add_listed(recording / list, files);
   add_images(recording, files);
   add_truth(recording, files);
+  std::ranges::sort(files);
+  const auto repeated = std::ranges::unique(files);
+  files.erase(repeated.begin(), repeated.end());
   return files;
 }
 

@@ -18,7 +18,7 @@ class FilesRead : public TestFolder {
   // Relative to the folder.
   std::vector<std::string> names(const std::vector<fs::path>& files) const {
     std::vector<std::string> names;
-    for (const fs::path& file : files) names.push_back(fs::relative(file, folder_).string());
+    for (const fs::path& file : files) names.push_back(file.lexically_relative(folder_).lexically_normal().string());
     return names;
   }
 };
