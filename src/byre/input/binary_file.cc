@@ -37,7 +37,8 @@ class OpenFile {
  public:
   OpenFile(const fs::path& path, int flags, std::string_view remedy)
       : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(path, "cannot be opened", remedy);
+    const bool is_to_write = (flags & O_ACCMODE) == O_WRONLY;
+    if (descriptor_ < 0) fail(path, is_to_write ? "cannot be written" : "cannot be opened", remedy);
   }
   ~OpenFile() { close(descriptor_); }
   OpenFile(const OpenFile&) = delete;
