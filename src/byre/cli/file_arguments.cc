@@ -190,10 +190,11 @@ struct Owners {
   std::map<Identity, const Read*> by_identity;
   std::map<fs::path, const Read*> by_name;
 
-  const Read* find(const fs::path& file) const {
+  const Read* find(const fs::path& file, Output output) const {
     const auto identity = identity_of(file);
     const auto same = identity ? by_identity.find(*identity) : by_identity.end();
     if (same != by_identity.end()) return same->second;
+    if (output == Output::folder) return nullptr;  // it may bear the name of a protocol that comes with byre
     const auto named = by_name.find(target_of(file));
     return named != by_name.end() && !is_special(file) ? named->second : nullptr;
   }
@@ -202,6 +203,8 @@ struct Owners {
 Owners owners_of(const std::vector<Read>& inputs) {
   Owners owners;
   for (const Read& read : inputs) {
+    std::error_code error;
+    if (read.input == Input::file && fs::is_directory(read.path, error)) continue;  // no file, but a name like one
     owners.by_name.emplace(target_of(read.path), &read);
     std::vector<fs::path> files = files_of(read);
     files.push_back(read.path);
@@ -220,7 +223,7 @@ bool may_be(const Written& written, const Read& read) {
 }
 
 void require_not_read(const Written& written, const fs::path& file, const Owners& owners) {
-  const Read* const owner = owners.find(file);
+  const Read* const owner = owners.find(file, written.output);
   if (owner == nullptr || may_be(written, *owner)) return;
   throw CLI::ValidationError(written.argument, file.string() + " is read, for " + owner->argument +
                                                    ", so it may not be written: name another file");

@@ -334,6 +334,13 @@ TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
   }
 }
 
+TEST_F(FileArguments, MayBearTheNameOfAProtocolThatComesWithByre) {
+  const std::string folder = (folder_ / "euroc").string();
+  EXPECT_THAT(CommandLine().fault_of({"benchmark", folder, "-o", folder}), IsEmpty());
+  fs::create_directory(folder);
+  EXPECT_THAT(CommandLine().fault_of({"benchmark", folder, "-o", folder}), IsEmpty());
+}
+
 TEST_F(FileArguments, KeepTheMapThatIsRefinedInPlaceWhereAsked) {
   write("barn.byre",
         "\x89"
