@@ -2,7 +2,9 @@
 #include "byre/cli/benchmark_report.h"
 #include "byre/cli/benchmark_run.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/interrupt.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/pace_option.h"
 #include "byre/cli/progress.h"
@@ -136,21 +138,22 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
 Action declare_benchmark(CLI::App& command) {
   constexpr int kMostRuns = 1000;
   const auto options = std::make_shared<BenchmarkCommandOptions>();
-  command
-      .add_option("PROTOCOL", options->protocol, "A protocol file, or one that comes with byre: euroc, twin, mh_short")
+  add_input(command, Input::file, "PROTOCOL", options->protocol,
+            "A protocol file, or one that comes with byre: euroc, twin, mh_short")
       ->type_name("FILE|NAME")
       ->required();
-  command.add_option("--data", options->run.data, "Folder in which the protocol's recordings lie (.)")
+  add_input(command, Input::folder, "--data", options->run.data, "Folder in which the protocol's recordings lie (.)")
       ->type_name("FOLDER");
-  command.add_option("-o,--output", options->run.output, "Folder for results, made if need be (benchmark_PROTOCOL)")
+  add_output(command, Output::folder, "-o,--output", options->run.output,
+             "Folder for results, made if need be (benchmark_PROTOCOL)")
       ->type_name("FOLDER");
   command.add_option("--runs", options->runs, "Runs of each arm, instead of the protocol's")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostRuns).description(""));
-  command.add_option("--only", options->run.only, "Run these cases only")->type_name("CASE...");
+      ->check(between(1, kMostRuns));
+  add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...");
   declare_pace(command, options->run.pace);
-  command
-      .add_option("--vocabulary", options->vocabulary, "Vocabulary to recognise places with (the one byre comes with)")
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to recognise places with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kFooter);

@@ -2,6 +2,7 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace byre::cli {
 namespace fs = std::filesystem;
 
 YamlValue YamlValue::load(const fs::path& path) {
+  refuse_pipe(path);
   std::ifstream file(path);
   if (!file || fs::is_directory(path)) {
     throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");

@@ -1,5 +1,6 @@
 #include "byre/cli/calibration_report.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/frame_range_options.h"
 #include "byre/cli/interrupt.h"
@@ -86,8 +87,10 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
 
 Action declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateOptions>();
-  command.add_option("RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
-  command.add_option("-o,--output", options->output, "Calibration file (Kalibr's form)")->type_name("YAML")->required();
+  add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
+  add_output(command, Output::calibration, "-o,--output", options->output, "Calibration file (Kalibr's form)")
+      ->type_name("YAML")
+      ->required();
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
   command.add_flag("--json", options->json, "Print what was found as JSON");

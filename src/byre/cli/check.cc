@@ -1,5 +1,6 @@
 #include "byre/cli/check_report.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/open_options.h"
@@ -57,7 +58,7 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
 
 Action declare_check(CLI::App& command) {
   const auto options = std::make_shared<CheckOptions>();
-  command.add_option("RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
+  add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
   command.add_option("--samples", options->samples, "Places of the recording that are looked at, two frames at each")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();

@@ -54,7 +54,8 @@ TEST_F(ColmapCommands, ReportBadInputWithItsOwnExitCode) {
   EXPECT_THAT(no_images.errors, HasSubstr("holds none of the model's images"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "back.byre"));
   EXPECT_EQ(run("export-colmap nowhere.byre -o model").exit_code, 3);
-  EXPECT_EQ(run("export-colmap room.byre -o room.byre").exit_code, 3);
+  write("file", "no folder");
+  EXPECT_EQ(run("export-colmap room.byre -o file").exit_code, 3);
 }
 
 TEST_F(ColmapCommands, RefuseOptionsThatContradict) {

@@ -7,12 +7,15 @@
 
 namespace byre::cli {
 
-// What the program ends with.
+// What the program ends with; when it was interrupted, with 128 and the signal's number (130: Ctrl-C).
 enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupted = 130 };
 
 // Does what a command is for, with the options it was given, and writes its result. Throws InputError for bad input and
-// any other exception for a failure at work. Gives interrupted when it was stopped by Ctrl-C, else done.
+// any other exception for a failure at work. Gives interrupted when it was stopped by a signal, else done.
 using Action = std::function<ExitCode(std::ostream& result)>;
+
+// Declares all commands; the one on the command line becomes the action when that is parsed.
+void declare_commands(CLI::App& app, Action& action);
 
 // Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
 // the command line is parsed.

@@ -2,7 +2,9 @@
 #include "byre/cli/demo_page.h"
 #include "byre/cli/demo_run.h"
 #include "byre/cli/demo_table.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/input/input_error.h"
 
@@ -54,23 +56,24 @@ ExitCode run_demo_command(const DemoOptions& options, std::ostream& result) {
 
 Action declare_demo(CLI::App& command) {
   const auto options = std::make_shared<DemoOptions>();
-  command.add_option("-o,--output", options->output, "Folder for the page and what it is made of (byre_demo)")
+  add_output(command, Output::folder, "-o,--output", options->output,
+             "Folder for the page and what it is made of (byre_demo)")
       ->type_name("FOLDER");
   command.add_option("--seed", options->seed, "Which barn")->type_name("N")->capture_default_str();
   command.add_option("--duration", options->duration_s, "Of the first visit; the second takes a quarter longer")
       ->type_name("SECONDS")
-      ->check(CLI::Range(1.0, 3600.0).description(""))
+      ->check(between(1.0, 3600.0))
       ->capture_default_str();
   command.add_option("--rate", options->frame_rate_hz, "Stereo pairs in a second")
       ->type_name("HZ")
-      ->check(CLI::Range(1.0, 60.0).description(""))
+      ->check(between(1.0, 60.0))
       ->capture_default_str();
   command.add_option("--divide", options->image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
       ->type_name("N")
-      ->check(CLI::Range(1, 8).description(""))
+      ->check(between(1, 8))
       ->capture_default_str();
-  command
-      .add_option("--vocabulary", options->vocabulary, "Vocabulary to recognise places with (the one byre comes with)")
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to recognise places with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kFooter);

@@ -1,13 +1,15 @@
 #include "byre/cli/draw_options.h"
 
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
-#include "byre/cli/output_options.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -43,7 +45,9 @@ std::optional<HeightBand> parse_heights(std::string_view text) {
   const auto [colon, error] = std::from_chars(text.data(), end, heights.low);
   if (error != std::errc() || colon == end || *colon != ':') return std::nullopt;
   const auto [last, second_error] = std::from_chars(colon + 1, end, heights.high);
-  if (second_error != std::errc() || last != end || !(heights.low < heights.high)) return std::nullopt;
+  if (second_error != std::errc() || last != end || !(heights.low < heights.high) ||
+      !std::isfinite(heights.high - heights.low))
+    return std::nullopt;
   return heights;
 }
 
@@ -61,47 +65,50 @@ CLI::Option* declare_heights(CLI::App& command, HeightBand& heights) {
 }
 
 void declare_inputs(CLI::App& command, DrawOptions& options) {
-  command.add_option("INPUT", options.input, "A map file; or a recording to run on the map of --map")
+  add_input(command, Input::recording, "INPUT", options.input, "A map file; or a recording to run on the map of --map")
       ->type_name("MAP|RECORDING")
       ->required();
-  command.add_option("--map", options.map, "The offline map that the recording is run on")->type_name("MAP");
-  command
-      .add_option("--plan", options.plan,
-                  "The floor plan the map lies on: a map_server YAML file, or an image with a world file")
+  add_input(command, Input::file, "--map", options.map, "The offline map that the recording is run on")
+      ->type_name("MAP");
+  add_input(command, Input::plan, "--plan", options.plan,
+            "The floor plan the map lies on: a map_server YAML file, or an image with a world file")
       ->type_name("FILE");
-  command.add_option("--trajectory", options.trajectories, "A way to draw, in the map's frame; may be given again")
+  add_input(command, Input::file, "--trajectory", options.trajectories,
+            "A way to draw, in the map's frame; may be given again")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command
-      .add_option("--mission", options.missions,
-                  "Statistics of a mission on the map, to draw its way; may be given again")
+  add_input(command, Input::file, "--mission", options.missions,
+            "Statistics of a mission on the map, to draw its way; may be given again")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command.add_option("--vocabulary", options.vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");
 }
 
 void declare_outputs(CLI::App& command, DrawOptions& options) {
   CLI::Option* const map = command.get_option("--map");
-  command.add_option("-o,--plan-picture", options.plan_picture, "The map from above, with the ways: .svg or .png")
+  add_output(command, Output::picture, "-o,--plan-picture", options.plan_picture,
+             "The map from above, with the ways: .svg or .png")
       ->type_name("FILE");
-  command
-      .add_option("--camera-picture", options.camera_picture,
-                  "What the camera saw, with the map points found and the health: .svg or .png")
+  add_output(command, Output::picture, "--camera-picture", options.camera_picture,
+             "What the camera saw, with the map points found and the health: .svg or .png")
       ->type_name("FILE")
       ->needs(map);
   command
       .add_option("--at", options.at_s, "Moment of the camera picture, from the recording's first frame (the last one)")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber.description(""))
+      ->check(from(0.0))
       ->needs(map);
-  command.add_option("--video", options.video, "Both pictures of every frame: .mp4")->type_name("FILE")->needs(map);
+  add_output(command, Output::video, "--video", options.video, "Both pictures of every frame: .mp4")
+      ->type_name("FILE")
+      ->needs(map);
   command.add_option("--speed", options.speed, "Of the video, in times of the recording's own (1)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.01, 1000.0).description(""));
+      ->check(between(0.01, 1000.0));
   command.add_option("--width", options.width, "Of the plan picture (1200)")
       ->type_name("PIXELS")
-      ->check(CLI::Range(200, 8000).description(""));
+      ->check(between(200, 8000));
 }
 
 void require_extension(const std::optional<fs::path>& file, const char* option,
@@ -120,7 +127,6 @@ void require_consistent(const DrawOptions& options) {
   require_extension(options.plan_picture, "--plan-picture", {".svg", ".png"});
   require_extension(options.camera_picture, "--camera-picture", {".svg", ".png"});
   require_extension(options.video, "--video", {".mp4"});
-  require_distinct(options.outputs());
 }
 
 }  // namespace
@@ -140,7 +146,7 @@ void declare_draw_options(CLI::App& command, DrawOptions& options) {
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
-  command.parse_complete_callback([&options] { require_consistent(options); });
+  check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kFooter);
 }
 

@@ -1,6 +1,9 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/evaluation_report.h"
+#include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
+#include "byre/cli/output_file.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
@@ -76,6 +79,7 @@ Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport
 }
 
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
+  if (options.aligned) require_writable(*options.aligned);
   const Trajectory estimate = load_trajectory(options.estimate, options.times);
   const Trajectory truth = true_path(options);
   Protocol protocol = options.protocol;
@@ -86,25 +90,26 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
     throw InputError(options.estimate.string(), "no pose has truth at its time",
                      "the estimate is from " + span_of(estimate) + ", the truth from " + span_of(truth));
   }
-  if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned);
+  if (options.aligned) write_whole(*options.aligned, aligned_trajectory(estimate, *report));
   const auto print = options.json ? to_json : to_text;
   result << print(*report, options.estimate.string(), options.truth.string());
 }
 
 void declare_inputs(CLI::App& command, EvaluateOptions& options) {
-  command.add_option("--estimate", options.estimate, "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
+  add_input(command, Input::recording, "--estimate", options.estimate,
+            "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--truth", options.truth, "True trajectory in any of these formats, or the recording that holds it")
+  add_input(command, Input::recording, "--truth", options.truth,
+            "True trajectory in any of these formats, or the recording that holds it")
       ->type_name("FILE|FOLDER")
       ->required();
-  command.add_option("--times", options.times, "Times of KITTI poses, and the frames that should have a pose")
+  add_input(command, Input::file, "--times", options.times,
+            "Times of KITTI poses, and the frames that should have a pose")
       ->type_name("FILE");
-  CLI::Option* const frames_of =
-      command
-          .add_option("--frames-of", options.frames_of, "Recording whose frames should have a pose, for the coverage")
-          ->type_name("FOLDER|VIDEO");
+  CLI::Option* const frames_of = add_input(command, Input::recording, "--frames-of", options.frames_of,
+                                           "Recording whose frames should have a pose, for the coverage")
+                                     ->type_name("FOLDER|VIDEO");
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
   command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
       ->type_name("body|camera")
@@ -126,10 +131,10 @@ void declare_protocol(CLI::App& command, EvaluateOptions& options) {
       ->check(CLI::IsMember({"causal", "final"}).description(""));
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(-1e6, 1e6).description(""));
+      ->check(between(-1e6, 1e6));
   command.add_option("--max-gap", options.max_gap_s, "Longest gap in the truth to interpolate across")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(between(0.0, 1e6))
       ->capture_default_str();
 }
 
@@ -140,7 +145,8 @@ Action declare_evaluate(CLI::App& command) {
   declare_inputs(command, *options);
   declare_protocol(command, *options);
   command.add_flag("--json", options->json, "Print the report as JSON");
-  command.add_option("--aligned", options->aligned, "Also write the estimate as aligned to the truth, in TUM format")
+  add_output(command, Output::trajectory, "--aligned", options->aligned,
+             "Also write the estimate as aligned to the truth, in TUM format")
       ->type_name("FILE");
   command.footer(kFooter);
   return [options](std::ostream& result) {

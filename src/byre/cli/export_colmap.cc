@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/export_colmap_run.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/open_options.h"
 #include "byre/input/input_error.h"
@@ -57,14 +58,15 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
 
 Action declare_export_colmap(CLI::App& command) {
   const auto options = std::make_shared<ExportCommandOptions>();
-  command.add_option("MAP", options->map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command
-      .add_option("-o,--output", options->model, "Folder for cameras, images and points3D; made when it is not there")
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_output(command, Output::colmap_model, "-o,--output", options->model,
+             "Folder for cameras, images and points3D; made when it is not there")
       ->type_name("MODEL_DIR")
       ->required();
-  command
-      .add_option("--images-of", options->recordings,
-                  "Recordings whose files name the images (else they are called <nanoseconds>.png)")
+  add_input(command, Input::recording, "--images-of", options->recordings,
+            "Recordings whose files name the images (else they are called <nanoseconds>.png)")
       ->type_name("FOLDER...");
   declare_open_options(command, options->open);
   auto* const text = command.add_flag("--text", options->text, "Write the text format");

@@ -1,5 +1,6 @@
 #include "byre/cli/frame_range_options.h"
 
+#include "byre/cli/number_check.h"
 #include <charconv>
 #include <string>
 
@@ -22,10 +23,10 @@ std::optional<int> parse_index(std::string_view text) {
 void declare_frame_range(CLI::App& command, FrameRange& range) {
   command.add_option("--start", range.start_s, "Begin so long after the recording's first frame")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, kLongest_s).description(""));
+      ->check(between(0.0, kLongest_s));
   command.add_option("--end", range.end_s, "End before so long after the recording's first frame")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, kLongest_s).description(""));
+      ->check(between(0.0, kLongest_s));
   const auto set_frames = [&range](const std::string& text) {
     const std::optional<FrameRange> frames = parse_frames(text);
     if (!frames) throw CLI::ValidationError("--frames", "\"" + text + "\" is no range of frames such as 0:150");
@@ -38,7 +39,7 @@ void declare_frame_range(CLI::App& command, FrameRange& range) {
       ->type_name("FIRST:END");
   command.add_option("--stride", range.stride, "Take every n-th frame of those")
       ->type_name("N")
-      ->check(CLI::Range(1, 1'000'000).description(""))
+      ->check(between(1, 1'000'000))
       ->capture_default_str();
 }
 

@@ -1,7 +1,10 @@
 #include "byre/cli/imperfection_options.h"
 
+#include "byre/cli/number_check.h"
+
 #include <map>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -9,10 +12,12 @@ namespace byre::cli {
 namespace {
 
 template <typename Number>
-void add_number(CLI::App& command, const char* name, std::optional<Number>& value, const CLI::Range& range,
+void add_number(CLI::App& command, const char* name, std::optional<Number>& value, std::pair<double, double> range,
                 const char* unit, const char* meaning) {
-  CLI::Range quiet = range;
-  command.add_option(name, value, meaning)->type_name(unit)->check(quiet.description(""))->group("Camera that errs");
+  command.add_option(name, value, meaning)
+      ->type_name(unit)
+      ->check(between(range.first, range.second))
+      ->group("Camera that errs");
 }
 
 // A number of one unit in another; what is there already where none is given.

@@ -1,7 +1,9 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/import_colmap_run.h"
 #include "byre/cli/interrupt.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
@@ -70,7 +72,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   const ColmapModel model = read_colmap_model(options.model);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
+  const InterruptCatcher interrupt({options.map});
   const ColmapImport imported = run_with_progress(model, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
   if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
@@ -83,29 +85,30 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
 
 Action declare_import_colmap(CLI::App& command) {
   const auto options = std::make_shared<ImportCommandOptions>();
-  command.add_option("MODEL", options->model, "Folder with cameras, images and points3D, .bin or .txt, of COLMAP")
+  add_input(command, Input::colmap_model, "MODEL", options->model,
+            "Folder with cameras, images and points3D, .bin or .txt, of COLMAP")
       ->type_name("MODEL_DIR")
       ->required();
-  command.add_option("IMAGES", options->images, "Folder that the names of the model's images are relative to")
+  add_input(command, Input::images, "IMAGES", options->images,
+            "Folder that the names of the model's images are relative to")
       ->type_name("IMAGES_DIR")
       ->required();
-  command.add_option("-o,--output", options->map, "The map")->type_name("FILE")->required();
+  add_output(command, Output::map, "-o,--output", options->map, "The map")->type_name("FILE")->required();
   auto* const scale =
       command
           .add_option("--scale", options->scale, "Length of the model's unit; without it the map has no metric scale")
           ->type_name("METRES")
-          ->check(CLI::Range(1e-9, 1e9).description(""));
-  command
-      .add_option("--body-of", options->body_of,
-                  "Recording whose calibration says where the camera sits in the body (body and camera are one)")
+          ->check(between(1e-9, 1e9));
+  add_input(command, Input::recording, "--body-of", options->body_of,
+            "Recording whose calibration says where the camera sits in the body (body and camera are one)")
       ->type_name("FOLDER")
       ->needs(scale);
   declare_open_options(command, options->open);
   command.add_flag("--model-points-only", options->model_points_only,
                    "Add no points for corners that are none of the model's points");
-  command.add_option("--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
-  command
-      .add_option("--vocabulary", options->vocabulary, "Vocabulary of the map's words (the one that comes with byre)")
+  add_text(command, "--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary of the map's words (the one that comes with byre)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
   command.footer(kFooter);

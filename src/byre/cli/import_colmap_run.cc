@@ -176,16 +176,23 @@ void add_recordings(const std::vector<Calibration>& calibrations, const SfmModel
   }
 }
 
+void require_content(const ColmapModel& model, const std::string& name) {
+  const char* const remedy = "name the folder of a finished reconstruction";
+  if (model.images.empty()) throw InputError(name, "is a model without images, so no map can be made of it", remedy);
+  if (model.points.empty()) throw InputError(name, "is a model without points, so no map can be made of it", remedy);
+}
+
 }  // namespace
 
 ColmapImport import_colmap(const ColmapModel& model, const std::string& model_name, const fs::path& images_folder,
                            const ColmapImportOptions& options, const ColmapImportHooks& hooks) {
+  require_content(model, model_name);
   const double scale = options.metres_per_unit.value_or(1.0);
   Cameras cameras(model, model_name, options);
   ColmapImport result;
   ConvertedModel converted;
   extract_images(model, images_folder, scale, cameras, hooks, converted, result.warnings);
-  if (converted.image_ids.empty() && !model.images.empty()) {
+  if (converted.image_ids.empty()) {
     throw InputError(images_folder.string(), "holds none of the model's images as its cameras took them",
                      "name the folder that was given to colmap as its image path");
   }

@@ -97,6 +97,20 @@ TEST_F(ImportedMap, NeedsAnImage) {
   EXPECT_THROW(import(model_), InputError);
 }
 
+TEST_F(ImportedMap, NeedsAModelWithImagesAndPoints) {
+  const auto error_of = [](const ColmapModel& model) -> std::string {
+    try {
+      import(model);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error_of({}), HasSubstr("model: is a model without images, so no map can be made of it"));
+  model_.points.clear();
+  EXPECT_THAT(error_of(model_), HasSubstr("model: is a model without points, so no map can be made of it"));
+}
+
 TEST_F(ImportedMap, NamesTheCameraItDoesNotHave) {
   model_.cameras.at(1) = {"FOV", 188, 120, {100, 100, 94, 60, 0.9}};
   try {

@@ -1,4 +1,5 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/inspect_point_cloud.h"
 #include "byre/cli/inspect_report.h"
 #include "byre/cli/output_file.h"
@@ -44,9 +45,12 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
 
 Action declare_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectOptions>();
-  command.add_option("MAP", options->map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
   command.add_flag("--json", options->json, "Print the same as JSON, sizes in bytes, lengths in the map's unit");
-  command.add_option("--points", options->points, "Also write the points, coloured by their observations. PLY format")
+  add_output(command, Output::point_cloud, "--points", options->points,
+             "Also write the points, coloured by their observations. PLY format")
       ->type_name("FILE");
   command.footer(kFooter);
   return [options](std::ostream& result) { return run_inspect(*options, result); };

@@ -1,7 +1,6 @@
 #include "byre/cli/interrupt.h"
 
-#include "byre/cli/commands.h"
-
+#include <array>
 #include <atomic>
 #include <string>
 
@@ -10,17 +9,21 @@
 namespace byre::cli {
 namespace {
 
-std::atomic<bool> was_interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "else a signal handler may not write it");
+constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kSignalled = 128;  // added to a signal, as shells do it
 
-// Written only while SIGINT is not caught.
+std::atomic<int> noted_signal = 0;  // 0: none
+static_assert(std::atomic<int>::is_always_lock_free, "else a signal handler may not write it");
+
+// Written only while no signal is caught.
 std::vector<std::string> unfinished_files;
 
 // Calls only what a signal handler may.
-extern "C" void note_interrupt(int) {
-  if (!was_interrupted.exchange(true)) return;
+extern "C" void note_signal(int signal) {
+  int none = 0;
+  if (noted_signal.compare_exchange_strong(none, signal) || signal == SIGHUP) return;
   for (const std::string& file : unfinished_files) unlink(file.c_str());
-  _exit(ExitCode::interrupted);
+  _exit(kSignalled + signal);
 }
 
 // Where write_whole and replace_file write, the latter beside what a link points to.
@@ -37,22 +40,31 @@ std::vector<std::string> unfinished_of(const std::vector<std::filesystem::path>&
 }  // namespace
 
 InterruptCatcher::InterruptCatcher(const std::vector<std::filesystem::path>& outputs) {
-  was_interrupted = false;
+  noted_signal = 0;
   unfinished_files = unfinished_of(outputs);
-  sigaction(SIGINT, nullptr, &previous_);
-  if (previous_.sa_handler == SIG_IGN) return;
   struct sigaction noted {};
-  noted.sa_handler = note_interrupt;
+  noted.sa_handler = note_signal;
   noted.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &noted, nullptr);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], nullptr, &previous_[i]);
+    if (previous_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &noted, nullptr);
+  }
 }
 
 InterruptCatcher::~InterruptCatcher() {
-  sigaction(SIGINT, &previous_, nullptr);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previous_[i], nullptr);
 }
 
 bool InterruptCatcher::caught() const {
-  return was_interrupted;
+  return noted_signal != 0;
+}
+
+int exit_code_of_interrupt() {
+  return kSignalled + (noted_signal == 0 ? SIGINT : noted_signal.load());
+}
+
+void let_writing_fail() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace byre::cli

@@ -1,14 +1,16 @@
 #pragma once
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <vector>
 
 namespace byre::cli {
 
-// While it lives, the first Ctrl-C (SIGINT) is only noted; a second one ends the program at once with exit code 130,
-// and the outputs are left as they were: what was being written beside them is removed. Where SIGINT is ignored, as for
-// a program started in the background, it stays so. Have one at a time.
+// While it lives, the first Ctrl-C (SIGINT), request to end (SIGTERM) or loss of the terminal (SIGHUP) is only noted. A
+// second one ends the program at once with 128 and the signal's number as exit code, and the outputs are left as they
+// were: what was being written beside them is removed. Only SIGHUP never does, as a terminal that closes sends several.
+// Where one is ignored, as by nohup or for a program started in the background, it stays so. Have one at a time.
 class InterruptCatcher {
  public:
   explicit InterruptCatcher(const std::vector<std::filesystem::path>& outputs = {});
@@ -19,7 +21,14 @@ class InterruptCatcher {
   bool caught() const;
 
  private:
-  struct sigaction previous_ {};  // constant after construction
+  std::array<struct sigaction, 3> previous_{};  // constant after construction
 };
+
+// The exit code of a program that ends for the signal that the last catcher noted.
+int exit_code_of_interrupt();
+
+// From now on, writing to a pipe that nobody reads and beyond the limit of file sizes fails, instead of ending the
+// program before its other outputs are written.
+void let_writing_fail();
 
 }  // namespace byre::cli

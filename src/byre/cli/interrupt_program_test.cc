@@ -1,4 +1,4 @@
-// What is left of "byre map" when it is interrupted or killed.
+// What is left of a run that is interrupted or killed, or that cannot write.
 
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/rendered_fixture.h"
@@ -28,21 +28,88 @@ class InterruptedProgram : public ProgramTest {
   }
 };
 
-TEST_F(InterruptedProgram, StopsAtCtrlCAndStillWritesEverything) {
+TEST_F(InterruptedProgram, StopsAndStillWritesEverything) {
   const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live, its second frame is due in an hour
-  const pid_t process = start({"map", slow.folder().string(), "--pace", "live", "-o", (folder_ / "room.byre").string(),
-                               "--trajectory", (folder_ / "final.txt").string(), "--causal-trajectory",
-                               (folder_ / "causal.txt").string(), "--stats", (folder_ / "stats.json").string()});
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const char* const file : {"room.byre", "final.txt", "causal.txt", "stats.json", "stderr.txt"}) {
+      fs::remove(folder_ / file);
+    }
+    const pid_t process =
+        start({"map", slow.folder().string(), "--pace", "live", "-o", (folder_ / "room.byre").string(), "--trajectory",
+               (folder_ / "final.txt").string(), "--causal-trajectory", (folder_ / "causal.txt").string(), "--stats",
+               (folder_ / "stats.json").string()});
+    ASSERT_GT(process, 0);
+    EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
+    kill(process, signal);
+    EXPECT_EQ(exit_code_of(process), 128 + signal);
+    EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(1));
+    EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
+    EXPECT_EQ(json::parse(read("stats.json")).at("stopped_early"), true);
+    EXPECT_THAT(read("stdout.txt"), HasSubstr("2 frames, stopped after 1\n"));
+    EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out; \"byre refine\" does it\n"));
+    EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
+  }
+}
+
+TEST_F(InterruptedProgram, GoesOnWhenItsTerminalClosesAndItWasToldToIgnoreThat) {
+  const RenderedFixture slow("byre_nohup_room", 2, 1.0 / 3600.0);
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  const pid_t process = start({"map", slow.folder().string(), "--pace", "live", "-o", (folder_ / "room.byre").string()},
+                              {SIGINT, SIGTERM});
+  std::signal(SIGHUP, before);
   ASSERT_GT(process, 0);
   EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
-  kill(process, SIGINT);
-  EXPECT_EQ(exit_code_of(process), 130);
-  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(1));
-  EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
-  EXPECT_EQ(json::parse(read("stats.json")).at("stopped_early"), true);
-  EXPECT_THAT(read("stdout.txt"), HasSubstr("2 frames, stopped after 1\n"));
-  EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out; \"byre refine\" does it\n"));
+  kill(process, SIGHUP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_FALSE(fs::exists(folder_ / "room.byre"));
+  kill(process, SIGTERM);
+  EXPECT_EQ(exit_code_of(process), 128 + SIGTERM);
   EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
+}
+
+TEST_F(InterruptedProgram, WritesTheOtherFilesWhenOneIsTooLarge) {
+  const RenderedFixture small("byre_small_room", 2, 20.0);
+  const std::string command = "ulimit -f 8; cd '" + folder_.string() + "' && '" + BYRE_PROGRAM + "' map '" +
+                              small.folder().string() +
+                              "' -o room.byre --trajectory final.txt >stdout.txt 2>stderr.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
+  EXPECT_THAT(read("stderr.txt"), HasSubstr("room.byre.unfinished: cannot be written: File too large (raise the limit "
+                                            "of file sizes (ulimit -f))"));
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(2));
+  EXPECT_FALSE(fs::exists(folder_ / "room.byre.unfinished"));
+}
+
+TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
+  const RenderedFixture small("byre_unheard_room", 2, 20.0);
+  const std::string command = "cd '" + folder_.string() + "' && { sleep 0.2; '" + BYRE_PROGRAM + "' map '" +
+                              small.folder().string() +
+                              "' -o room.byre --trajectory final.txt; echo $? >code.txt; } 2>&1 | true";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_TRUE(appears("1\n", "code.txt"));  // it says that the result could not be written
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(2));
+  EXPECT_GT(load_map(folder_ / "room.byre").map.keyframe_count(), 0);
+}
+
+TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const RenderedFixture small("byre_eventful_room", 3, 20.0);
+  const Outcome full = run("run '" + small.folder().string() + "' --events /dev/full --trajectory final.txt");
+  EXPECT_EQ(full.exit_code, 1);
+  const std::string warning =
+      "byre: warning: /dev/full: events are missing, as they could not be written: No space left";
+  EXPECT_THAT(full.errors, HasSubstr(warning));
+  EXPECT_LT(full.errors.find(warning), full.errors.find("3 of 3 frames"));
+  EXPECT_THAT(full.errors, HasSubstr("byre: error: /dev/full: events are missing"));
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(3));
+
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  const std::string reading = "cd '" + folder_.string() + "' && head -c 1 pipe >/dev/null &";
+  EXPECT_EQ(std::system(reading.c_str()), 0);
+  const Outcome closed = run("run '" + small.folder().string() + "' --events pipe --stats stats.json");
+  EXPECT_EQ(closed.exit_code, 1);
+  EXPECT_THAT(closed.errors,
+              HasSubstr("byre: warning: pipe: events are missing, as they could not be written: Broken"));
+  EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 3u);
 }
 
 TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {

@@ -3,26 +3,45 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 namespace byre::cli {
 namespace {
 
-// Sets what SIGINT does, and puts back what it did before.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+
+// Sets what the signals do, and puts back what they did before.
 class Interrupt : public testing::Test {
  protected:
-  ~Interrupt() override { std::signal(SIGINT, before_); }
+  Interrupt() {
+    for (const int signal : kSignals) before_.push_back(std::signal(signal, SIG_DFL));
+  }
+  ~Interrupt() override {
+    for (std::size_t i = 0; i < before_.size(); ++i) std::signal(kSignals[i], before_[i]);
+  }
 
  private:
-  void (*before_)(int) = std::signal(SIGINT, SIG_DFL);
+  std::vector<void (*)(int)> before_;
 };
 
 TEST_F(Interrupt, IsNotedOnce) {
+  for (const int signal : kSignals) {
+    const InterruptCatcher catcher;
+    EXPECT_FALSE(catcher.caught());
+    std::raise(signal);
+    EXPECT_TRUE(catcher.caught());
+    EXPECT_EQ(exit_code_of_interrupt(), 128 + signal);
+  }
+}
+
+TEST_F(Interrupt, ByATerminalThatClosesNeverEndsTheProgramAtOnce) {
   const InterruptCatcher catcher;
-  EXPECT_FALSE(catcher.caught());
-  std::raise(SIGINT);
-  EXPECT_TRUE(catcher.caught());
+  std::raise(SIGTERM);
+  std::raise(SIGHUP);
+  std::raise(SIGHUP);
+  EXPECT_EQ(exit_code_of_interrupt(), 128 + SIGTERM);
 }
 
 TEST_F(Interrupt, OfAnEarlierCatcherIsForgotten) {
@@ -41,6 +60,13 @@ TEST_F(Interrupt, EndsTheProgramTheSecondTime) {
         std::raise(SIGINT);
       },
       testing::ExitedWithCode(130), "");
+  EXPECT_EXIT(
+      {
+        const InterruptCatcher catcher;
+        std::raise(SIGHUP);
+        std::raise(SIGTERM);
+      },
+      testing::ExitedWithCode(143), "");
 }
 
 TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
@@ -61,10 +87,12 @@ TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
 }
 
 TEST_F(Interrupt, StaysIgnoredWhereItWas) {
-  std::signal(SIGINT, SIG_IGN);
-  const InterruptCatcher catcher;
-  std::raise(SIGINT);
-  EXPECT_FALSE(catcher.caught());
+  for (const int signal : kSignals) {
+    std::signal(signal, SIG_IGN);
+    const InterruptCatcher catcher;
+    std::raise(signal);
+    EXPECT_FALSE(catcher.caught());
+  }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/localise_report.h"
@@ -136,7 +137,9 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
   add_words(stored, vocabulary);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt;
+  std::vector<fs::path> outputs;
+  if (options.trajectory) outputs.push_back(*options.trajectory);
+  const InterruptCatcher interrupt(outputs);
   const Work work = localise_all(options, stored, vocabulary, interrupt);
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
   if (options.trajectory) write_found(work, *options.trajectory);
@@ -146,20 +149,21 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
 }
 
 void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
-  command.add_option("MAP", options.map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command
-      .add_option("INPUT", options.inputs,
-                  "A recording (EuRoC, KITTI odometry, TUM RGB-D, images, a video), or image files")
+  add_input(command, Input::file, "MAP", options.map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_input(command, Input::recording, "INPUT", options.inputs,
+            "A recording (EuRoC, KITTI odometry, TUM RGB-D, images, a video), or image files")
       ->type_name("RECORDING|IMAGES...")
       ->required();
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pose_frame(command, options.frame);
-  command.add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
+  add_input(command, Input::recording, "--truth", options.truth,
+            "True poses of the frames: a trajectory or the recording that holds it")
       ->type_name("FILE|FOLDER");
-  command
-      .add_option("--map-truth", options.map_truth,
-                  "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+  add_input(command, Input::recording, "--map-truth", options.map_truth,
+            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
       ->type_name("FILE|FOLDER")
       ->needs("--truth");
 }
@@ -169,13 +173,14 @@ void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
 Action declare_localise(CLI::App& command) {
   const auto options = std::make_shared<LocaliseCommandOptions>();
   declare_inputs(command, *options);
-  command.add_option("--trajectory", options->trajectory, "Write the poses found. TUM format")->type_name("FILE");
-  command
-      .add_option("--vocabulary", options->vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+  add_output(command, Output::trajectory, "--trajectory", options->trajectory, "Write the poses found. TUM format")
+      ->type_name("FILE");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  command.parse_complete_callback([options] { require_sense(options->range); });
+  check_when_parsed(command, [options] { require_sense(options->range); });
   command.footer(kFooter);
   return [options](std::ostream& result) { return run_localise(*options, result); };
 }

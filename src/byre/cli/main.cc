@@ -1,8 +1,10 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
+#include "byre/cli/interrupt.h"
 #include "byre/input/input_error.h"
 
-#include <array>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -15,58 +17,26 @@ using namespace byre::cli;
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed at work, 2 wrong usage, 3 bad input (a file, a calibration, a recording),\n"
-    "130 stopped by Ctrl-C.\n"
+    "130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (the terminal was closed).\n"
     "\"byre COMMAND --help\" explains a command.";
-
-struct Command {
-  const char* name;
-  const char* summary;
-  Action (*declare)(CLI::App& command);
-};
-
-constexpr std::array kCommands = {
-    Command{"demo", "Show all of it on a simulated cowshed, as a page to look at", declare_demo},
-    Command{"check", "Say what of a recording would spoil a mission, and what to do about it", declare_check},
-    Command{"map", "Turn a recording into a map and a trajectory", declare_map},
-    Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
-    Command{"localise", "Find frames in a map, each without a guess", declare_localise},
-    Command{"register", "Find where a map lies on a floor plan", declare_register},
-    Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},
-    Command{"calibrate", "Refine the calibration of a recording's cameras by what they see", declare_calibrate},
-    Command{"scale", "Give the map of one camera its size, by a distance that is known", declare_scale},
-    Command{"draw", "Draw a map on its floor plan, what the camera saw, and videos of missions", declare_draw},
-    Command{"view", "Show a map in a browser, and find it on a floor plan there", declare_view},
-    Command{"inspect", "Tell what a map holds and how well it fits", declare_inspect},
-    Command{"validate", "Check that a map is sound", declare_validate},
-    Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
-    Command{"benchmark", "Run a protocol of recordings, and tell how accurate and fast each way to run them is",
-            declare_benchmark},
-    Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
-    Command{"simulate", "Render a recording of a made-up barn, with its truth and floor plan", declare_simulate},
-    Command{"import-colmap", "Make a map of a COLMAP model and its images", declare_import_colmap},
-    Command{"export-colmap", "Write a map as a COLMAP model", declare_export_colmap},
-};
-
-// Declares all commands; the one on the command line becomes the action when that is parsed.
-void declare_commands(CLI::App& app, Action& action) {
-  for (const Command& command : kCommands) {
-    CLI::App* const declared = app.add_subcommand(command.name, command.summary);
-    declared->callback([&action, run = command.declare(*declared)] { action = run; });
-  }
-}
 
 int report(const std::string& message, ExitCode code) {
   std::cerr << "byre: error: " << message << "\n";
   return code;
 }
 
-int run(const Action& action) {
+int run(const Action& action, CLI::App& app) {
   try {
+    require_files_or_folders(app);
     const ExitCode code = action(std::cout);
-    if (!std::cout.flush()) throw std::runtime_error("the result cannot be written to the standard output");
+    const bool is_told = static_cast<bool>(std::cout.flush());
+    if (code == interrupted) return exit_code_of_interrupt();  // who listened may be gone with the terminal
+    if (!is_told) throw std::runtime_error("the result cannot be written to the standard output");
     return code;
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
+  } catch (const std::filesystem::filesystem_error& error) {  // such as a link that leads round in a circle
+    return report(error.path1().string() + ": " + error.code().message(), bad_input);
   } catch (const std::exception& error) {
     return report(error.what(), failed);
   }
@@ -82,13 +52,16 @@ int main(int argc, char** argv) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("byre: error: ") + error.what() + "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
   });
+  let_writing_fail();
   Action action;
   declare_commands(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // also --help and --version, which succeed
     return app.exit(error) == done ? done : wrong_usage;
+  } catch (const std::exception& error) {
+    return report(error.what(), failed);
   }
   if (!action) return report("name a command, as \"byre --help\" lists them", wrong_usage);
-  return run(action);
+  return run(action, app);
 }

@@ -60,10 +60,16 @@ MapRun run_and_autosave(Recording& recording, const MapRunOptions& run_options, 
 }
 
 void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
-                   const ResourceUse& resources) {
-  if (options.trajectory) write_whole(*options.trajectory, run.final);
-  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
-  if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
+                   const ResourceUse& resources, OutputWriter& outputs) {
+  outputs.attempt([&] {
+    if (options.trajectory) write_whole(*options.trajectory, run.final);
+  });
+  outputs.attempt([&] {
+    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+  });
+  outputs.attempt([&] {
+    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
+  });
 }
 
 // The map that is gone on with, out of which its record takes all but the map.
@@ -132,8 +138,12 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
   const ResourceUse resources = resources_used_so_far();
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep
-  if (options.map) save(run.map, run.calibration, record);
-  write_results(options, run, protocol, resources);
+  OutputWriter outputs;
+  outputs.attempt([&] {
+    if (options.map) save(run.map, run.calibration, record);
+  });
+  write_results(options, run, protocol, resources, outputs);
+  outputs.require_written();
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;
   require_poses(run, protocol);

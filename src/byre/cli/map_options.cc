@@ -1,8 +1,9 @@
 #include "byre/cli/map_options.h"
 
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
-#include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
 
 #include <map>
@@ -28,42 +29,44 @@ constexpr const char* kFooter = R"(Examples:
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
 KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
-points and redundant keyframes are removed. Ctrl-C stops after the current frame, leaves this out and still writes all
-files, then the exit code is 130; "byre refine" makes up for it. A second Ctrl-C ends the program at once.)";
+points and redundant keyframes are removed. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
+writes all files, then the exit code is 130 or 143; "byre refine" makes up for it. A second one ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
-  command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
-  command.add_option("-o,--output", options.map, "The map, for \"byre localise\", \"byre inspect\" and later missions")
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
+      ->type_name("FOLDER|VIDEO")
+      ->required();
+  add_output(command, Output::map, "-o,--output", options.map,
+             "The map, for \"byre localise\", \"byre inspect\" and later missions")
       ->type_name("MAP");
-  command.add_option("--trajectory", options.trajectory, "Final poses: as recomputed after the last frame. TUM format")
+  add_output(command, Output::trajectory, "--trajectory", options.trajectory,
+             "Final poses: as recomputed after the last frame. TUM format")
       ->type_name("FILE");
-  command
-      .add_option("--causal-trajectory", options.causal_trajectory,
-                  "Causal poses: as published when their frames came. TUM format")
+  add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
+             "Causal poses: as published when their frames came. TUM format")
       ->type_name("FILE");
-  command.add_option("--stats", options.stats, "Times, counts and every frame's report, as JSON")->type_name("FILE");
+  add_output(command, Output::json, "--stats", options.stats, "Times, counts and every frame's report, as JSON")
+      ->type_name("FILE");
 }
 
 void declare_map_content(CLI::App& command, MapOptions& options) {
-  command
-      .add_option("--poses", options.given_poses,
-                  "Take the body's poses from this trajectory and hold them fixed: every frame becomes a keyframe")
+  add_input(command, Input::recording, "--poses", options.given_poses,
+            "Take the body's poses from this trajectory and hold them fixed: every frame becomes a keyframe")
       ->type_name("FILE");
-  command.add_option("--site", options.site, "Name of the building, kept in the map")->type_name("TEXT");
-  command
-      .add_option("--vocabulary", options.vocabulary, "Vocabulary of the map's words (the one that comes with byre)")
+  add_text(command, "--site", options.site, "Name of the building, kept in the map")->type_name("TEXT");
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary of the map's words (the one that comes with byre)")
       ->type_name("FILE");
 }
 
 void declare_building(CLI::App& command, MapOptions& options) {
-  command
-      .add_option("--extend", options.extended,
-                  "Go on with this map: the recording is found in it, and both are adjusted together")
+  add_input(command, Input::file, "--extend", options.extended,
+            "Go on with this map: the recording is found in it, and both are adjusted together")
       ->type_name("MAP");
   command
       .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 1e6).description(""));
+      ->check(between(0.1, 1e6));
   command.add_flag("--no-loops", options.no_loops,
                    "Recognise no places and leave out what comes after the last frame; for comparison");
   command.add_flag("--no-self-calibration", options.no_self_calibration,
@@ -73,10 +76,6 @@ void declare_building(CLI::App& command, MapOptions& options) {
 void require_consistent_extension(const MapOptions& options) {
   if (!options.extended) return;
   if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: name a file for it (-o barn2.byre)");
-  if (is_same_file(*options.extended, *options.map)) {
-    throw CLI::ValidationError("--extend",
-                               "leaves its map as it is: name another file for the new one (-o barn2.byre)");
-  }
   if (options.no_loops)
     throw CLI::ValidationError("--extend", "has to recognise places, so it goes not with --no-loops");
 }
@@ -100,7 +99,6 @@ void require_consistent(const MapOptions& options) {
     throw CLI::ValidationError("--autosave", "saves the map: name a file for it (-o barn.byre)");
   }
   require_consistent_extension(options);
-  require_distinct(options.outputs());
 }
 
 }  // namespace
@@ -130,7 +128,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
       ->type_name("none|stereo|all")
       ->transform(CLI::CheckedTransformer(refinements).description(""));
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
-  command.parse_complete_callback([&options] { require_consistent(options); });
+  check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kFooter);
 }
 

@@ -1,6 +1,7 @@
 #include "byre/cli/mission_input.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 
 #include <array>
 #include <fstream>
@@ -39,6 +40,7 @@ PlanPath path_of(const json& stats, const std::string& file) {
 }  // namespace
 
 PlanPath load_mission(const std::filesystem::path& stats) {
+  refuse_pipe(stats);
   std::ifstream file(stats);
   if (!file) throw InputError(stats.string(), "cannot be opened", "check its name");
   try {

@@ -1,5 +1,6 @@
 #include "byre/cli/open_options.h"
 
+#include "byre/cli/file_arguments.h"
 #include "byre/input/text_file.h"
 
 #include <array>
@@ -41,10 +42,8 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
           "--camera", set_camera,
           "Take both cameras of the recording, one alone, or the colour camera with depth (all it has)")
       ->type_name("stereo|left|right|rgbd");
-  command
-      .add_option(
-          "--calibration", options.calibration,
-          "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
+  add_input(command, Input::file, "--calibration", options.calibration,
+            "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
       ->type_name("FILE");
   command
       .add_option_function<std::string>(

@@ -1,9 +1,10 @@
 #include "byre/cli/output_file.h"
 
 #include "byre/evaluation/trajectory_file.h"
+#include "byre/input/binary_file.h"
 #include "byre/input/input_error.h"
 
-#include <fstream>
+#include <span>
 #include <system_error>
 
 #include <unistd.h>
@@ -28,10 +29,7 @@ void require_access(const fs::path& path) {
 }
 
 void write_text(const std::string& text, const fs::path& path) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
+  write_file(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace
@@ -69,6 +67,18 @@ void write_whole(const fs::path& path, const std::string& text) {
 
 void write_whole(const fs::path& path, const Trajectory& trajectory) {
   write_whole(path, [&trajectory](const fs::path& unfinished) { write_trajectory(trajectory, unfinished); });
+}
+
+void OutputWriter::attempt(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const std::exception&) {
+    if (!first_failure_) first_failure_ = std::current_exception();
+  }
+}
+
+void OutputWriter::require_written() const {
+  if (first_failure_) std::rethrow_exception(first_failure_);
 }
 
 }  // namespace byre::cli

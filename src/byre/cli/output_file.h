@@ -2,6 +2,7 @@
 
 #include "byre/geometry/trajectory.h"
 
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -19,5 +20,15 @@ void write_whole(const std::filesystem::path& path, const std::function<void(con
 // The same for a text, and for a trajectory as a TUM file. Throw InputError when it cannot be written.
 void write_whole(const std::filesystem::path& path, const std::string& text);
 void write_whole(const std::filesystem::path& path, const Trajectory& trajectory);
+
+// Writes the outputs of a command so that one that fails does not keep the others from being written.
+class OutputWriter {
+ public:
+  void attempt(const std::function<void()>& write);
+  void require_written() const;  // throws what the first that failed threw
+
+ private:
+  std::exception_ptr first_failure_;
+};
 
 }  // namespace byre::cli

@@ -6,9 +6,6 @@
 
 namespace byre::cli {
 
-// Throws CLI::ValidationError when two outputs of a command line are one file.
-void require_distinct(const std::vector<std::filesystem::path>& outputs);
-
 // Also by other names for it; neither need exist.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 

@@ -48,8 +48,8 @@ class ProgramTest : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
   }
 
-  // Starts the program with SIGINT as it is in a terminal.
-  pid_t start(std::vector<std::string> arguments) const {
+  // Starts the program with these signals as they are in a terminal.
+  pid_t start(std::vector<std::string> arguments, const std::vector<int>& signals = {SIGINT, SIGTERM, SIGHUP}) const {
     arguments.insert(arguments.begin(), BYRE_PROGRAM);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -60,12 +60,12 @@ class ProgramTest : public testing::Test {
     for (const auto& [stream, path] : streams) {
       posix_spawn_file_actions_addopen(&files, stream, path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     }
-    sigset_t interrupt;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
+    sigset_t as_in_a_terminal;
+    sigemptyset(&as_in_a_terminal);
+    for (const int signal : signals) sigaddset(&as_in_a_terminal, signal);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setsigdefault(&attributes, &interrupt);
+    posix_spawnattr_setsigdefault(&attributes, &as_in_a_terminal);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     pid_t process = -1;
     EXPECT_EQ(posix_spawn(&process, BYRE_PROGRAM, &files, &attributes, pointers.data(), environ), 0);

@@ -1,4 +1,5 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/finish_hooks.h"
 #include "byre/cli/finish_report.h"
 #include "byre/cli/formatted.h"
@@ -83,10 +84,13 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
 
 Action declare_refine(CLI::App& command) {
   const auto options = std::make_shared<RefineOptions>();
-  command.add_option("MAP", options->map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command.add_option("-o,--output", options->output, "The refined map (it replaces the other)")->type_name("MAP");
-  command
-      .add_option("--vocabulary", options->vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_output(command, Output::refined_map, "-o,--output", options->output, "The refined map (it replaces the other)")
+      ->type_name("MAP");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--json", options->json, "Print what changed as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");

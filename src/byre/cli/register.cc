@@ -1,4 +1,6 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/register_report.h"
 #include "byre/cli/register_run.h"
@@ -66,24 +68,27 @@ ExitCode run_register(const RegisterCommandOptions& options, std::ostream& resul
 
 Action declare_register(CLI::App& command) {
   const auto options = std::make_shared<RegisterCommandOptions>();
-  command.add_option("MAP", options->map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command.add_option("--plan", options->plan, "The floor plan: a map_server YAML file, or an image with a world file")
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_input(command, Input::plan, "--plan", options->plan,
+            "The floor plan: a map_server YAML file, or an image with a world file")
       ->type_name("FILE")
       ->required();
-  command.add_option("--points", options->picks, "Points picked in the map and on the plan: a CSV file")
+  add_input(command, Input::file, "--points", options->picks, "Points picked in the map and on the plan: a CSV file")
       ->type_name("FILE")
       ->required();
-  CLI::Option* const output =
-      command.add_option("-o,--output", options->output, "The map with its place on the plan (none is written)")
-          ->type_name("MAP");
+  CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
+                                         "The map with its place on the plan (none is written)")
+                                  ->type_name("MAP");
   command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")
       ->type_name("METRES")
-      ->check(CLI::Range(1e-4, 100.0).description(""));
+      ->check(between(1e-4, 100.0));
   command
       .add_option("--body-height", options->registering.registration.body_height,
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
-      ->check(CLI::Range(-100.0, 100.0).description(""));
+      ->check(between(-100.0, 100.0));
   command
       .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
       ->needs(output);

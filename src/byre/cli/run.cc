@@ -15,9 +15,12 @@
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 namespace byre::cli {
@@ -76,27 +79,45 @@ MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
   return protocol;
 }
 
-// Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends.
-std::ofstream open_events(const fs::path& path) {
-  std::ofstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
-  return file;
-}
+// Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends. That they
+// cannot be written any more is told at once, for somebody may wait for them.
+class EventFile {
+ public:
+  explicit EventFile(const std::optional<fs::path>& path) : path_(path) {
+    if (!path_) return;
+    file_.open(*path_);
+    if (!file_) throw InputError(path_->string(), "cannot be written", "check that its folder exists and has space");
+  }
+
+  void note(int number, const MappedFrame& frame) {
+    if (!path_ || has_failed_) return;
+    errno = 0;
+    log_.note(number, frame);
+    has_failed_ = !file_;
+    if (has_failed_) show_warnings(std::cerr, {fault() + (errno == 0 ? "" : std::string(": ") + std::strerror(errno))});
+  }
+
+  void require_written() const {
+    if (has_failed_) throw std::runtime_error(fault());
+  }
+
+ private:
+  std::string fault() const { return path_->string() + ": events are missing, as they could not be written"; }
+
+  std::optional<fs::path> path_;  // empty: nothing is noted
+  std::ofstream file_;
+  EventLog log_{file_};
+  bool has_failed_ = false;
+};
 
 MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options, RunViewer* viewer,
-                   const InterruptCatcher& interrupt) {
+                   EventFile& events, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
   if (viewer != nullptr) hooks.look = shown_in(*viewer);
-  if (!options.events) return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
-  std::ofstream file = open_events(*options.events);
-  EventLog log(file);
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
-    log.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
+    events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
   };
-  MapRun run = run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
-  if (!file)
-    run.warnings.push_back(options.events->string() + ": events are missing, as the file could not be written");
-  return run;
+  return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
 }
 
 Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth,
@@ -120,11 +141,19 @@ void save_online_map(const MapRun& run, const RunOptions& options, const ScaledR
 }
 
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol, const Mission& mission,
-                   const ResourceUse& resources) {
-  if (options.trajectory) write_whole(*options.trajectory, run.final);
-  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
-  if (options.odometry) write_whole(*options.odometry, run.odometry);
-  if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
+                   const ResourceUse& resources, OutputWriter& outputs) {
+  outputs.attempt([&] {
+    if (options.trajectory) write_whole(*options.trajectory, run.final);
+  });
+  outputs.attempt([&] {
+    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+  });
+  outputs.attempt([&] {
+    if (options.odometry) write_whole(*options.odometry, run.odometry);
+  });
+  outputs.attempt([&] {
+    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
+  });
 }
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {
@@ -144,26 +173,30 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
           ? start_viewer(options.view, {options.recording, *opened.recording, options.map, protocol.options.offline})
           : nullptr;
   const InterruptCatcher interrupt(options.outputs());
-  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), interrupt);
+  EventFile events(options.events);
+  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), events, interrupt);
   if (viewer) viewer->end_run();
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
   }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
-  if (options.online_map) {
-    save_online_map(run, options, opened, *protocol.options.vocabulary);
-  }
+  OutputWriter outputs;
+  outputs.attempt([&] {
+    if (options.online_map) save_online_map(run, options, opened, *protocol.options.vocabulary);
+  });
   const ResourceUse resources = resources_used_so_far();
   const Mission mission = judge(run, protocol.options, truth, opened);
   if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
-  write_results(options, run, protocol, mission, resources);
+  write_results(options, run, protocol, mission, resources, outputs);
+  outputs.require_written();
   result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {
     result.flush();
     serve_until_interrupted(interrupt, options.quiet);
   }
+  events.require_written();
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -1,9 +1,10 @@
 #include "byre/cli/run_options.h"
 
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/frame_range_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
-#include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
 
 #include <map>
@@ -34,29 +35,29 @@ Without --map all is mapped, as "byre map" does it, finishing included. With tru
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
 With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C; docs/viewer.md says more.
-Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
-a pose. docs/mission.md describes the events and what health means.)";
+Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
+when no frame got a pose, or events could not be written. docs/mission.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
-  command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
+      ->type_name("FOLDER|VIDEO")
+      ->required();
   CLI::Option* const map =
-      command.add_option("--map", options.map, "The offline map of the mission (none: plain SLAM)")->type_name("MAP");
+      add_input(command, Input::file, "--map", options.map, "The offline map of the mission (none: plain SLAM)")
+          ->type_name("MAP");
   command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
       ->needs(map);
   declare_pose_frame(command, options.frame)->needs(map);
-  CLI::Option* const truth =
-      command
-          .add_option("--truth", options.truth, "True poses of the frames: a trajectory or the recording that holds it")
-          ->type_name("FILE|FOLDER");
-  command
-      .add_option("--map-truth", options.map_truth,
-                  "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+  CLI::Option* const truth = add_input(command, Input::recording, "--truth", options.truth,
+                                       "True poses of the frames: a trajectory or the recording that holds it")
+                                 ->type_name("FILE|FOLDER");
+  add_input(command, Input::recording, "--map-truth", options.map_truth,
+            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
       ->type_name("FILE|FOLDER")
       ->needs(truth)
       ->needs(map);
-  command
-      .add_option("--map-trajectory", options.map_trajectory,
-                  "Final poses of the run that made the map, to align it by all of them (by the map's keyframes)")
+  add_input(command, Input::recording, "--map-trajectory", options.map_trajectory,
+            "Final poses of the run that made the map, to align it by all of them (by the map's keyframes)")
       ->type_name("FILE")
       ->needs(truth)
       ->needs(map);
@@ -68,28 +69,29 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(-1e6, 1e6).description(""))
+      ->check(between(-1e6, 1e6))
       ->needs(truth);
-  command.add_option("--vocabulary", options.vocabulary, "Vocabulary to look places up with (the one byre comes with)")
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
       ->type_name("FILE");
 }
 
 void declare_outputs(CLI::App& command, RunOptions& options) {
-  command
-      .add_option("--save-online", options.online_map, "What was mapped beside the offline map, as a map of its own")
+  add_output(command, Output::map, "--save-online", options.online_map,
+             "What was mapped beside the offline map, as a map of its own")
       ->type_name("MAP");
-  command.add_option("--events", options.events, "What happens, as it happens: JSON lines")->type_name("FILE");
-  command
-      .add_option("--trajectory", options.trajectory,
-                  "Final poses in the map's frame: as recomputed after the last frame. TUM format")
+  add_output(command, Output::json, "--events", options.events, "What happens, as it happens: JSON lines")
       ->type_name("FILE");
-  command
-      .add_option("--causal-trajectory", options.causal_trajectory,
-                  "Causal poses in the map's frame: as published when their frames came. TUM format")
+  add_output(command, Output::trajectory, "--trajectory", options.trajectory,
+             "Final poses in the map's frame: as recomputed after the last frame. TUM format")
       ->type_name("FILE");
-  command.add_option("--odometry", options.odometry, "Smooth poses, as published, in a frame of their own. TUM format")
+  add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
+             "Causal poses in the map's frame: as published when their frames came. TUM format")
       ->type_name("FILE");
-  command.add_option("--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
+  add_output(command, Output::trajectory, "--odometry", options.odometry,
+             "Smooth poses, as published, in a frame of their own. TUM format")
+      ->type_name("FILE");
+  add_output(command, Output::json, "--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
       ->type_name("FILE");
 }
 
@@ -100,12 +102,6 @@ void require_consistent(const RunOptions& options) {
   }
   if (options.view.plan && !options.map) {
     throw CLI::ValidationError("--plan", "lies under a map: name one that was found on it with --map");
-  }
-  require_distinct(options.outputs());
-  for (const fs::path& output : options.outputs()) {
-    if (options.map && is_same_file(output, *options.map)) {
-      throw CLI::ValidationError("--map", "is only read: name another file for what is to be written");
-    }
   }
 }
 
@@ -120,7 +116,7 @@ void declare_tracking(CLI::App& command, TrackOptions& track) {
           "--offline-weight", track.offline_weight,
           formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
       ->type_name("FACTOR")
-      ->check(CLI::Range(1e-3, 1e3).description(""));
+      ->check(between(1e-3, 1e3));
   command
       .add_option(
           "--offline-policy", track.offline_policy,
@@ -148,7 +144,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_tracking(command, options.track);
   declare_watching(command, options.view);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
-  command.parse_complete_callback([&options] { require_consistent(options); });
+  check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kFooter);
 }
 

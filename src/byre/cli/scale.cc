@@ -1,5 +1,7 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/scale_run.h"
 
@@ -45,13 +47,17 @@ ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
 
 Action declare_scale(CLI::App& command) {
   const auto options = std::make_shared<ScaleOptions>();
-  command.add_option("MAP", options->map, "Map of one camera, as \"byre map\" writes it")->type_name("MAP")->required();
-  command.add_option("--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map of one camera, as \"byre map\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_text(command, "--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
   command.add_option("--metres", options->metres, "How far they are from each other")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber.description(""))
+      ->check(above_zero())
       ->required();
-  command.add_option("-o,--output", options->output, "The map with lengths in metres")->type_name("MAP")->required();
+  add_output(command, Output::map, "-o,--output", options->output, "The map with lengths in metres")
+      ->type_name("MAP")
+      ->required();
   command.footer(kFooter);
   return [options](std::ostream& result) { return run_scale(*options, result); };
 }

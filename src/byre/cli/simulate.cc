@@ -1,6 +1,8 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/imperfection_options.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/report_json.h"
 #include "byre/cli/simulate_run.h"
 
@@ -88,13 +90,10 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
   command.add_option("--seed", barn.seed, "Which barn")->type_name("N")->capture_default_str();
   command.add_option("--mission", barn.mission, "Which visit to it, counted from 1")
       ->type_name("N")
-      ->check(CLI::Range(1, 1'000'000).description(""))
+      ->check(between(1, 1'000'000))
       ->capture_default_str();
   const auto add_amount = [&command](const char* name, double& value, double most, const char* meaning) {
-    command.add_option(name, value, meaning)
-        ->type_name("NUMBER")
-        ->check(CLI::Range(0.0, most).description(""))
-        ->capture_default_str();
+    command.add_option(name, value, meaning)->type_name("NUMBER")->check(between(0.0, most))->capture_default_str();
   };
   add_amount("--change", barn.change, 1.0, "Share of the movable things that are elsewhere than in mission 1");
   add_amount("--dirt", options.dirt, 4.0, "On the lenses: 1 is a dozen of soft spots");
@@ -107,27 +106,25 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
                   "Of the feed store, into which the robot drives where it is open (closed; open later)")
       ->type_name("open|closed")
       ->transform(CLI::CheckedTransformer(gates).description(""));
-  command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 40).description(""));
+  command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")->type_name("N")->check(between(0, 40));
 }
 
 void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
   command.add_option("--duration", options.duration_s, "Of the drive; a longer one goes farther, then round again")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 36000.0).description(""))
+      ->check(between(0.1, 36000.0))
       ->capture_default_str();
   command.add_option("--rate", options.frame_rate_hz, "Stereo pairs in a second")
       ->type_name("HZ")
-      ->check(CLI::Range(1.0, 200.0).description(""))
+      ->check(between(1.0, 200.0))
       ->capture_default_str();
   command.add_option("--divide", options.image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
       ->type_name("N")
-      ->check(CLI::Range(1, 16).description(""))
+      ->check(between(1, 16))
       ->capture_default_str();
   command.add_option("--threads", options.threads, "To render with (0: as many as the machine has)")
       ->type_name("N")
-      ->check(CLI::Range(0, 256).description(""))
+      ->check(between(0, 256))
       ->capture_default_str();
 }
 
@@ -140,7 +137,9 @@ Action declare_simulate(CLI::App& command) {
   declare_visit(cowshed, options->recording);
   declare_camera(cowshed, options->recording);
   declare_imperfection(cowshed, options->imperfection);
-  cowshed.add_option("-o,--output", options->output, "Folder for the recording")->type_name("FOLDER")->required();
+  add_output(cowshed, Output::folder, "-o,--output", options->output, "Folder for the recording")
+      ->type_name("FOLDER")
+      ->required();
   cowshed.add_flag("--json", options->json, "Print the report as JSON");
   cowshed.add_flag("--quiet", options->quiet, "Show no progress");
   cowshed.footer(kFooter);

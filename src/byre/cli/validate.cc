@@ -1,4 +1,5 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/map/map_file.h"
 
 #include <filesystem>
@@ -29,7 +30,7 @@ ExitCode run_validate(const std::filesystem::path& path, std::ostream& result) {
 
 Action declare_validate(CLI::App& command) {
   const auto path = std::make_shared<std::filesystem::path>();
-  command.add_option("MAP", *path, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", *path, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
   command.footer(kFooter);
   return [path](std::ostream& result) { return run_validate(*path, result); };
 }

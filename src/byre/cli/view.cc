@@ -1,4 +1,6 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/view_run.h"
@@ -68,23 +70,25 @@ void require_consistent(const ViewCommandOptions& options) {
 
 Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
-  command.add_option("MAP", options->map, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
   declare_viewing(command, options->view);
-  CLI::Option* const output =
-      command.add_option("-o,--output", options->output, "Where the page saves the map with its place on the plan")
-          ->type_name("MAP")
-          ->needs("--plan");
+  CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
+                                         "Where the page saves the map with its place on the plan")
+                                  ->type_name("MAP")
+                                  ->needs("--plan");
   command.add_flag("--overwrite", options->overwrite, "The output may be the map itself")->needs(output);
   command.add_option("--pick-sigma", options->pick_sigma, "How well points are picked, one sigma (0.05)")
       ->type_name("METRES")
-      ->check(CLI::Range(1e-4, 100.0).description(""));
+      ->check(between(1e-4, 100.0));
   command
       .add_option("--body-height", options->registration.body_height,
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
-      ->check(CLI::Range(-100.0, 100.0).description(""));
+      ->check(between(-100.0, 100.0));
   command.add_flag("--quiet", options->quiet, "Tell nothing but the address");
-  command.parse_complete_callback([options] { require_consistent(*options); });
+  check_when_parsed(command, [options] { require_consistent(*options); });
   command.footer(kFooter);
   return [options](std::ostream&) { return view(*options); };
 }

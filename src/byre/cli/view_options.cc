@@ -1,5 +1,7 @@
 #include "byre/cli/view_options.h"
 
+#include "byre/cli/file_arguments.h"
+#include "byre/cli/number_check.h"
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -10,19 +12,18 @@ namespace {
 CLI::Option* declare_port(CLI::App& command, const std::string& name, int& port, const std::string& what) {
   return command.add_option(name, port, what + " (" + std::to_string(port) + "; 0: one that is free)")
       ->type_name("PORT")
-      ->check(CLI::Range(0, 65535).description(""));
+      ->check(between(0, 65535));
 }
 
 CLI::Option* declare_address(CLI::App& command, ViewOptions& options) {
-  return command
-      .add_option("--bind", options.server.address,
+  return add_text(command, "--bind", options.server.address,
                   "Address of this machine to serve at, 0.0.0.0 for all; whoever asks needs the token in the address "
                   "that is shown (127.0.0.1: this machine alone, without a token)")
       ->type_name("ADDRESS");
 }
 
 CLI::Option* declare_plan(CLI::App& command, ViewOptions& options, const std::string& what) {
-  return command.add_option("--plan", options.plan, what)->type_name("FILE");
+  return add_input(command, Input::plan, "--plan", options.plan, what)->type_name("FILE");
 }
 
 }  // namespace

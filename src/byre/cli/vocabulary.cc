@@ -1,7 +1,9 @@
 #include "byre/place/vocabulary.h"
 
 #include "byre/cli/commands.h"
+#include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
+#include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
 #include "byre/cli/stopwatch.h"
@@ -111,26 +113,24 @@ void run_show(const ShowOptions& options, std::ostream& result) {
 }
 
 void declare_output(CLI::App& command, fs::path& output) {
-  command.add_option("-o,--output", output, "Vocabulary to write")->type_name("FILE")->required();
+  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary to write")->type_name("FILE")->required();
 }
 
 void declare_train(CLI::App& command, TrainOptions& options) {
-  command.add_option("IMAGES", options.images, "Image files, and folders whose image files are all taken")
+  add_input(command, Input::images, "IMAGES", options.images,
+            "Image files, and folders whose image files are all taken")
       ->type_name("FILE|FOLDER")
       ->required();
   declare_output(command, options.output);
   const auto add_number = [&command](const char* name, int& value, int min, int max, const char* meaning) {
-    command.add_option(name, value, meaning)
-        ->type_name("N")
-        ->check(CLI::Range(min, max).description(""))
-        ->capture_default_str();
+    command.add_option(name, value, meaning)->type_name("N")->check(between(min, max))->capture_default_str();
   };
   add_number("--branching", options.tree.branching, 2, 255, "Children of a node of the tree");
   add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree; it has at most branching^depth words");
   add_number("--features", options.features, 1, 1'000'000, "Features to take from an image at most");
   command.add_option("--seed", options.tree.seed, "Of the random choices in clustering")
       ->type_name("N")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->check(from(0.0))
       ->capture_default_str();
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.footer(kTrainFooter);
@@ -161,12 +161,13 @@ Action declare_vocabulary(CLI::App& command) {
 
   declare_train(add(command, "train", "Learn a vocabulary from images", train, run_train, chosen), *train);
   CLI::App& importing = add(command, "import", "Take over a vocabulary of DBoW2", import, run_import, chosen);
-  importing.add_option("INPUT", import->input, "Text file as DBoW2 writes it, of 256-bit descriptors")
+  add_input(importing, Input::file, "INPUT", import->input, "Text file as DBoW2 writes it, of 256-bit descriptors")
       ->type_name("FILE")
       ->required();
   declare_output(importing, import->output);
   CLI::App& showing = add(command, "show", "Tell the size and the checksum of a vocabulary", show, run_show, chosen);
-  showing.add_option("VOCABULARY", show->file, "Unless given, the one that byre would use")->type_name("FILE");
+  add_input(showing, Input::file, "VOCABULARY", show->file, "Unless given, the one that byre would use")
+      ->type_name("FILE");
   return [chosen](std::ostream& result) { return (*chosen)(result); };
 }
 

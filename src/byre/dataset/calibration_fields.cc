@@ -1,6 +1,7 @@
 #include "byre/dataset/calibration_fields.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 
 #include <cmath>
@@ -13,6 +14,7 @@ namespace {
 
 // OpenCV writes "%YAML:1.0" in the first line, which is no directive of YAML's; a comment keeps the line numbers.
 std::string readable_yaml(const std::filesystem::path& path) {
+  refuse_pipe(path);
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
   std::ostringstream text;

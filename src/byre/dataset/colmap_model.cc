@@ -24,6 +24,18 @@ std::string point_place(const fs::path& folder, std::uint64_t id) {
   return (folder / "points3D").string() + ": point " + std::to_string(id);
 }
 
+// A model from elsewhere must not have files read that are none of its images.
+void require_names_inside(const ColmapModel& model, const fs::path& folder) {
+  for (const auto& [id, image] : model.images) {
+    const fs::path name = image.name;
+    const bool is_inside = !name.empty() && !name.is_absolute() && std::ranges::count(name, fs::path("..")) == 0;
+    if (is_inside) continue;
+    throw InputError(image_place(folder, id),
+                     "is named \"" + image.name + "\", which leads out of the folder of images",
+                     "give it a name in that folder");
+  }
+}
+
 void require_known_camera_and_points(const ColmapModel& model, const fs::path& folder) {
   for (const auto& [id, image] : model.images) {
     if (!model.cameras.contains(image.camera_id)) {
@@ -75,6 +87,7 @@ ColmapModel read_colmap_model(const fs::path& folder) {
     throw InputError(folder.string(), "holds no COLMAP model",
                      "name the folder with cameras, images and points3D, all .bin or all .txt, such as sparse/0");
   }
+  require_names_inside(model, folder);
   require_known_camera_and_points(model, folder);
   require_mutual_tracks(model, folder);
   return model;

@@ -167,5 +167,14 @@ TEST_P(DamagedBinaryFile, IsReadOrRefusedWhateverByteIsWrong) {
 INSTANTIATE_TEST_SUITE_P(Each, DamagedBinaryFile, testing::Values("cameras.bin", "images.bin", "points3D.bin"),
                          [](const auto& file) { return std::string(file.param, std::string(file.param).find('.')); });
 
+TEST_F(ColmapModelFiles, AreRefusedWhereAnImageIsNamedOutsideOfTheFolder) {
+  for (const char* const name : {"/etc/passwd", "../1.png", "a/../../1.png", "a/..", ".."}) {
+    const auto rename = [name](ColmapModel& model) { model.images.at(3).name = name; };
+    EXPECT_THAT(error_after(rename), HasSubstr("images: image 3: is named \"" + std::string(name) +
+                                               "\", which leads out of the folder of images"));
+  }
+  EXPECT_EQ(error_after([](ColmapModel& model) { model.images.at(3).name = "a/..b/...png"; }), "no InputError");
+}
+
 }  // namespace
 }  // namespace byre

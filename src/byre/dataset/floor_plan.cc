@@ -1,7 +1,9 @@
 #include "byre/dataset/floor_plan.h"
 
 #include "byre/dataset/image_file.h"
+#include "byre/dataset/image_size.h"
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 
 #include <algorithm>
@@ -21,6 +23,13 @@ namespace fs = std::filesystem;
 constexpr double kSmallestPixel = 1e-4;
 
 void read_image_size(FloorPlan& plan) {
+  const std::optional<ImageSize> size = stated_size(plan.image);
+  if (size && size->pixels() > kMostPixels) {
+    throw InputError(plan.image.string(),
+                     "is of " + std::to_string(size->width) + " x " + std::to_string(size->height) +
+                         " pixels, more than the 100 million that a floor plan may have",
+                     "make the image smaller, and its pixels larger");
+  }
   const std::optional<Image> image = read_image(plan.image);
   if (!image) {
     throw InputError(plan.image.string(), "cannot be read as the image of a floor plan",
@@ -31,6 +40,7 @@ void read_image_size(FloorPlan& plan) {
 }
 
 YAML::Node load_yaml(const fs::path& path) {
+  refuse_pipe(path);
   try {
     YAML::Node root = YAML::LoadFile(path.string());
     if (!root.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
@@ -90,17 +100,6 @@ FloorPlan read_map_server_plan(const fs::path& path) {
   return plan;
 }
 
-std::optional<fs::path> find_world_file(const fs::path& image) {
-  const std::string extension = image.extension().string();
-  if (extension.size() < 3) return std::nullopt;
-  const std::array<std::string, 3> extensions = {{{'.', extension[1], extension.back(), 'w'}, extension + "w", ".wld"}};
-  for (const std::string& other : extensions) {
-    const fs::path path = fs::path(image).replace_extension(other);
-    if (fs::exists(path)) return path;
-  }
-  return std::nullopt;
-}
-
 std::array<double, 6> read_six_numbers(const fs::path& path) {
   const std::vector<TextLine> lines = read_lines(path);
   std::array<double, 6> numbers{};
@@ -142,6 +141,17 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
 }
 
 }  // namespace
+
+std::optional<fs::path> find_world_file(const fs::path& image) {
+  const std::string extension = image.extension().string();
+  if (extension.size() < 3) return std::nullopt;
+  const std::array<std::string, 3> extensions = {{{'.', extension[1], extension.back(), 'w'}, extension + "w", ".wld"}};
+  for (const std::string& other : extensions) {
+    const fs::path path = fs::path(image).replace_extension(other);
+    if (fs::exists(path)) return path;
+  }
+  return std::nullopt;
+}
 
 FloorPlan read_floor_plan(const fs::path& path) {
   const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -32,5 +33,8 @@ struct FloorPlan {
 // of six lines: the step to the right in x and in y, the step down in x and in y, the centre of the top left pixel.
 // Throws InputError naming file and field when one of the two is missing, cannot be read or makes no sense.
 FloorPlan read_floor_plan(const std::filesystem::path& path);
+
+// The one beside an image, where there is one.
+std::optional<std::filesystem::path> find_world_file(const std::filesystem::path& image);
 
 }  // namespace byre

@@ -93,5 +93,11 @@ TEST_F(FloorPlans, AreRefusedWithAWorldFileThatMakesNoSense) {
   EXPECT_THAT(fault_in_world_file("1e-6\n0\n0\n-1e-6\n11.2\n48.1\n"), AllOf(HasSubstr("degrees"), HasSubstr("UTM")));
 }
 
+TEST_F(FloorPlans, OfMoreThanAHundredMillionPixelsAreNotDecoded) {
+  write("plan.pgm", "P5\n30000 30000\n255\n");
+  EXPECT_THAT(fault_in_yaml("image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"),
+              HasSubstr("plan.pgm: is of 30000 x 30000 pixels, more than the 100 million that a floor plan may have"));
+}
+
 }  // namespace
 }  // namespace byre

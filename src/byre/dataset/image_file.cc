@@ -1,5 +1,7 @@
 #include "byre/dataset/image_file.h"
 
+#include "byre/dataset/image_size.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -34,6 +36,8 @@ bool is_cut_jpeg(const Bytes& bytes) {
 }
 
 cv::Mat decode(const Bytes& bytes, int flags) {
+  const std::optional<ImageSize> size = stated_size(bytes);
+  if (size && size->pixels() > kMostPixels) return {};
   try {
     return cv::imdecode(bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // sizes beyond the decoder's limits

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 namespace byre {
 namespace {
@@ -303,6 +304,16 @@ TEST_F(RealRecording, OfKittiIsRead) {
   EXPECT_NEAR(recording->calibration().right->right_from_left.translation.x(), -0.537, 0.001);
   EXPECT_EQ(recording->read(59)->left.width, 1241);
   EXPECT_TRUE(find_ground_truth(folder).has_value());
+}
+
+TEST_F(EurocRecording, DoesNotWaitForPipesInItsFolders) {
+  for (const char* const name : {"mav0/cam0/data.csv", "mav0/cam0/sensor.yaml"}) {
+    fs::rename(folder_ / name, folder_ / "kept");
+    ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
+    EXPECT_THAT(open_error(), HasSubstr(std::string(name) + ": is a pipe or a device, not a file"));
+    fs::remove(folder_ / name);
+    fs::rename(folder_ / "kept", folder_ / name);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "byre/evaluation/trajectory_file.h"
 
+#include "byre/input/binary_file.h"
 #include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
 
@@ -161,11 +162,9 @@ std::vector<Timestamp> read_times(const fs::path& path) {
 }
 
 void write_trajectory(const Trajectory& trajectory, const fs::path& path) {
-  std::ofstream file(path);
-  file << "# timestamp tx ty tz qx qy qz qw\n";
-  for (const StampedPose& sample : trajectory) file << format_pose(sample);
-  file.close();
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and has space");
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& sample : trajectory) text += format_pose(sample);
+  write_file(path, std::as_bytes(std::span(text)));
 }
 
 std::optional<fs::path> find_euroc_ground_truth(const fs::path& folder) {

@@ -1,6 +1,7 @@
 #include "byre/input/binary_file.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -25,12 +26,19 @@ namespace fs = std::filesystem;
 constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
 constexpr std::string_view kWriteRemedy = "check that its folder exists, may be written to and has space";
 
+[[noreturn]] void fail_to_write(const fs::path& path) {
+  if (errno == ENOSPC || errno == EDQUOT) fail(path, "cannot be written", "make space, or name a file on another disk");
+  if (errno == EFBIG) fail(path, "cannot be written", "raise the limit of file sizes (ulimit -f)");
+  fail(path, "cannot be written", kWriteRemedy);
+}
+
 // An open file, closed at the end of its life.
 class OpenFile {
  public:
   OpenFile(const fs::path& path, int flags, std::string_view remedy)
       : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(path, "cannot be opened", remedy);
+    const bool is_to_write = (flags & O_ACCMODE) == O_WRONLY;
+    if (descriptor_ < 0) fail(path, is_to_write ? "cannot be written" : "cannot be opened", remedy);
   }
   ~OpenFile() { close(descriptor_); }
   OpenFile(const OpenFile&) = delete;
@@ -56,13 +64,13 @@ class OpenFile {
   void write_all(std::span<const std::byte> bytes) const {
     while (!bytes.empty()) {
       const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-      if (count < 0 && errno != EINTR) fail(path_, "cannot be written", kWriteRemedy);
+      if (count < 0 && errno != EINTR) fail_to_write(path_);
       if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));
     }
   }
 
   void sync() const {
-    if (fsync(descriptor_) != 0) fail(path_, "cannot be written", kWriteRemedy);
+    if (fsync(descriptor_) != 0) fail_to_write(path_);
   }
 
  private:
@@ -92,6 +100,7 @@ void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
 }  // namespace
 
 std::vector<std::byte> read_file(const fs::path& path) {
+  refuse_pipe(path);
   const OpenFile file(path, O_RDONLY, kReadRemedy);
   const struct stat status = file.status();
   if (S_ISDIR(status.st_mode)) throw InputError(path.string(), "is a folder", "name a file in it");
@@ -122,7 +131,12 @@ void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
   OpenFile(folder_of(target), O_RDONLY | O_DIRECTORY, kWriteRemedy).sync();
 }
 
+void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  OpenFile(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy).write_all(bytes);
+}
+
 MappedFile::MappedFile(const fs::path& path) {
+  refuse_pipe(path);
   const OpenFile file(path, O_RDONLY, kReadRemedy);
   const struct stat status = file.status();
   if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");

@@ -16,6 +16,10 @@ std::vector<std::byte> read_file(const std::filesystem::path& path);
 // a device or a pipe is written to directly. Throws InputError, and leaves path as it was, when it cannot be done.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+// Writes it where it is, in place of what is there. Throws InputError when it cannot be done, and says what to do where
+// the disk is full or the file larger than allowed.
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 // A file as read-only memory, loaded page by page as it is looked at; for large files of our own that nobody writes to.
 class MappedFile {
  public:

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace byre {
@@ -76,6 +77,25 @@ TEST_F(BinaryFile, IsMappedAsItIs) {
   EXPECT_EQ(text_of(MappedFile(folder_ / "file").bytes()), "mapped");
   replace_file(folder_ / "empty", {});
   EXPECT_TRUE(MappedFile(folder_ / "empty").bytes().empty());
+}
+
+TEST_F(BinaryFile, IsNeverAPipeOrALinkInACircle) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("circle", folder_ / "circle");
+  EXPECT_THROW(read_file(folder_ / "pipe"), InputError);
+  EXPECT_THROW(MappedFile(folder_ / "pipe"), InputError);
+  EXPECT_THROW(read_file(folder_ / "circle"), InputError);
+  EXPECT_THROW(read_file("/dev/zero"), InputError);
+}
+
+TEST_F(BinaryFile, SaysWhatToDoWhereTheDiskIsFull) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  try {
+    write_file("/dev/full", bytes_of("text"));
+    FAIL() << "written";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("No space left on device (make space, or name a file on another"));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "byre/input/csv_table.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ std::string CsvTable::place_of(const Row& row) const {
 }
 
 CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std::string_view>& known_columns) {
+  refuse_pipe(path);
   if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");

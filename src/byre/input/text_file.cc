@@ -1,6 +1,7 @@
 #include "byre/input/text_file.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/regular_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -54,6 +55,7 @@ std::optional<std::pair<std::string, int>> split_exponent(std::string_view text)
 }  // namespace
 
 std::vector<TextLine> read_lines(const std::filesystem::path& path) {
+  refuse_pipe(path);
   if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");

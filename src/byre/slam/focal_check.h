@@ -23,8 +23,8 @@ std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, 
                                                  const PoseRefinementOptions& options);
 
 struct FocalCheckOptions {
-  double max_error =
-      0.03;  // share of the focal length; a worn calibration is off by 0.003, hand-held frames say up to 0.022
+  // Share of the focal length: a worn calibration is off by 0.003, hand-held frames of a sound camera say up to 0.022.
+  double max_error = 0.025;
   int min_points = 60;   // of a frame that counts
   int asked_first = 5;   // frames, one after the other
   int asked_every = 20;  // frames, from then on
