@@ -95,7 +95,7 @@ describe("A map", () => {
 
 describe("A run", () => {
   async function openRun() {
-    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0");
+    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0", "--view-for", "inf");
     return openPage(browser, viewer.url);
   }
 

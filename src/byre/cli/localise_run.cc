@@ -52,12 +52,12 @@ class Finder {
 
 // The image as the camera would have taken it; empty, with a warning added, when it cannot be read.
 std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
-  std::optional<Image> image = read_image(path);
+  auto [image, failure] = try_image(path);
   if (!image) {
-    warnings.push_back(path.string() + ": is not a whole image");
+    warnings.push_back(path.string() + ": " + failure);
     return std::nullopt;
   }
-  if (image->width == camera.width && image->height == camera.height) return image;
+  if (image->width == camera.width && image->height == camera.height) return std::move(image);
   warnings.push_back(
       path.string() +
       formatted(": is of %d x %d pixels, the camera of %d x %d: scaled and cut, as if it were the camera's",

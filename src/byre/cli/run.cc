@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/event_log.h"
+#include "byre/cli/formatted.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/output_file.h"
@@ -17,6 +18,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 namespace byre::cli {
@@ -126,6 +128,14 @@ void write_results(const RunOptions& options, const MapRun& run, const MapProtoc
   if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
 }
 
+void require_frames(const MissionStatistics& statistics) {
+  if (!is_full_of_gaps(statistics)) return;
+  throw std::runtime_error(
+      formatted("%d of %d frames could not be read, so this was not the whole mission; the warnings "
+                "say why",
+                statistics.missing, statistics.frames));
+}
+
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
@@ -158,8 +168,9 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {
     result.flush();
-    serve_until_interrupted(interrupt, options.quiet);
+    serve_after_run(options.view, interrupt, options.quiet);
   }
+  require_frames(mission.statistics);
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -33,9 +33,10 @@ beside the map; with --frame plan poses in the map become poses on the floor pla
 Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
-With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C; docs/viewer.md says more.
+With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
+as long as --view-for says; docs/viewer.md says more.
 Ctrl-C stops after the current frame and still writes all files, then the exit code is 130. Exit code 1 when no frame got
-a pose. docs/mission.md describes the events and what health means.)";
+a pose, or more than one frame in twenty could not be read. docs/mission.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();

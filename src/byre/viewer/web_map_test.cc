@@ -55,7 +55,7 @@ class MapViewerTest : public TestFolder {
   }
 
   static WebClient client_of(const MapViewer& viewer) {
-    return WebClient(std::stoi(viewer.url().substr(viewer.url().rfind(':') + 1)));
+    return WebClient(std::stoi(viewer.urls().back().substr(viewer.urls().back().rfind(':') + 1)));
   }
 
   FloorPlanScene scene_;
