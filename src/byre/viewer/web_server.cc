@@ -36,7 +36,7 @@ constexpr auto kIdleTime = std::chrono::seconds(30);
 constexpr auto kPauseAfterFailure = std::chrono::milliseconds(200);
 constexpr std::uint32_t kMaxHeadBytes = 8 << 10;
 constexpr std::size_t kMaxRequestBytes = 1 << 20;
-constexpr int kMaxWaiting = 128;                   // connections that the kernel keeps until they are let in
+constexpr int kMaxWaiting = 512;                   // connections that the kernel keeps until they are let in
 constexpr int kNiceness = 5;                       // of the server's thread: what else the program does comes first
 constexpr std::size_t kMaxMessageBytes = 1 << 10;  // from a page, which has nothing to say there
 constexpr auto kPathOfMessages = "/live";
@@ -310,7 +310,8 @@ class WebServer::Core {
         urls_(urls_of(acceptor_.local_endpoint(), access_.token)) {
     accept();
     thread_ = std::thread([this] {
-      setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+      const auto self = static_cast<id_t>(gettid());
+      setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNiceness);
       context_.run();
     });
   }
