@@ -4,6 +4,7 @@
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
+#include "byre/cli/trajectory_output.h"
 
 #include <map>
 #include <string>
@@ -35,11 +36,10 @@ void declare_files(CLI::App& command, MapOptions& options) {
   command.add_option("RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO")->required();
   command.add_option("-o,--output", options.map, "The map, for \"byre localise\", \"byre inspect\" and later missions")
       ->type_name("MAP");
-  command.add_option("--trajectory", options.trajectory, "Final poses: as recomputed after the last frame. TUM format")
+  command.add_option("--trajectory", options.trajectory, "Final poses: as recomputed after the last frame")
       ->type_name("FILE");
   command
-      .add_option("--causal-trajectory", options.causal_trajectory,
-                  "Causal poses: as published when their frames came. TUM format")
+      .add_option("--causal-trajectory", options.causal_trajectory, "Causal poses: as published when their frames came")
       ->type_name("FILE");
   command.add_option("--stats", options.stats, "Times, counts and every frame's report, as JSON")->type_name("FILE");
 }
@@ -129,6 +129,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
       .add_option("--refine", options.refinement, "Matches refined in the image; less than all is for comparison (all)")
       ->type_name("none|stereo|all")
       ->transform(CLI::CheckedTransformer(refinements).description(""));
+  declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.parse_complete_callback([&options] { require_consistent(options); });
   command.footer(kFooter);

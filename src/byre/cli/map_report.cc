@@ -217,7 +217,8 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
                     const std::vector<std::string>& files, const std::optional<Mission>& mission) {
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
-  text += row("path", formatted("%.2f %s", path_length(run.final), protocol.is_metric ? "m" : "units"));
+  text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
+                                protocol.is_metric ? "m" : "units", run.final.size()));
   text += cost_rows(run, protocol.options.pace, resources);
   text += closing_rows(run, files);
   return text;

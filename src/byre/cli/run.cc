@@ -10,6 +10,7 @@
 #include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
+#include "byre/cli/trajectory_output.h"
 #include "byre/cli/view_run.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
@@ -122,9 +123,9 @@ void save_online_map(const MapRun& run, const RunOptions& options, const ScaledR
 
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol, const Mission& mission,
                    const ResourceUse& resources) {
-  if (options.trajectory) write_whole(*options.trajectory, run.final);
-  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
-  if (options.odometry) write_whole(*options.odometry, run.odometry);
+  if (options.trajectory) write_whole(*options.trajectory, run.final, options.trajectory_format);
+  if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal, options.trajectory_format);
+  if (options.odometry) write_whole(*options.odometry, run.odometry, options.trajectory_format);
   if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
 }
 

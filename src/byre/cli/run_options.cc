@@ -5,6 +5,7 @@
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_options.h"
 #include "byre/cli/pace_option.h"
+#include "byre/cli/trajectory_output.h"
 
 #include <map>
 #include <string>
@@ -82,13 +83,13 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
   command.add_option("--events", options.events, "What happens, as it happens: JSON lines")->type_name("FILE");
   command
       .add_option("--trajectory", options.trajectory,
-                  "Final poses in the map's frame: as recomputed after the last frame. TUM format")
+                  "Final poses in the map's frame: as recomputed after the last frame")
       ->type_name("FILE");
   command
       .add_option("--causal-trajectory", options.causal_trajectory,
-                  "Causal poses in the map's frame: as published when their frames came. TUM format")
+                  "Causal poses in the map's frame: as published when their frames came")
       ->type_name("FILE");
-  command.add_option("--odometry", options.odometry, "Smooth poses, as published, in a frame of their own. TUM format")
+  command.add_option("--odometry", options.odometry, "Smooth poses, as published, in a frame of their own")
       ->type_name("FILE");
   command.add_option("--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
       ->type_name("FILE");
@@ -148,6 +149,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_pace(command, options.pace);
   declare_tracking(command, options.track);
   declare_watching(command, options.view);
+  declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   command.parse_complete_callback([&options] { require_consistent(options); });
   command.footer(kFooter);
