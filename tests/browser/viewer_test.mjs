@@ -1,6 +1,6 @@
 // What a person does with the viewer, done by a browser. Screenshots stay in the folder "screenshots".
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
 import { eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
@@ -42,10 +42,10 @@ describe("A map", () => {
     const page = await openMap();
     assert.ok((await pointCount(page)) > 500);
     const withPoints = await settledPictureOf(page, kStage);
-    await page.getByRole("button", { name: "Offline map" }).click();
+    await page.getByRole("button", { name: "Known map" }).click();
     const without = await settledPictureOf(page, kStage);
     assert.ok((await differentPixels(page, withPoints, without)) > 500, "hiding the points changes the picture");
-    await page.getByRole("button", { name: "Offline map" }).click();
+    await page.getByRole("button", { name: "Known map" }).click();
     assert.equal(await differentPixels(page, withPoints, await settledPictureOf(page, kStage)), 0);
     await screenshot(page, "map");
     assert.deepEqual(page.problems, []);
@@ -94,8 +94,18 @@ describe("A map", () => {
 });
 
 describe("A run", () => {
+  test("explains its figures to whoever points at them", async () => {
+    const page = await openRun();
+    await eventually(async () => (await frameOf(page, "valuenow")) > 0, () => "frames");
+    for (const name of await page.locator(".health dt").all()) {
+      assert.ok((await name.getAttribute("title")).length > 20, await name.innerText());
+    }
+    const said = await page.locator(".health dl").innerText();
+    assert.doesNotMatch(said, /inlier|keyframe|covariance|sigma|offline|online/i);
+  });
+
   async function openRun() {
-    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0");
+    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0", "--view-for", "inf");
     return openPage(browser, viewer.url);
   }
 
@@ -202,6 +212,29 @@ describe("Picking", () => {
     assert.match(readFileSync("room-plan.picks.csv", "utf8"), /^name,point,plan_x_m,plan_y_m\nplace 1,\d+,/);
     const registered = outputOf("register", "room.byre", "--plan", plan.file, "--points", "room-plan.picks.csv");
     assert.match(registered, /3/);
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("a wrong place is saved only when somebody who was told how wrong wants it", async () => {
+    const plan = writePlan("room-plan");
+    const page = await openMap({}, "--plan", plan.file, "-o", "wrong-plan.byre");
+    const canvas = await page.locator("canvas.plan").boundingBox();
+    const wrong = [[0.1, 0.1], [0.9, 0.85], [0.15, 0.9]];
+    for (const [i, place] of [{ x: 0.2, y: 0.5 }, { x: 0.8, y: 0.6 }, { x: 0.35, y: 0.3 }].entries()) {
+      await pickInMap(page, place);
+      await page.mouse.click(canvas.x + wrong[i][0] * canvas.width, canvas.y + wrong[i][1] * canvas.height);
+    }
+    await page.getByText(/the map is off its plan by \d+\.\d+ m/).waitFor();
+    await page.getByRole("button", { name: "Save the map" }).click();
+    const dialog = page.getByRole("dialog");
+    assert.match(await dialog.innerText(), /places picked are \d+\.\d+ m off/);
+    await screenshot(page, "confirm");
+    await page.getByRole("button", { name: "Do not save" }).click();
+    await dialog.waitFor({ state: "detached" });
+    assert.ok(!existsSync("wrong-plan.byre"));
+    await page.getByRole("button", { name: "Save the map" }).click();
+    await page.getByRole("button", { name: "Save all the same" }).click();
+    await page.getByText(/Written: .*wrong-plan.byre/).waitFor();
     assert.deepEqual(page.problems, []);
   });
 

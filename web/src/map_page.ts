@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
 import type { MapData } from "./decode";
+import { isConfirmed } from "./confirm";
 import { byId } from "./dom";
 import { MapSpace } from "./map_space";
 import { PickList } from "./panels/pick_list";
@@ -19,12 +20,19 @@ const kPointsOnPlan = 20000;
 export async function startMapPage(scene: MapScene, space: MapSpace): Promise<void> {
   const map = await loadMap("offline");
   space.showOffline(map);
-  byId("subtitle").textContent = `${map.points.length / 3} points, ${map.keyframes.length / 7} keyframes`;
+  byId("subtitle").textContent = `${map.points.length / 3} points, ${map.keyframes.length / 7} views`;
   if (!scene.plan) {
     byId("main").classList.add("alone");
     return;
   }
   new Picking(scene, scene.plan, map, space);
+}
+
+function farOffWarning({ residual_m }: PlanFit): string {
+  return (
+    `The map and the plan do not fit: the places picked are ${residual_m.toFixed(2)} m off. A robot that uses this ` +
+    "plan would be shown, or sent, as far from where it is. Check the picks, and whether the plan is to scale."
+  );
 }
 
 class Picking {
@@ -138,8 +146,11 @@ class Picking {
   }
 
   async #save(): Promise<void> {
+    const fit = this.#fit;
+    if (!fit) return;
+    if (fit.is_far_off && !(await isConfirmed(farOffWarning(fit), "Save all the same"))) return;
     try {
-      const written = await save(this.#picks);
+      const written = await save(this.#picks, fit.is_far_off ? fit.residual_m : undefined);
       this.#list.tellSaved(`Written: ${written.join(", ")}`);
     } catch (error) {
       this.#list.tellSaved(`Not saved. ${(error as Error).message}`);

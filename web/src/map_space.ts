@@ -49,9 +49,10 @@ export class MapSpace {
   addButtons(...more: HTMLElement[]): void {
     const { stage } = this;
     if (!stage) return;
-    const shown = (name: string, mark: string, colour: string, things: { visible: boolean }[]) =>
+    const shown = (name: string, title: string, mark: string, colour: string, things: { visible: boolean }[]) =>
       layerButton({
         name,
+        title,
         mark,
         colour,
         isOn: true,
@@ -61,18 +62,22 @@ export class MapSpace {
         },
       });
     byId("layers").append(
-      shown("Offline map", "●", "offline", [this.#offline.points]),
-      shown("Keyframes", "—", "path", [this.#offlinePath.lines, this.#onlinePath.lines]),
+      shown("Known map", "Points of the map made before. Show or hide", "●", "offline", [this.#offline.points]),
+      shown("Ways", "Where the camera was when the points were found. Show or hide", "—", "path", [
+        this.#offlinePath.lines,
+        this.#onlinePath.lines,
+      ]),
       ...more,
-      actionButton("All", "A", () => stage.showAll()),
-      actionButton("From above", "T", () => stage.showFromAbove()),
+      actionButton("All", "A", "See the whole map", () => stage.showAll()),
+      actionButton("From above", "T", "Look straight down, as on a floor plan", () => stage.showFromAbove()),
     );
   }
 
   onlineButton(): HTMLElement {
     const things = [this.#online.points];
     return layerButton({
-      name: "Online map",
+      name: "New on this drive",
+      title: "Points found on this drive. Show or hide",
       mark: "◆",
       colour: "online",
       isOn: true,

@@ -29,7 +29,13 @@ class RunPage {
   readonly #health: HealthPanel;
   readonly #robot: Robot;
   readonly #path = new MissionPath();
-  readonly #follow: Layer = { name: "Follow", key: "F", isOn: false, set: () => this.#followRobot() };
+  readonly #follow: Layer = {
+    name: "Follow",
+    title: "Keep the robot in the middle",
+    key: "F",
+    isOn: false,
+    set: () => this.#followRobot(),
+  };
   #isPlaced: boolean; // it is known which way is up
   #shownImage = -1;
 

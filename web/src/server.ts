@@ -45,9 +45,9 @@ export function register(picks: Pick[]): Promise<PlanFit> {
   return post("/registration", { picks });
 }
 
-/** Gives the names of the files written. */
-export async function save(picks: Pick[]): Promise<string[]> {
-  return (await post<{ written: string[] }>("/save", { picks })).written;
+/** Gives the names of the files written. The residual is what somebody was told and accepts, in metres. */
+export async function save(picks: Pick[], accepted?: number): Promise<string[]> {
+  return (await post<{ written: string[] }>("/save", { picks, accepted_residual_m: accepted })).written;
 }
 
 export interface LiveListener {

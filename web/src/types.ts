@@ -94,6 +94,8 @@ export interface Pick {
 export interface PlanFit {
   registration: RegistrationFields;
   rms_m: number;
+  residual_m: number; // what the map is off by, also where outliers may be the right ones
+  is_far_off: boolean; // not to be saved unless somebody was told the figure
   residuals: { error_m: Vector2Fields; is_outlier: boolean }[];
   doubts: string[];
 }

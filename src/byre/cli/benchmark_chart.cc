@@ -208,6 +208,24 @@ std::string legend(const Chart& chart) {
   return svg;
 }
 
+double height_of(const Frame& frame) {
+  return kTop + frame.height + kBottom;
+}
+
+std::string begin_of_svg(double height) {
+  std::string svg =
+      formatted("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" ", kWidth, height);
+  svg += formatted("viewBox=\"0 0 %.0f %.0f\" font-family=\"Helvetica, Arial, sans-serif\" ", kWidth, height);
+  return svg + formatted("font-size=\"13\" fill=\"%s\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"%s\"/>\n", kInk,
+                         kPaper);
+}
+
+std::string content(const Chart& chart, const Frame& frame) {
+  return text_at(kLeft, 30.0, chart.title, "font-size=\"18\" font-weight=\"bold\"") +
+         text_at(kLeft, 52.0, chart.subtitle, formatted("fill=\"%s\"", kFaint)) + axes(chart, frame) +
+         curves(chart, frame) + legend(chart);
+}
+
 }  // namespace
 
 std::vector<double> round_ticks(double least, double most) {
@@ -227,15 +245,18 @@ std::vector<double> round_ticks(double least, double most) {
 
 std::string to_svg(const Chart& chart) {
   const Frame frame = frame_of(chart);
-  const double height = kTop + frame.height + kBottom;
-  std::string svg =
-      formatted("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" ", kWidth, height);
-  svg += formatted("viewBox=\"0 0 %.0f %.0f\" font-family=\"Helvetica, Arial, sans-serif\" ", kWidth, height);
-  svg +=
-      formatted("font-size=\"13\" fill=\"%s\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"%s\"/>\n", kInk, kPaper);
-  svg += text_at(kLeft, 30.0, chart.title, "font-size=\"18\" font-weight=\"bold\"");
-  svg += text_at(kLeft, 52.0, chart.subtitle, formatted("fill=\"%s\"", kFaint));
-  return svg + axes(chart, frame) + curves(chart, frame) + legend(chart) + "</svg>\n";
+  return begin_of_svg(height_of(frame)) + content(chart, frame) + "</svg>\n";
+}
+
+std::string to_svg(const std::vector<Chart>& charts) {
+  double height = 0.0;
+  std::string svg;
+  for (const Chart& chart : charts) {
+    const Frame frame = frame_of(chart);
+    svg += formatted("<g transform=\"translate(0 %.0f)\">\n", height) + content(chart, frame) + "</g>\n";
+    height += height_of(frame);
+  }
+  return begin_of_svg(height) + svg + "</svg>\n";
 }
 
 }  // namespace byre::cli

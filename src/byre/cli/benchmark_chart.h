@@ -28,6 +28,9 @@ struct Chart {
 // A picture of its own, 860 pixels wide, on a light background; axes with ticks, and a legend.
 std::string to_svg(const Chart& chart);
 
+// Several, one below the other.
+std::string to_svg(const std::vector<Chart>& charts);
+
 // Round values in a range, ascending: at least four, and so that they divide it into ten parts at most. Precondition:
 // least < most.
 std::vector<double> round_ticks(double least, double most);

@@ -117,6 +117,16 @@ TEST(Chart, DrawsMetresEquallyLongWhereAsked) {
   }
 }
 
+TEST(Chart, GoesBelowAnother) {
+  Chart second = parabola();
+  second.title = "Again";
+  const std::string svg = to_svg(std::vector<Chart>{parabola(), second});
+  EXPECT_EQ(fault_of_xml(svg), "");
+  EXPECT_EQ(count(svg, "<polyline"), 2);
+  EXPECT_EQ(count(svg, "<svg"), 1);
+  EXPECT_THAT(svg, HasSubstr(">Again<"));
+}
+
 TEST(RoundTicks, DivideRangesEvenly) {
   EXPECT_THAT(round_ticks(1.0, 11.0), ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0));
   EXPECT_THAT(round_ticks(-3.0, 30.0), ElementsAre(0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0));

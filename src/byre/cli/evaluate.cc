@@ -1,10 +1,12 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/evaluation_plot.h"
 #include "byre/cli/evaluation_report.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/trajectory_input.h"
+#include "byre/cli/trajectory_output.h"
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_file.h"
 #include "byre/input/input_error.h"
@@ -29,6 +31,8 @@ struct EvaluateOptions {
   std::optional<fs::path> frames_of;
   OpenOptions open;
   std::optional<fs::path> aligned;
+  TrajectoryFormat format = TrajectoryFormat::tum;  // of what is written
+  std::optional<fs::path> plot;
   Protocol protocol;
   double time_offset_s = 0.0;
   double max_gap_s = to_seconds(AssociationOptions{}.max_gap);
@@ -40,11 +44,13 @@ constexpr const char* kFooter = R"(Examples:
   byre evaluate --estimate out.txt --truth MH_01_easy --frames-of MH_01_easy --label final
   byre evaluate --estimate out.txt --truth MH_01_easy --time-offset -0.0075
   byre evaluate --estimate out.txt --truth kitti/poses/00.txt --times kitti/sequences/00/times.txt
+  byre evaluate --estimate out.txt --truth MH_01_easy --align origin --plot errors.svg
   byre evaluate --estimate mono.txt --truth MH_01_easy --frames-of MH_01_easy --camera left --estimate-of camera --alignment sim3
 
 Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera. What byre maps with one
 camera alone is the path of that camera, in units of its own: --estimate-of camera takes the truth there, by the calibration of
---frames-of, and --alignment sim3 finds the unit.)";
+--frames-of, and --alignment sim3 finds the unit. Segments are those of KITTI's development kit: the error of the motion
+along 100 to 800 m of the true path, in per cent and degrees a metre.)";
 
 // Of what the estimate is of.
 Trajectory true_path(const EvaluateOptions& options) {
@@ -78,6 +84,17 @@ Trajectory aligned_trajectory(const Trajectory& estimate, const EvaluationReport
   return result;
 }
 
+bool is_of_kitti(const fs::path& truth) {
+  const std::optional<fs::path> file = fs::is_directory(truth) ? find_ground_truth(truth) : truth;
+  return file && !fs::is_directory(*file) && guess_trajectory_format(*file) == TrajectoryFormat::kitti;
+}
+
+void write_plot(const EvaluateOptions& options, const EvaluationReport& report, const Trajectory& estimate,
+                const Trajectory& truth) {
+  if (!report.ate) throw std::runtime_error("the estimate cannot be aligned, so it is not drawn");
+  write_whole(*options.plot, evaluation_plot(report, estimate, truth, is_of_kitti(options.truth)));
+}
+
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
   if (options.aligned) require_writable(*options.aligned);
   const Trajectory estimate = load_trajectory(options.estimate, options.times);
@@ -90,7 +107,8 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
     throw InputError(options.estimate.string(), "no pose has truth at its time",
                      "the estimate is from " + span_of(estimate) + ", the truth from " + span_of(truth));
   }
-  if (options.aligned) write_whole(*options.aligned, aligned_trajectory(estimate, *report));
+  if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned, options.format);
+  if (options.plot) write_plot(options, *report, estimate, truth);
   const auto print = options.json ? to_json : to_text;
   result << print(*report, options.estimate.string(), options.truth.string());
 }
@@ -120,11 +138,12 @@ void declare_inputs(CLI::App& command, EvaluateOptions& options) {
 
 void declare_protocol(CLI::App& command, EvaluateOptions& options) {
   const std::map<std::string, Alignment> alignments = {
-      {"se3", Alignment::se3}, {"sim3", Alignment::sim3}, {"none", Alignment::none}};
+      {"se3", Alignment::se3}, {"sim3", Alignment::sim3}, {"origin", Alignment::origin}, {"none", Alignment::none}};
   command
-      .add_option("--alignment", options.protocol.alignment,
-                  "se3 (default), sim3 for monocular estimates, none for poses in the frame of an aligned map")
-      ->type_name("se3|sim3|none")
+      .add_option("--alignment,--align", options.protocol.alignment,
+                  "se3 (default), sim3 for monocular estimates, origin to lay the first pose on the true one, none for "
+                  "poses in the frame of an aligned map")
+      ->type_name("se3|sim3|origin|none")
       ->transform(CLI::CheckedTransformer(alignments).description(""));
   command.add_option("--label", options.protocol.label, "Which poses these are, for the report's header")
       ->type_name("causal|final")
@@ -146,7 +165,11 @@ Action declare_evaluate(CLI::App& command) {
   declare_protocol(command, *options);
   command.add_flag("--json", options->json, "Print the report as JSON");
   add_output(command, Output::trajectory, "--aligned", options->aligned,
-             "Also write the estimate as aligned to the truth, in TUM format")
+             "Also write the estimate, all its poses, as aligned to the truth")
+      ->type_name("FILE");
+  declare_trajectory_format(command, options->format);
+  add_output(command, Output::picture, "--plot", options->plot,
+             "Also draw both paths from above, and the error over time, as an SVG picture")
       ->type_name("FILE");
   command.footer(kFooter);
   return [options](std::ostream& result) {

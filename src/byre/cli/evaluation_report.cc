@@ -2,6 +2,7 @@
 
 #include "byre/cli/formatted.h"
 
+#include <algorithm>
 #include <sstream>
 #include <string_view>
 
@@ -18,7 +19,13 @@ double to_milliseconds(Timestamp time) {
   return 1e3 * to_seconds(time);
 }
 
+// The first estimated pose laid on the true one of its time.
+Similarity origin_alignment(const PosePair& first) {
+  return {1.0, first.true_world_from_body * inverse(first.estimated_world_from_body)};
+}
+
 std::optional<AbsoluteTrajectoryError> absolute_error(const std::vector<PosePair>& pairs, Alignment alignment) {
+  if (alignment == Alignment::origin) return absolute_trajectory_error(pairs, origin_alignment(pairs.front()));
   if (alignment == Alignment::none) return absolute_trajectory_error(pairs, Similarity{});
   return absolute_trajectory_error(pairs, alignment == Alignment::sim3 ? Scale::free : Scale::fixed);
 }
@@ -35,6 +42,8 @@ std::string_view name_of(Alignment alignment) {
       return "se3";
     case Alignment::sim3:
       return "sim3";
+    case Alignment::origin:
+      return "origin";
     case Alignment::none:
       return "none";
   }
@@ -43,9 +52,22 @@ std::string_view name_of(Alignment alignment) {
 
 std::string describe_alignment(const EvaluationReport& report) {
   if (report.protocol.alignment == Alignment::none) return "none, the estimate is taken to be in the truth's frame";
+  if (report.protocol.alignment == Alignment::origin)
+    return "origin: the first pose is laid on the true one, rotation too";
   if (!report.ate) return "impossible: the positions lie on a line, or there are fewer than three";
   if (report.protocol.alignment == Alignment::se3) return "SE(3) over all pairs (Umeyama)";
   return formatted("Sim(3) over all pairs (Umeyama), scale %.6f", report.ate->truth_from_estimate.scale);
+}
+
+// Empty where there is nothing to beware of.
+std::string caveat_row(const EvaluationReport& report) {
+  const Alignment alignment = report.protocol.alignment;
+  if (!is_nearly_a_line(report) || (alignment != Alignment::se3 && alignment != Alignment::sim3)) return "";
+  return formatted(
+      "caveat       the path is nearly a line: it spreads %.3g m along it, %.3g m across. How the alignment "
+      "turns about that line is\n             not determined, so errors across it and of rotation may be "
+      "any (--alignment origin has no such freedom)\n",
+      report.true_spread[0], report.true_spread[1]);
 }
 
 std::string describe_association(const EvaluationReport& report) {
@@ -70,7 +92,8 @@ std::string header(const EvaluationReport& report, const std::string& estimate_f
        << "association  " << describe_association(report) << "\n"
        << "time offset  " << to_seconds(report.protocol.association.time_offset) << " s, added to the truth's time\n"
        << "coverage     " << describe_coverage(report) << "\n"
-       << "true path    " << formatted("%.2f m", report.true_path) << "\n";
+       << "true path    " << formatted("%.2f m", report.true_path) << "\n"
+       << caveat_row(report);
   return text.str();
 }
 
@@ -88,6 +111,33 @@ Json to_json(const ErrorStatistics& errors) {
 
 Json to_json(const RelativePoseError& error) {
   return {{"translation_m", to_json(error.translation)}, {"rotation_deg", to_json(error.rotation)}};
+}
+
+std::string segment_row(const std::string& name, const SegmentError& error) {
+  return formatted("%-22s %9.4f %% %11.6f deg/m %8d segments\n", name.c_str(), 1e2 * error.translation, error.rotation,
+                   error.count);
+}
+
+std::string segment_rows(const SegmentErrors& segments) {
+  if (segments.all.count == 0) return "segments (KITTI)       none, as the path is shorter than 100 m\n";
+  std::string text = segment_row("segments (KITTI)", segments.all);
+  for (const SegmentError& error : segments.by_length)
+    text += segment_row(formatted("  of %.0f m", error.length), error);
+  return text;
+}
+
+Json to_json(const SegmentError& error) {
+  if (error.count == 0) return nullptr;
+  return {
+      {"translation_percent", 1e2 * error.translation}, {"rotation_deg_per_m", error.rotation}, {"count", error.count}};
+}
+
+Json to_json(const SegmentErrors& segments) {
+  Json json = {{"all", to_json(segments.all)}, {"by_length_m", Json::object()}};
+  for (const SegmentError& error : segments.by_length) {
+    json["by_length_m"][formatted("%.0f", error.length)] = to_json(error);
+  }
+  return json;
 }
 
 Json to_json(const Similarity& truth_from_estimate) {
@@ -124,6 +174,14 @@ Json ate_json(const std::optional<AbsoluteTrajectoryError>& ate) {
 
 }  // namespace
 
+bool is_nearly_a_line(const EvaluationReport& report) {
+  constexpr double kThinnest = 0.01;     // of the length; less is the unevenness of a floor, or of a hand
+  constexpr double kErrorsAcross = 3.0;  // the width in errors of the position from which on it tells a turn
+  const double width = report.true_spread[1];
+  const double error = report.ate ? report.ate->translation.rmse : 0.0;
+  return width < std::max(kThinnest * report.true_spread[0], kErrorsAcross * error);
+}
+
 std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Trajectory& truth, const Protocol& protocol,
                                          const std::optional<ExpectedFrames>& expected) {
   const std::vector<PosePair> pairs = associate(estimate, truth, protocol.association);
@@ -142,6 +200,8 @@ std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Traje
   report.rpe_frame = relative_pose_error_by_frame(pairs, scale);
   report.rpe_second = relative_pose_error_by_time(pairs, std::chrono::seconds(1), scale);
   report.rpe_metre = relative_pose_error_by_distance(pairs, 1.0, scale);
+  report.segments = segment_errors(pairs, scale);
+  report.true_spread = principal_spread(pairs);
   return report;
 }
 
@@ -157,7 +217,7 @@ std::string to_text(const EvaluationReport& report, const std::string& estimate_
   text += row("RPE 1 s        degrees", report.rpe_second.rotation);
   text += row("RPE 1 m        m", report.rpe_metre.translation);
   text += row("RPE 1 m        degrees", report.rpe_metre.rotation);
-  return text;
+  return text + segment_rows(report.segments);
 }
 
 std::string to_json(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
@@ -167,12 +227,15 @@ std::string to_json(const EvaluationReport& report, const std::string& estimate_
       {"truth", {{"file", truth_file}, {"poses", report.true_poses}}},
       {"pairs", report.pairs},
       {"true_path_m", report.true_path},
+      {"true_spread_m", {report.true_spread[0], report.true_spread[1], report.true_spread[2]}},
+      {"is_nearly_a_line", is_nearly_a_line(report)},
       {"coverage", coverage_json(report)},
       {"ate", ate_json(report.ate)},
       {"rpe",
        {{"1_frame", to_json(report.rpe_frame)},
         {"1_s", to_json(report.rpe_second)},
         {"1_m", to_json(report.rpe_metre)}}},
+      {"segments", to_json(report.segments)},
   };
   constexpr int kIndent = 2;
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";

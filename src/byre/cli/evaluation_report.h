@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/evaluation/segment_error.h"
 #include "byre/evaluation/trajectory_error.h"
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace byre::cli {
 
-enum class Alignment { se3, sim3, none };
+enum class Alignment { se3, sim3, origin, none };
 
 // How figures were made; without it they cannot be compared with others.
 struct Protocol {
@@ -35,7 +36,13 @@ struct EvaluationReport {
   RelativePoseError rpe_frame;
   RelativePoseError rpe_second;
   RelativePoseError rpe_metre;
+  SegmentErrors segments;                                 // of KITTI; none where the path is shorter than 100 m
+  Eigen::Vector3d true_spread = Eigen::Vector3d::Zero();  // see principal_spread
 };
+
+// The true path is so near to a line that an alignment is free to turn about it: what lies across the line is not much
+// more than the errors, or next to nothing of what lies along it.
+bool is_nearly_a_line(const EvaluationReport& report);
 
 // Empty when no estimated pose has truth at its time.
 std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Trajectory& truth, const Protocol& protocol,

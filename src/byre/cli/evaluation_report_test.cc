@@ -73,6 +73,68 @@ TEST(EvaluationReport, OfASimilarityScalesRelativeErrorsToo) {
   EXPECT_GT(report_of(scaled(circle(), 0.5), Alignment::se3).rpe_second.translation.rmse, 0.1);
 }
 
+Trajectory moved(Trajectory trajectory, const Pose& other_from_world) {
+  for (StampedPose& sample : trajectory) sample.world_from_body = other_from_world * sample.world_from_body;
+  return trajectory;
+}
+
+TEST(EvaluationReport, LaysTheFirstPoseOnTheTrueOneWhereAsked) {
+  const Pose elsewhere{rotation_exp({0.1, 0.2, 1.0}), {5.0, -3.0, 1.0}};
+  EXPECT_LT(report_of(moved(circle(), elsewhere), Alignment::origin).ate->translation.max, 1e-9);
+  Trajectory estimate = circle();
+  estimate.front().world_from_body.translation.x() += 0.5;
+  const EvaluationReport report = report_of(moved(estimate, elsewhere), Alignment::origin);
+  EXPECT_NEAR(report.ate->translation.median, 0.5, 1e-9) << "one bad pose moves all others";
+  EXPECT_LT(report.ate->errors.front(), 1e-9);
+  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("alignment    origin: the first pose is laid on the true one"));
+}
+
+// 50 m along a line, with some sway.
+EvaluationReport report_of_line(double sway, double error, Alignment alignment) {
+  Trajectory truth, estimate;
+  for (int i = 0; i <= 500; ++i) {
+    const Eigen::Vector3d place(0.1 * i, sway * std::sin(0.1 * i), 0.0);
+    truth.push_back({i * std::chrono::milliseconds(50), {Eigen::Quaterniond::Identity(), place}});
+    const Eigen::Vector3d off(0.0, 0.0, error * (i % 2 == 0 ? 1.0 : -1.0));
+    estimate.push_back({truth.back().time, {Eigen::Quaterniond::Identity(), place + off}});
+  }
+  Protocol protocol;
+  protocol.alignment = alignment;
+  return evaluate(estimate, truth, protocol, {}).value();
+}
+
+TEST(EvaluationReport, WarnsOfAlignmentsThatAreFreeToTurnAboutALine) {
+  const EvaluationReport thin = report_of_line(0.1, 0.0, Alignment::se3);
+  EXPECT_NEAR(thin.true_spread[0], std::sqrt((501.0 * 501.0 - 1.0) / 12.0) * 0.1, 1e-3);
+  EXPECT_NEAR(thin.true_spread[1], 0.1 / std::sqrt(2.0), 2e-3);
+  EXPECT_THAT(to_text(thin, "a", "b"),
+              HasSubstr("caveat       the path is nearly a line: it spreads 14.5 m along it, "));
+  EXPECT_TRUE(nlohmann::json::parse(to_json(thin, "a", "b"))["is_nearly_a_line"]);
+  EXPECT_TRUE(is_nearly_a_line(report_of_line(1.0, 0.5, Alignment::se3))) << "the errors are as large as the sway";
+  EXPECT_FALSE(is_nearly_a_line(report_of_line(1.0, 0.01, Alignment::se3)));
+  EXPECT_THAT(to_text(report_of_line(0.1, 0.0, Alignment::origin), "a", "b"), Not(HasSubstr("caveat")));
+  EXPECT_THAT(to_text(report_of(circle(), Alignment::se3), "a", "b"), Not(HasSubstr("caveat")));
+}
+
+TEST(EvaluationReport, HasTheSegmentsOfKitti) {
+  EXPECT_THAT(to_text(report_of(circle(), Alignment::se3), "a", "b"),
+              HasSubstr("segments (KITTI)       none, as the path is shorter than 100 m\n"));
+  Trajectory truth;
+  for (int i = 0; i <= 150; ++i) {
+    truth.push_back({i * std::chrono::milliseconds(50), {Eigen::Quaterniond::Identity(), {1.0 * i, 0.0, 0.0}}});
+  }
+  Protocol protocol;
+  protocol.alignment = Alignment::none;
+  const EvaluationReport report = evaluate(scaled(truth, 1.02), truth, protocol, {}).value();
+  // From poses 0, 10, ... 40, each to the first that is more than 100 m on: 101 m, of which 2 % are 2.02 m.
+  EXPECT_THAT(to_text(report, "a", "b"),
+              HasSubstr("segments (KITTI)          2.0200 %    0.000000 deg/m        5 segments\n"
+                        "  of 100 m                2.0200 %    0.000000 deg/m        5 segments\n"));
+  const nlohmann::json json = nlohmann::json::parse(to_json(report, "a", "b"))["segments"];
+  EXPECT_NEAR(json["all"]["translation_percent"].get<double>(), 2.02, 1e-9);
+  EXPECT_EQ(json["by_length_m"]["100"]["count"], 5);
+}
+
 TEST(EvaluationReport, CountsTheFramesGiven) {
   Trajectory estimate = circle();
   estimate.resize(76);

@@ -41,11 +41,15 @@ std::string_view first_entry(std::string_view text) {
   return comment;
 }
 
+// In TUM's, EuRoC's or KITTI's format.
 bool is_pose(std::string_view line) {
-  if (line.find(',') != std::string_view::npos) return false;
-  if (line.starts_with("# timestamp tx ty tz")) return true;  // of a trajectory without poses
-  const std::vector<std::string_view> fields = split_fields(line);
-  return fields.size() == 8 &&
+  if (line.starts_with("# timestamp tx ty tz") || line.starts_with("#timestamp [ns],p_RS_R_x"))
+    return true;  // no poses
+  const bool has_commas = line.find(',') != std::string_view::npos;
+  std::string spaced(line);
+  std::ranges::replace(spaced, ',', ' ');
+  const std::vector<std::string_view> fields = split_fields(spaced);
+  return (fields.size() == 8 || (fields.size() == 12 && !has_commas)) &&
          std::ranges::all_of(fields, [](std::string_view field) { return parse_number(field).has_value(); });
 }
 

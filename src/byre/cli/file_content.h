@@ -16,7 +16,7 @@ enum class FileContent : std::uint8_t {
   point_cloud,
   svg,
   json,
-  trajectory,  // in TUM format
+  trajectory,
   yaml,
   table,  // CSV
   text,   // of any other kind

@@ -53,7 +53,8 @@ constexpr const char* kFooter = R"(Examples:
 Each frame is looked for in the whole map, without tracking and without a guess. Images are taken for the left camera's
 of the map's first recording, unless --camera or --calibration say otherwise. With truth, errors are those in the map's
 frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
-another recording name that one's truth too (--map-truth). Exit code 0 also when no frame is found.)";
+another recording name that one's truth too (--map-truth). An image has the time that its name says, nanoseconds or
+seconds with a point; where one says none, they are a second apart. Exit code 0 also when no frame is found.)";
 
 bool is_recording(const fs::path& input) {
   return fs::is_directory(input) || is_video_file(input);
@@ -120,11 +121,15 @@ std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, c
   return errors_in_map(run, stored, options.map_truth ? load_truth(*options.map_truth) : truth, truth);
 }
 
+// In the order of their times, in which images need not have been named; of one time the first.
 void write_found(const Work& work, const fs::path& path) {
   Trajectory found;
   for (const LocalisedFrame& frame : work.run.frames) {
     if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
   }
+  std::ranges::stable_sort(found, {}, &StampedPose::time);
+  const auto repeated = std::ranges::unique(found, {}, &StampedPose::time);
+  found.erase(repeated.begin(), repeated.end());
   write_whole(path, work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found);
 }
 

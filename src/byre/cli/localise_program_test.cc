@@ -128,6 +128,24 @@ TEST_F(LocaliseProgram, TakesImagesForTheMapsCamera) {
   EXPECT_THAT(outcome.output, HasSubstr("found        2 of 2 frames"));
 }
 
+TEST_F(LocaliseProgram, TakesTimesFromTheNamesOfImages) {
+  const RenderedFixture& room = RenderedFixture::shared();
+  const auto named = [&](std::size_t frame, std::int64_t nanoseconds) {
+    const std::string name = std::to_string(nanoseconds) + ".png";
+    std::filesystem::copy_file(room.image("cam0", frame), folder_ / name);
+    return name;
+  };
+  const std::string later = named(3, 1403715274402140000), earlier = named(1, 1403715274302140000);
+  const Outcome outcome = localise(later + " " + earlier + " --trajectory found.txt");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const Trajectory found = read_trajectory(folder_ / "found.txt");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].time, Timestamp(1403715274302140000));
+  EXPECT_EQ(found[1].time, Timestamp(1403715274402140000));
+  ASSERT_EQ(localise(earlier + " --trajectory one.txt").exit_code, 0);
+  EXPECT_EQ(read_trajectory(folder_ / "one.txt").at(0).time, Timestamp(1403715274302140000));
+}
+
 TEST_F(LocaliseProgram, RefusesAnotherRoomAndSaysWhy) {
   const std::filesystem::path elsewhere = folder_ / "elsewhere";
   RenderedRoomOptions other;

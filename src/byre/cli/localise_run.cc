@@ -5,6 +5,7 @@
 #include "byre/cli/stopwatch.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_fit.h"
+#include "byre/dataset/image_names.h"
 
 #include <utility>
 
@@ -52,17 +53,28 @@ class Finder {
 
 // The image as the camera would have taken it; empty, with a warning added, when it cannot be read.
 std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
-  std::optional<Image> image = read_image(path);
+  auto [image, failure] = try_image(path);
   if (!image) {
-    warnings.push_back(path.string() + ": is not a whole image");
+    warnings.push_back(path.string() + ": " + failure);
     return std::nullopt;
   }
-  if (image->width == camera.width && image->height == camera.height) return image;
+  if (image->width == camera.width && image->height == camera.height) return std::move(image);
   warnings.push_back(
       path.string() +
       formatted(": is of %d x %d pixels, the camera of %d x %d: scaled and cut, as if it were the camera's",
                 image->width, image->height, camera.width, camera.height));
   return fit(*image, camera.width, camera.height);
+}
+
+// All as their names say or, where one of them says nothing, a second apart.
+std::vector<Timestamp> times_of(const std::vector<fs::path>& images) {
+  std::vector<Timestamp> times;
+  for (const fs::path& image : images) {
+    const std::optional<Timestamp> time = time_in_name(image);
+    if (!time) return steady_times(images.size(), 1.0);
+    times.push_back(*time);
+  }
+  return times;
 }
 
 }  // namespace
@@ -86,11 +98,12 @@ LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, c
 LocaliseRun localise_images(const SearchableMap& map, const std::vector<fs::path>& images, const Calibration& camera,
                             const LocaliseHooks& hooks) {
   Finder finder(map, {.left = camera.left, .right = std::nullopt, .body_from_left = camera.body_from_left});
+  const std::vector<Timestamp> times = times_of(images);
   LocaliseRun run;
   for (std::size_t i = 0; i < images.size() && !hooks.should_stop(); ++i) {
     std::optional<Image> image = read_fitted(images[i], camera.left, run.warnings);
     if (!image) continue;
-    ImageFrame frame{from_seconds(static_cast<double>(i)), std::move(*image), std::nullopt};
+    ImageFrame frame{times[i], std::move(*image), std::nullopt};
     run.frames.push_back(finder.find(std::move(frame), images[i].string()));
     hooks.after_frame(static_cast<int>(i) + 1, run.frames.back());
   }

@@ -17,7 +17,7 @@ namespace byre::cli {
 // One frame looked for in a map, without a thought of the others.
 struct LocalisedFrame {
   std::string name;                     // its image file, or its time stamp in seconds
-  Timestamp time{};                     // of an image that has none: as many seconds as its place in the list
+  Timestamp time{};                     // of an image: as its name says, else as many seconds as its place in the list
   std::optional<Pose> world_from_body;  // empty when it was not found
   Localisation localisation;
   double extract_seconds = 0.0;

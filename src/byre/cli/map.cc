@@ -11,6 +11,7 @@
 #include "byre/cli/run_with_progress.h"
 #include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
+#include "byre/cli/trajectory_output.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/map/map_file.h"
@@ -62,10 +63,10 @@ MapRun run_and_autosave(Recording& recording, const MapRunOptions& run_options, 
 void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
                    const ResourceUse& resources, OutputWriter& outputs) {
   outputs.attempt([&] {
-    if (options.trajectory) write_whole(*options.trajectory, run.final);
+    if (options.trajectory) write_whole(*options.trajectory, run.final, options.trajectory_format);
   });
   outputs.attempt([&] {
-    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal, options.trajectory_format);
   });
   outputs.attempt([&] {
     if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));

@@ -5,6 +5,7 @@
 #include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/pace_option.h"
+#include "byre/cli/trajectory_output.h"
 
 #include <map>
 #include <string>
@@ -40,10 +41,10 @@ void declare_files(CLI::App& command, MapOptions& options) {
              "The map, for \"byre localise\", \"byre inspect\" and later missions")
       ->type_name("MAP");
   add_output(command, Output::trajectory, "--trajectory", options.trajectory,
-             "Final poses: as recomputed after the last frame. TUM format")
+             "Final poses: as recomputed after the last frame")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
-             "Causal poses: as published when their frames came. TUM format")
+             "Causal poses: as published when their frames came")
       ->type_name("FILE");
   add_output(command, Output::json, "--stats", options.stats, "Times, counts and every frame's report, as JSON")
       ->type_name("FILE");
@@ -127,6 +128,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
       .add_option("--refine", options.refinement, "Matches refined in the image; less than all is for comparison (all)")
       ->type_name("none|stereo|all")
       ->transform(CLI::CheckedTransformer(refinements).description(""));
+  declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kFooter);

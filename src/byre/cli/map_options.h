@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/cli/map_run.h"
+#include "byre/evaluation/trajectory_file.h"
 
 #include <filesystem>
 #include <optional>
@@ -29,6 +30,7 @@ struct MapOptions {
   Refinement refinement = Refinement::all;
   bool no_loops = false;
   bool no_self_calibration = false;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

@@ -17,6 +17,7 @@ std::string describe_poses(const FrameCounts& counts) {
   std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
   if (counts.lost_episodes > 0) text += formatted(", lost %d times for %d frames", counts.lost_episodes, counts.lost);
   if (counts.resets > 0) text += formatted(", begun anew %d times", counts.resets);
+  if (counts.unreadable > 0) text += formatted("; %d could not be read", counts.unreadable);
   return text;
 }
 
@@ -216,7 +217,8 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
                     const std::vector<std::string>& files, const std::optional<Mission>& mission) {
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
-  text += row("path", formatted("%.2f %s", path_length(run.final), protocol.is_metric ? "m" : "units"));
+  text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
+                                protocol.is_metric ? "m" : "units", run.final.size()));
   text += cost_rows(run, protocol.options.pace, resources);
   text += closing_rows(run, files);
   return text;
@@ -224,12 +226,17 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {
   if (!run.causal.empty()) return;
+  const FrameCounts counts = count_frames(run.frames);
+  if (2 * counts.unreadable > counts.frames) {
+    throw std::runtime_error(formatted("no frame got a pose: %d of %d could not be read; the warnings say why",
+                                       counts.unreadable, counts.frames));
+  }
   const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;
   if (!before.empty()) {
     throw std::runtime_error("no frame was found in " + before +
                              ": the recording may be of another place, or too different in light or viewpoint");
   }
-  const std::string refusals = describe_refusals(count_frames(run.frames));
+  const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) {
     throw std::runtime_error("no frame got a pose, for one camera begins a map by moving sideways: " + refusals);
   }

@@ -216,9 +216,9 @@ TEST(MapJson, IsWholeForARunWithoutFrames) {
 TEST(MapText, SumsTheRunUp) {
   const std::string text = to_text(small_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
-  EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %)\n"));
+  EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
   EXPECT_THAT(text, HasSubstr("map          1 keyframes, of 1 made; 1234 points\n"));
-  EXPECT_THAT(text, HasSubstr("path         3.00 m\n"));
+  EXPECT_THAT(text, HasSubstr("path         3.00 m, through 3 final poses\n"));
   EXPECT_THAT(text, HasSubstr("frame time   mean 11.7 ms, p99 13.0 ms\n"));
   EXPECT_THAT(text, HasSubstr("mapping      2 jobs, mean 20.5 ms, max 30.5 ms\n"));
   EXPECT_THAT(text, HasSubstr("CPU time     1.5 s, in 2.0 s of wall time: 2.0 frames/s\n"));

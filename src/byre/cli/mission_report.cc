@@ -19,8 +19,15 @@ double share(int part, int whole) {
 
 std::string describe_verdicts(const MissionStatistics& statistics) {
   const auto percent = [&statistics](int frames) { return 100.0 * share(frames, statistics.frames); };
-  return formatted("trusted %.1f %%, degraded %.1f %%, untrusted %.1f %% of %d frames", percent(statistics.trusted),
-                   percent(statistics.degraded), percent(statistics.untrusted), statistics.frames);
+  std::string text = formatted("trusted %.1f %%, degraded %.1f %%, untrusted %.1f %%", percent(statistics.trusted),
+                               percent(statistics.degraded), percent(statistics.untrusted));
+  if (statistics.missing > 0) text += formatted(", missing %.1f %%", percent(statistics.missing));
+  return text + formatted(" of %d frames", statistics.frames);
+}
+
+std::string describe_missing(const MissionStatistics& statistics) {
+  return formatted("%d of %d frames could not be read", statistics.missing, statistics.frames) +
+         (is_full_of_gaps(statistics) ? ": too many for the verdicts of the others to stand for the mission" : "");
 }
 
 std::string describe_doubts(const MissionStatistics& statistics) {
@@ -100,6 +107,7 @@ Json errors_json(const std::vector<PoseError>& errors) {
 
 std::string to_text(const MissionStatistics& statistics) {
   std::string text = row("verdicts", describe_verdicts(statistics));
+  if (statistics.missing > 0) text += row("missing", describe_missing(statistics));
   if (!statistics.doubts.empty()) text += row("doubts", describe_doubts(statistics));
   text += row("lost", describe_losses(statistics));
   text += keyframe_row("known", statistics.in_known_places);
@@ -118,7 +126,9 @@ std::string to_text(const MissionErrors& errors) {
 
 Json to_json(const MissionStatistics& statistics) {
   const std::optional<double>& first = statistics.seconds_to_first_pose;
-  return {{"frames_trusted", statistics.trusted},
+  return {{"frames_missing", statistics.missing},
+          {"is_full_of_gaps", is_full_of_gaps(statistics)},
+          {"frames_trusted", statistics.trusted},
           {"frames_degraded", statistics.degraded},
           {"frames_untrusted", statistics.untrusted},
           {"trusted_share", share(statistics.trusted, statistics.frames)},

@@ -53,6 +53,20 @@ TEST(MissionText, SumsTrustUpWithTheMainDoubts) {
   EXPECT_THAT(text, HasSubstr("lost         2 times, found again 2 times; 1 navigation errors\n"));
 }
 
+TEST(MissionText, CountsMissingFramesAmongTheOthers) {
+  MissionStatistics statistics = small_mission();
+  statistics.frames = 1000;
+  statistics.missing = 800;
+  const std::string text = to_text(statistics);
+  EXPECT_THAT(text, HasSubstr("verdicts     trusted 19.0 %, degraded 0.6 %, untrusted 0.4 %, missing 80.0 % of 1000 "
+                              "frames\n"
+                              "missing      800 of 1000 frames could not be read: too many for the verdicts of the "
+                              "others to stand for the mission\n"));
+  EXPECT_EQ(to_json(statistics).at("frames_missing"), 800);
+  EXPECT_EQ(to_json(statistics).at("is_full_of_gaps"), true);
+  EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("missing")));
+}
+
 TEST(MissionText, TellsKeyframesOfPlacesTheMissionCameTo) {
   const std::string text = to_text(small_mission());
   EXPECT_THAT(text, HasSubstr("keyframes    2.0 a minute in known places (3 in 90 s)\n"));

@@ -7,6 +7,7 @@ namespace byre::cli {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
+constexpr double kMostMissing = 0.05;  // share of the frames of a mission whose verdicts tell how it went
 
 void count_verdict(const Health& health, MissionStatistics& statistics) {
   switch (health.verdict) {
@@ -54,15 +55,20 @@ void add_to_rate(const FrameReport& report, double seconds, KeyframeRate& rate) 
 
 }  // namespace
 
+bool is_full_of_gaps(const MissionStatistics& statistics) {
+  return statistics.missing > kMostMissing * statistics.frames;
+}
+
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers) {
   MissionStatistics statistics;
   std::optional<Timestamp> last_time;
   for (const MappedFrame& frame : frames) {
     const double seconds = last_time ? to_seconds(frame.time - *last_time) : 0.0;
     last_time = frame.time;
+    ++statistics.frames;
+    statistics.missing += frame.report ? 0 : 1;
     if (!frame.report) continue;
     const FrameReport& report = *frame.report;
-    ++statistics.frames;
     count_verdict(report.health, statistics);
     count_events(report, statistics);
     statistics.most_suspended = std::max(statistics.most_suspended, report.health.suspended);

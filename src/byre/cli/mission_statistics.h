@@ -17,9 +17,10 @@ struct KeyframeRate {
   double per_minute() const { return minutes > 0.0 ? keyframes / minutes : 0.0; }
 };
 
-// What a mission on a map came to. Frames that could not be read are left out.
+// What a mission on a map came to.
 struct MissionStatistics {
   int frames = 0;
+  int missing = 0;  // of these frames, that could not be read: none of what follows is known of them
   int trusted = 0;
   int degraded = 0;
   int untrusted = 0;
@@ -34,6 +35,9 @@ struct MissionStatistics {
   ErrorStatistics online_inliers;   // of frames with a pose
   int most_suspended = 0;           // offline points at a time
 };
+
+// So many frames are missing that what is said of the others does not stand for the mission.
+bool is_full_of_gaps(const MissionStatistics& statistics);
 
 // A place is known where a frame has at least so many offline inliers.
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);

@@ -40,9 +40,10 @@ std::vector<MappedFrame> mission() {
   return frames;
 }
 
-TEST(SummariseMission, CountsVerdictsAndDoubtsOfFramesThatWereRead) {
+TEST(SummariseMission, CountsVerdictsAndDoubtsOfFramesThatWereReadAndThoseMissing) {
   const MissionStatistics statistics = summarise_mission(mission(), 25);
-  EXPECT_EQ(statistics.frames, 5);
+  EXPECT_EQ(statistics.frames, 6);
+  EXPECT_EQ(statistics.missing, 1);
   EXPECT_EQ(statistics.trusted, 2);
   EXPECT_EQ(statistics.degraded, 2);
   EXPECT_EQ(statistics.untrusted, 1);
@@ -83,6 +84,16 @@ TEST(SummariseMission, TakesInliersOfFramesWithAPose) {
   EXPECT_EQ(statistics.offline_inliers.median, 52.5);
   EXPECT_EQ(statistics.online_inliers.median, 10.0);
   EXPECT_EQ(statistics.most_suspended, 7);
+}
+
+TEST(SummariseMission, SaysWhenTooManyFramesAreMissing) {
+  MissionStatistics statistics;
+  EXPECT_FALSE(is_full_of_gaps(statistics));
+  statistics.frames = 100;
+  statistics.missing = 5;
+  EXPECT_FALSE(is_full_of_gaps(statistics));
+  statistics.missing = 6;
+  EXPECT_TRUE(is_full_of_gaps(statistics));
 }
 
 TEST(SummariseMission, IsEmptyForNoFrames) {

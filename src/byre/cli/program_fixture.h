@@ -48,14 +48,16 @@ class ProgramTest : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
   }
 
-  // Starts the program with these signals as they are in a terminal.
-  pid_t start(std::vector<std::string> arguments, const std::vector<int>& signals = {SIGINT, SIGTERM, SIGHUP}) const {
+  // Starts the program with these signals as they are in a terminal, and with a file as its standard input.
+  pid_t start(std::vector<std::string> arguments, const std::vector<int>& signals = {SIGINT, SIGTERM, SIGHUP},
+              const char* input = "/dev/null") const {
     arguments.insert(arguments.begin(), BYRE_PROGRAM);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, 0, input, O_RDONLY | O_NOCTTY, 0);
     const std::pair<int, std::filesystem::path> streams[] = {{1, folder_ / "stdout.txt"}, {2, folder_ / "stderr.txt"}};
     for (const auto& [stream, path] : streams) {
       posix_spawn_file_actions_addopen(&files, stream, path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -74,9 +76,10 @@ class ProgramTest : public testing::Test {
     return process;
   }
 
-  // Gives up after half a minute.
-  bool appears(const std::string& text, const std::string& file) const {
-    for (int i = 0; i < 3000; ++i) {
+  bool appears(const std::string& text, const std::string& file,
+               std::chrono::milliseconds patience = std::chrono::seconds(30)) const {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < end) {
       if (read(file).find(text) != std::string::npos) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

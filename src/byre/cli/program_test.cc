@@ -2,6 +2,7 @@
 
 #include "byre/cli/program_fixture.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,6 +105,32 @@ TEST_F(Program, PrintsJsonAndWritesTheAlignedEstimate) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("{\n  \"protocol\": {"));
   EXPECT_THAT(read("aligned.txt"), HasSubstr("\n3.000000000 3.000000000 9.000000000 "));
+}
+
+TEST_F(Program, WritesTheAlignedEstimateInTheFormatAskedFor) {
+  const std::string command = "evaluate --estimate estimate.txt --truth poses.txt --times times.txt --align origin ";
+  const Outcome outcome = run(command + "--aligned aligned.csv --format euroc");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("estimate     estimate.txt, 20 poses\n"));
+  const std::string euroc = read("aligned.csv");
+  EXPECT_EQ(std::ranges::count(euroc, '\n'), 21) << "a head, and all the poses that the report counts";
+  EXPECT_THAT(euroc, HasSubstr("\n3000000000,3.000000000,9.000000000,"));
+  EXPECT_EQ(run(command + "--aligned aligned.txt --format kitti").exit_code, 0);
+  EXPECT_EQ(std::ranges::count(read("aligned.txt"), '\n'), 20);
+  EXPECT_EQ(run(command + "--format ros").exit_code, 2);
+}
+
+TEST_F(Program, DrawsPathsAndErrors) {
+  const Outcome outcome = run("evaluate --estimate estimate.txt --truth estimate.txt --plot errors.svg");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const std::string svg = read("errors.svg");
+  EXPECT_THAT(svg, StartsWith("<svg "));
+  for (const char* const text : {">Path from above<", ">x [m]<", ">y [m]<", ">truth<", ">error [m]<"}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+  ASSERT_EQ(run("evaluate --estimate estimate.txt --truth poses.txt --times times.txt --plot kitti.svg").exit_code, 0);
+  EXPECT_THAT(read("kitti.svg"), HasSubstr(">z [m]<")) << "KITTI's y points down";
+  EXPECT_EQ(run("evaluate --estimate estimate.txt --truth estimate.txt --plot absent/errors.svg").exit_code, 3);
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
+#include "byre/cli/formatted.h"
 #include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/register_report.h"
 #include "byre/cli/register_run.h"
+#include "byre/input/input_error.h"
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -23,6 +26,7 @@ struct RegisterCommandOptions {
   fs::path picks;
   std::optional<fs::path> output;
   RegisterOptions registering;
+  std::optional<double> accepted_residual;  // metres; else kFarOffPlan
   bool fix_scale = false;
   bool json = false;
 };
@@ -38,7 +42,8 @@ Finds where a map lies on a floor plan, from points picked in both: with -o a co
 with a world file beside it. Which way is up, and how high the floor lies, comes from the path that was driven. A wrong
 pick is found when four or more are given, better six. A map without a metric scale gets one on the plan; of a metric
 map the plan tells whether its scale is right. A stereo map that is too large or too small has a baseline that is:
---fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors. docs/floor_plan.md describes the
+--fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors; but a map
+that is off its plan by more than half a metre is not written unless --accept-residual says so. docs/floor_plan.md describes the
 files and the figures.)";
 
 MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
@@ -48,19 +53,37 @@ MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPl
   return {std::move(stored), std::move(registering), 1.0};
 }
 
+bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) {
+  return residual_of(fit) <= options.accepted_residual.value_or(kFarOffPlan);
+}
+
+[[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
+  const double residual = residual_of(fit);
+  throw InputError(options.picks.string(),
+                   formatted("fits the map only to %.2f m, so the map is not written: poses on the plan would be wrong "
+                             "by as much",
+                             residual),
+                   formatted("correct the picks that are off, the plan's resolution or its origin; --accept-residual "
+                             "%.2f writes it all the same",
+                             std::ceil(1e2 * residual) / 1e2));
+}
+
 ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
   if (options.output) require_writable(*options.output);
   const FloorPlan plan = read_floor_plan(options.plan);
   const MendedMap registered = register_as_asked(options, plan);
-  if (options.output) {
+  const PlanFit& fit = registered.registering.fit;
+  const bool is_kept = options.output && is_close_enough(fit, options);
+  if (is_kept) {
     StoredMap stored = registered.stored;
-    stored.plan = registered.registering.fit.registration;
+    stored.plan = fit.registration;
     save_map(stored, *options.output);
   }
-  RegisterProtocol protocol{options.map.string(), plan, options.output.value_or("").string(), {}};
+  RegisterProtocol protocol{options.map.string(), plan, is_kept ? options.output->string() : "", {}};
   if (options.fix_scale) protocol.scaled_by = registered.factor;
   const auto print = options.json ? to_json : to_text;
   result << print(registered.registering, protocol);
+  if (options.output && !is_kept) refuse_to_write(fit, options);
   return ExitCode::done;
 }
 
@@ -89,6 +112,12 @@ Action declare_register(CLI::App& command) {
                   "How high the body's origin is above the floor (0)")
       ->type_name("METRES")
       ->check(between(-100.0, 100.0));
+  command
+      .add_option("--accept-residual", options->accepted_residual,
+                  "Write the map although it is off its plan by up to so much (0.5)")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->needs(output);
   command
       .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
       ->needs(output);

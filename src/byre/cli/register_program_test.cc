@@ -17,6 +17,7 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class RegisterProgram : public ProgramTest {
  protected:
@@ -62,6 +63,22 @@ TEST_F(RegisterProgram, NamesAWrongPick) {
   EXPECT_TRUE(report.at("written").is_null());
   EXPECT_THAT(run("register barn.byre --plan plan.yaml --points picks.csv").output,
               HasSubstr("outlier      water trough: off by 2.000 m (x -2.000, y "));
+}
+
+TEST_F(RegisterProgram, WritesNoMapThatIsFarOffUnlessThatIsAccepted) {
+  auto correspondences = scene_.correspondences(6);
+  for (PlanCorrespondence& each : correspondences) each.point_in_plan *= 1.5;  // as by a wrong resolution
+  write("picks.csv", picks_csv(correspondences));
+  const std::string command = "register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre";
+  const Outcome refused = run(command);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.output, AllOf(HasSubstr("points       6, of which"), Not(HasSubstr("written"))));
+  EXPECT_THAT(refused.errors, ContainsRegex("picks.csv: fits the map only to [0-9]+\\.[0-9]+ m, so the map is not "
+                                            "written.*--accept-residual [0-9]+\\.[0-9]+ writes it"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "barn-plan.byre"));
+  EXPECT_EQ(run(command + " --accept-residual 0.6").exit_code, 3) << "less than it is off by";
+  EXPECT_EQ(run(command + " --accept-residual 100").exit_code, 0);
+  EXPECT_TRUE(load_map(folder_ / "barn-plan.byre").plan.has_value());
 }
 
 TEST_F(RegisterProgram, PlacesAMapInAProjectedCoordinateSystem) {

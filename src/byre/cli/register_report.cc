@@ -133,6 +133,7 @@ std::string to_json(const Registering& registering, const RegisterProtocol& prot
   Json json = {{"program", "byre register"}, {"version", BYRE_VERSION}, {"map", protocol.map}};
   json["registration"] = registration_json(registering.fit.registration);
   json["rms_m"] = registering.fit.rms;
+  json["residual_m"] = residual_of(registering.fit);
   json["largest_path_sigma_m"] = registering.largest_path_sigma;
   json["yaw_sigma_deg"] = yaw_sigma(registering.fit.registration);
   const std::optional<PlanScale>& measured = registering.measured_scale;

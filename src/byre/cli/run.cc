@@ -1,6 +1,7 @@
 #include "byre/cli/check_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/event_log.h"
+#include "byre/cli/formatted.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/output_file.h"
@@ -10,6 +11,7 @@
 #include "byre/cli/scaled_recording.h"
 #include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
+#include "byre/cli/trajectory_output.h"
 #include "byre/cli/view_run.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
@@ -143,17 +145,25 @@ void save_online_map(const MapRun& run, const RunOptions& options, const ScaledR
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol, const Mission& mission,
                    const ResourceUse& resources, OutputWriter& outputs) {
   outputs.attempt([&] {
-    if (options.trajectory) write_whole(*options.trajectory, run.final);
+    if (options.trajectory) write_whole(*options.trajectory, run.final, options.trajectory_format);
   });
   outputs.attempt([&] {
-    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal);
+    if (options.causal_trajectory) write_whole(*options.causal_trajectory, run.causal, options.trajectory_format);
   });
   outputs.attempt([&] {
-    if (options.odometry) write_whole(*options.odometry, run.odometry);
+    if (options.odometry) write_whole(*options.odometry, run.odometry, options.trajectory_format);
   });
   outputs.attempt([&] {
     if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
   });
+}
+
+void require_frames(const MissionStatistics& statistics) {
+  if (!is_full_of_gaps(statistics)) return;
+  throw std::runtime_error(
+      formatted("%d of %d frames could not be read, so this was not the whole mission; the warnings "
+                "say why",
+                statistics.missing, statistics.frames));
 }
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {
@@ -194,9 +204,10 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {
     result.flush();
-    serve_until_interrupted(interrupt, options.quiet);
+    serve_after_run(options.view, interrupt, options.quiet);
   }
   events.require_written();
+  require_frames(mission.statistics);
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -6,6 +6,7 @@
 #include "byre/cli/number_check.h"
 #include "byre/cli/open_options.h"
 #include "byre/cli/pace_option.h"
+#include "byre/cli/trajectory_output.h"
 
 #include <map>
 #include <string>
@@ -34,9 +35,11 @@ beside the map; with --frame plan poses in the map become poses on the floor pla
 Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
-With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C; docs/viewer.md says more.
+With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
+as long as --view-for says; docs/viewer.md says more.
 Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
-when no frame got a pose, or events could not be written. docs/mission.md describes the events and what health means.)";
+when no frame got a pose, more than one frame in twenty could not be read, or events could not be written. docs/mission.md
+describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
@@ -83,13 +86,13 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
   add_output(command, Output::json, "--events", options.events, "What happens, as it happens: JSON lines")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--trajectory", options.trajectory,
-             "Final poses in the map's frame: as recomputed after the last frame. TUM format")
+             "Final poses in the map's frame: as recomputed after the last frame")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
-             "Causal poses in the map's frame: as published when their frames came. TUM format")
+             "Causal poses in the map's frame: as published when their frames came")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--odometry", options.odometry,
-             "Smooth poses, as published, in a frame of their own. TUM format")
+             "Smooth poses, as published, in a frame of their own")
       ->type_name("FILE");
   add_output(command, Output::json, "--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
       ->type_name("FILE");
@@ -143,6 +146,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_pace(command, options.pace);
   declare_tracking(command, options.track);
   declare_watching(command, options.view);
+  declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kFooter);

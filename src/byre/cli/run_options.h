@@ -3,6 +3,7 @@
 #include "byre/cli/map_run.h"
 #include "byre/cli/pose_frame.h"
 #include "byre/cli/view_options.h"
+#include "byre/evaluation/trajectory_file.h"
 
 #include <filesystem>
 #include <optional>
@@ -35,6 +36,7 @@ struct RunOptions {
   Pace pace = Pace::paced;
   TrackOptions track;
   ViewOptions view;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for

@@ -77,6 +77,16 @@ TEST_F(RunProgram, ComparesPosesWithTheTruthAfterAlignmentWhereThereIsNoMap) {
   EXPECT_LT(stats.at("frames").at(5).at("error").at("position_m"), 0.1);
 }
 
+TEST_F(RunProgram, WritesTrajectoriesInTheFormatAskedFor) {
+  const Outcome outcome = run_room("--quiet --frames 0:6 --format euroc --trajectory a.csv --causal-trajectory b.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr(" m, through 6 final poses\n"));
+  for (const char* const file : {"a.csv", "b.csv"}) {
+    EXPECT_EQ(guess_trajectory_format(folder_ / file), TrajectoryFormat::euroc);
+    EXPECT_THAT(read_trajectory(folder_ / file), SizeIs(6));
+  }
+}
+
 TEST_F(RunProgram, TakesAClockErrorOutOfTheTruth) {
   const auto worst = [this](const std::string& options) {
     EXPECT_EQ(run_room("--quiet --stats stats.json " + options).exit_code, 0);
@@ -207,6 +217,21 @@ TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
   };
   EXPECT_THAT(last_camera("now.txt"), PoseNear(scale_lengths(last_camera("before.txt"), kFactor), 0.002, 0.001));
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").back().at("health").at("verdict"), "trusted");
+}
+
+TEST_F(MissionProgram, DoesNotCountAsDoneWhereManyFramesAreMissing) {
+  const RenderedFixture& room = RenderedFixture::shared();
+  fs::copy(room.folder(), folder_ / "torn", fs::copy_options::recursive);
+  for (const std::size_t frame : {15, 17, 19})
+    fs::remove(folder_ / "torn" / fs::relative(room.image("cam0", frame), room.folder()));
+  const Outcome outcome =
+      run("run torn --map room.byre --frames 1: --stride 2 --stats stats.json --causal-trajectory causal.txt");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: error: 3 of 12 frames could not be read, so this was not the whole"));
+  EXPECT_THAT(outcome.errors, HasSubstr(".png: does not exist"));
+  EXPECT_THAT(outcome.output, HasSubstr("missing 25.0 % of 12 frames\n"));
+  EXPECT_EQ(json::parse(read("stats.json")).at("mission").at("frames_missing"), 3);
+  EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(9)) << "all files are written";
 }
 
 TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {

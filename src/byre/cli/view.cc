@@ -6,7 +6,6 @@
 #include "byre/cli/view_run.h"
 #include "byre/viewer/web_map.h"
 
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -54,8 +53,9 @@ ExitCode view(const ViewCommandOptions& options) {
   for (const fs::path& output : outputs_of(options)) require_writable(output);
   viewed.pick_sigma = options.pick_sigma;
   viewed.registration = options.registration;
+  allow_many_descriptors();
   const MapViewer viewer(std::move(viewed), options.view.server);
-  std::cerr << "viewer: " << viewer.url() << std::endl;
+  announce(viewer.urls());
   serve_until_interrupted(interrupt, options.quiet);
   return ExitCode::done;
 }

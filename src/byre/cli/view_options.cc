@@ -2,6 +2,8 @@
 
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/number_check.h"
+
+#include <limits>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -34,6 +36,13 @@ void declare_watching(CLI::App& command, ViewOptions& options) {
           ->expected(0, 1)
           ->default_str(std::to_string(options.server.port));
   view->each([&options](const std::string&) { options.is_wanted = true; });
+  command
+      .add_option("--view-for", options.stay_s,
+                  "How long the page stays once the run is over: 0 not at all, inf until Ctrl-C (inf where the program "
+                  "has a terminal, else 0)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()).description(""))
+      ->needs(view);
   declare_address(command, options)->needs(view);
   declare_plan(command, options, "Floor plan to show under the map, which \"byre register\" has found on it")
       ->needs(view);

@@ -14,11 +14,12 @@ struct ViewOptions {
   bool is_wanted = false;
   WebServerOptions server;
   std::optional<std::filesystem::path> plan;
+  std::optional<double> stay_s;  // after a run, infinite: until Ctrl-C; else that with a terminal, and 0 without one
 };
 
 // For each: the options must outlive the parsing of the command line.
 
-// --view [PORT], --bind and --plan: for a command that may be watched.
+// --view [PORT], --view-for, --bind and --plan: for a command that may be watched.
 void declare_watching(CLI::App& command, ViewOptions& options);
 
 // --port, --bind and --plan: for the command that is there to view.

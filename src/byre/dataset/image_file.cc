@@ -5,24 +5,41 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <fstream>
-#include <system_error>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
+#include <sys/stat.h>
 
 namespace byre {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes read_bytes(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return {};
-  Bytes bytes(size);
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  return file ? bytes : Bytes();
+// What a file holds, or why that cannot be known. A file that is there but not to be had, as where the program has too
+// many others open, is another thing than one that is missing or broken.
+struct FileBytes {
+  Bytes bytes;
+  std::string failure;
+};
+
+FileBytes failed(const char* what) {
+  if (errno == ENOENT) return {{}, "does not exist"};
+  return {{}, std::string(what) + ": " + std::strerror(errno)};
+}
+
+FileBytes read_bytes(const std::filesystem::path& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
+  if (!file) return failed("cannot be opened");
+  struct stat status {};
+  if (fstat(fileno(file.get()), &status) != 0) return failed("cannot be read");
+  Bytes bytes(status.st_size > 0 ? static_cast<std::size_t>(status.st_size) : 0);
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  if (std::ferror(file.get()) != 0) return failed("cannot be read");
+  return {std::move(bytes), {}};
 }
 
 // The decoder fills the missing part of a JPEG with grey and says nothing; its end marker tells whether it is whole.
@@ -47,21 +64,33 @@ cv::Mat decode(const Bytes& bytes, int flags) {
 
 }  // namespace
 
-std::optional<Image> read_image(const std::filesystem::path& path) {
-  const Bytes bytes = read_bytes(path);
-  if (bytes.empty() || is_cut_jpeg(bytes)) return std::nullopt;
+ImageReading<Image> try_image(const std::filesystem::path& path) {
+  const ImageReading<Image> broken{std::nullopt, "is not a whole image"};
+  const auto [bytes, failure] = read_bytes(path);
+  if (!failure.empty()) return {std::nullopt, failure};
+  if (bytes.empty() || is_cut_jpeg(bytes)) return broken;
   const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
-  if (grey.empty()) return std::nullopt;
+  if (grey.empty()) return broken;
   assert(grey.isContinuous());
-  return Image{grey.cols, grey.rows, Bytes(grey.data, grey.data + grey.total())};
+  return {Image{grey.cols, grey.rows, Bytes(grey.data, grey.data + grey.total())}, {}};
+}
+
+ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path) {
+  const ImageReading<DepthImage> broken{std::nullopt, "is not a whole image of 16 bits"};
+  const auto [bytes, failure] = read_bytes(path);
+  if (!failure.empty()) return {std::nullopt, failure};
+  if (bytes.empty()) return broken;
+  const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
+  if (depth.empty() || depth.type() != CV_16U) return broken;
+  return {DepthImage{depth.cols, depth.rows, {depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()}}, {}};
+}
+
+std::optional<Image> read_image(const std::filesystem::path& path) {
+  return try_image(path).image;
 }
 
 std::optional<DepthImage> read_depth_image(const std::filesystem::path& path) {
-  const Bytes bytes = read_bytes(path);
-  if (bytes.empty()) return std::nullopt;
-  const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
-  if (depth.empty() || depth.type() != CV_16U) return std::nullopt;
-  return DepthImage{depth.cols, depth.rows, {depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()}};
+  return try_depth_image(path).image;
 }
 
 }  // namespace byre

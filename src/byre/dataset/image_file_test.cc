@@ -2,8 +2,27 @@
 
 #include "byre/dataset/test_folder.h"
 
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
 namespace byre {
 namespace {
+
+// While it lives, no further file can be opened.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
 
 using ReadImage = TestFolder;
 
@@ -74,6 +93,20 @@ TEST_F(ReadImage, IsEmptyForWhatIsNoWholeImage) {
     EXPECT_FALSE(read_image(folder_ / name).has_value()) << name;
   }
   EXPECT_FALSE(read_image(folder_).has_value());
+}
+
+TEST_F(ReadImage, TellsAFileThatIsNotToBeHadFromOneThatIsMissingOrBroken) {
+  write_image("whole.png", 5, 3, 77);
+  write("text.png", "no image");
+  EXPECT_EQ(try_image(folder_ / "text.png").failure, "is not a whole image");
+  EXPECT_EQ(try_depth_image(folder_ / "text.png").failure, "is not a whole image of 16 bits");
+  EXPECT_EQ(try_image(folder_ / "absent.png").failure, "does not exist");
+  EXPECT_EQ(try_image(folder_).failure, "cannot be read: Is a directory");
+  {
+    const NoDescriptors none;
+    EXPECT_EQ(try_image(folder_ / "whole.png").failure, "cannot be opened: Too many open files");
+  }
+  EXPECT_EQ(try_image(folder_ / "whole.png").failure, "");
 }
 
 }  // namespace

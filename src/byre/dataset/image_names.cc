@@ -96,6 +96,13 @@ std::optional<std::vector<Timestamp>> times_in_names(const std::vector<fs::path>
   return are_times ? nanoseconds : std::nullopt;
 }
 
+std::optional<Timestamp> time_in_name(const fs::path& file) {
+  constexpr Timestamp kFirstYears{100'000'000'000'000'000};
+  if (const auto seconds = seconds_in_name(file)) return seconds;
+  const std::optional<Timestamp> nanoseconds = nanoseconds_in_name(file);
+  return nanoseconds && *nanoseconds >= kFirstYears ? nanoseconds : std::nullopt;
+}
+
 std::vector<Timestamp> steady_times(std::size_t count, double frame_rate_hz) {
   std::vector<Timestamp> times;
   for (std::size_t i = 0; i < count; ++i) times.push_back(from_seconds(static_cast<double>(i) / frame_rate_hz));

@@ -53,6 +53,14 @@ TEST(TimesInNames, AreNotNumbersOfFrames) {
   }
 }
 
+TEST(TimeInName, OfOneFileIsWhatCanOnlyBeATime) {
+  EXPECT_THAT(time_in_name("cam0/1403636579763555584.png"), Optional(Timestamp(1403636579763555584)));
+  EXPECT_THAT(time_in_name("1305031102.175304.png"), Optional(Timestamp(1305031102175304000)));
+  for (const char* const name : {"000123.png", "1403636579763555.png", "photo.png", "frame1.5.png", ".png"}) {
+    EXPECT_EQ(time_in_name(name), std::nullopt) << name;
+  }
+}
+
 TEST(SteadyTimes, BeginAtZero) {
   EXPECT_THAT(steady_times(3, 20.0), ElementsAre(milliseconds(0), milliseconds(50), milliseconds(100)));
   EXPECT_THAT(steady_times(0, 20.0), IsEmpty());

@@ -9,7 +9,6 @@
 #include "byre/input/input_error.h"
 
 #include <cassert>
-#include <type_traits>
 #include <utility>
 
 namespace byre {
@@ -35,7 +34,7 @@ class ImageFiles final : public Recording {
 
  private:
   template <typename AnyImage>
-  std::optional<AnyImage> read_calibrated(const fs::path& path, std::optional<AnyImage> image, const Camera& camera);
+  std::optional<AnyImage> read_calibrated(const fs::path& path, ImageReading<AnyImage> read, const Camera& camera);
   std::optional<Image> read_right(const FrameFiles& files);
   std::optional<DepthImage> read_depth(const FrameFiles& files);
 
@@ -47,33 +46,32 @@ class ImageFiles final : public Recording {
 std::optional<ImageFrame> ImageFiles::read(int index) {
   assert(index >= 0 && index < size());
   const FrameFiles& files = index_.frames[static_cast<std::size_t>(index)];
-  std::optional<Image> left = read_calibrated(files.left, read_image(files.left), calibration().left);
+  std::optional<Image> left = read_calibrated(files.left, try_image(files.left), calibration().left);
   if (!left) return std::nullopt;
   return ImageFrame{files.time, std::move(*left), read_right(files), read_depth(files)};
 }
 
 std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
   if (!calibration().right) return std::nullopt;
-  if (files.right) return read_calibrated(*files.right, read_image(*files.right), calibration().right->camera);
+  if (files.right) return read_calibrated(*files.right, try_image(*files.right), calibration().right->camera);
   warnings_.push_back(files.left.string() + ": has no right image of the same time");
   return std::nullopt;
 }
 
 std::optional<DepthImage> ImageFiles::read_depth(const FrameFiles& files) {
   if (!calibration().depth || !files.depth) return std::nullopt;
-  return read_calibrated(*files.depth, read_depth_image(*files.depth), depth_lens(calibration()));
+  return read_calibrated(*files.depth, try_depth_image(*files.depth), depth_lens(calibration()));
 }
 
 template <typename AnyImage>
-std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, std::optional<AnyImage> image,
+std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, ImageReading<AnyImage> read,
                                                     const Camera& camera) {
+  std::optional<AnyImage>& image = read.image;
   if (!image) {
-    constexpr bool kIsDepth = std::is_same_v<AnyImage, DepthImage>;
-    const char* const torn = kIsDepth ? ": is not a whole image of 16 bits" : ": is not a whole image";
-    warnings_.push_back(path.string() + (fs::exists(path) ? torn : ": does not exist"));
+    warnings_.push_back(path.string() + ": " + read.failure);
     return std::nullopt;
   }
-  if (image->width == camera.width && image->height == camera.height) return image;
+  if (image->width == camera.width && image->height == camera.height) return std::move(image);
   warnings_.push_back(path.string() + ": is " + std::to_string(image->width) + "x" + std::to_string(image->height) +
                       " instead of " + std::to_string(camera.width) + "x" + std::to_string(camera.height));
   return std::nullopt;
@@ -134,10 +132,13 @@ fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options
 }  // namespace
 
 Image first_readable(const std::vector<fs::path>& files) {
+  std::string first_failure;
   for (const fs::path& file : files) {
-    if (std::optional<Image> image = read_image(file)) return std::move(*image);
+    ImageReading<Image> read = try_image(file);
+    if (read.image) return std::move(*read.image);
+    if (first_failure.empty()) first_failure = file.filename().string() + " " + read.failure;
   }
-  throw InputError(files.front().parent_path().string(), "none of the images listed can be read",
+  throw InputError(files.front().parent_path().string(), "none of the images listed can be read: " + first_failure,
                    "check that the folder is complete");
 }
 

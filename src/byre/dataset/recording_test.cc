@@ -162,7 +162,7 @@ TEST_F(EurocRecording, RefusesCamerasOnDifferentClocks) {
 
 TEST_F(EurocRecording, RefusesAFolderWithoutAnyReadableImage) {
   fs::remove_all(folder_ / "mav0/cam0/data");
-  EXPECT_THAT(open_error(), HasSubstr("cam0/data: none of the images listed can be read"));
+  EXPECT_THAT(open_error(), HasSubstr("cam0/data: none of the images listed can be read: 1.png "));
 }
 
 TEST_F(EurocRecording, OpensAtARangeWithoutAnyReadableImage) {

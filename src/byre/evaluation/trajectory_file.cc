@@ -87,7 +87,7 @@ void require_later(Timestamp time, std::optional<Timestamp> previous, const std:
                    "sort the lines by time and remove duplicates");
 }
 
-std::string format_pose(const StampedPose& sample) {
+std::string tum_line(const StampedPose& sample) {
   const std::int64_t count = sample.time.count();
   const auto [seconds, nanoseconds] = std::lldiv(std::llabs(count), 1'000'000'000);
   const Eigen::Vector3d& t = sample.world_from_body.translation;
@@ -96,6 +96,51 @@ std::string format_pose(const StampedPose& sample) {
   std::snprintf(text.data(), text.size(), "%s%lld.%09lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", count < 0 ? "-" : "",
                 seconds, nanoseconds, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   return text.data();
+}
+
+std::string euroc_line(const StampedPose& sample) {
+  const Eigen::Vector3d& t = sample.world_from_body.translation;
+  const Eigen::Quaterniond& q = sample.world_from_body.rotation;
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), "%lld,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n",
+                static_cast<long long>(sample.time.count()), t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+  return text.data();
+}
+
+std::string kitti_line(const StampedPose& sample) {
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> world_from_body;
+  world_from_body << sample.world_from_body.rotation.toRotationMatrix(), sample.world_from_body.translation;
+  std::string line;
+  for (const double value : world_from_body.reshaped<Eigen::RowMajor>()) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), line.empty() ? "%.9f" : " %.9f", value);
+    line += text.data();
+  }
+  return line + "\n";
+}
+
+std::string line_of(const StampedPose& sample, TrajectoryFormat format) {
+  switch (format) {
+    case TrajectoryFormat::tum:
+      return tum_line(sample);
+    case TrajectoryFormat::euroc:
+      return euroc_line(sample);
+    case TrajectoryFormat::kitti:
+      return kitti_line(sample);
+  }
+  return "";
+}
+
+const char* head_of(TrajectoryFormat format) {
+  switch (format) {
+    case TrajectoryFormat::tum:
+      return "# timestamp tx ty tz qx qy qz qw\n";
+    case TrajectoryFormat::euroc:
+      return "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
+    case TrajectoryFormat::kitti:
+      break;
+  }
+  return "";
 }
 
 }  // namespace
@@ -161,9 +206,9 @@ std::vector<Timestamp> read_times(const fs::path& path) {
   return times;
 }
 
-void write_trajectory(const Trajectory& trajectory, const fs::path& path) {
-  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
-  for (const StampedPose& sample : trajectory) text += format_pose(sample);
+void write_trajectory(const Trajectory& trajectory, const fs::path& path, TrajectoryFormat format) {
+  std::string text(head_of(format));
+  for (const StampedPose& sample : trajectory) text += line_of(sample, format);
   write_file(path, std::as_bytes(std::span(text)));
 }
 

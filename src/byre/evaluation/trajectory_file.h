@@ -29,9 +29,10 @@ Trajectory read_kitti_poses(const std::filesystem::path& poses, const std::files
 // with commas (an EuRoC camera's data.csv). Throws InputError naming file and line.
 std::vector<Timestamp> read_times(const std::filesystem::path& path);
 
-// TUM format, nine digits after the point of a second and of a metre. Throws InputError when the file cannot be
-// written.
-void write_trajectory(const Trajectory& trajectory, const std::filesystem::path& path);
+// Nine digits after the point of a second, where there are seconds, and of a metre; KITTI's matrices have no times, one
+// line for each pose there is. Throws InputError when the file cannot be written.
+void write_trajectory(const Trajectory& trajectory, const std::filesystem::path& path,
+                      TrajectoryFormat format = TrajectoryFormat::tum);
 
 // The ground truth inside a folder laid out as EuRoC does, given the folder that holds mav0 or mav0 itself.
 std::optional<std::filesystem::path> find_euroc_ground_truth(const std::filesystem::path& folder);

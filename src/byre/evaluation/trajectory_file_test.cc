@@ -64,6 +64,23 @@ TEST_F(TrajectoryFile, IsReadAsItWasWritten) {
   }
 }
 
+TEST_F(TrajectoryFile, IsWrittenInEachFormat) {
+  const Trajectory trajectory = {{Timestamp(1403636584763555584), sample_pose(2.0)},
+                                 {Timestamp(1403636584813555584), sample_pose(-0.5)}};
+  const fs::path times = write("times.txt", "1403636584.763555584\n1403636584.813555584\n");
+  for (const TrajectoryFormat format : {TrajectoryFormat::tum, TrajectoryFormat::euroc, TrajectoryFormat::kitti}) {
+    const fs::path path = folder_ / "poses";
+    write_trajectory(trajectory, path, format);
+    EXPECT_EQ(guess_trajectory_format(path), format);
+    const Trajectory read = format == TrajectoryFormat::kitti ? read_kitti_poses(path, times) : read_trajectory(path);
+    ASSERT_EQ(read.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(read[i].time, trajectory[i].time);
+      expect_near(read[i].world_from_body, trajectory[i].world_from_body, 1e-8);
+    }
+  }
+}
+
 TEST_F(TrajectoryFile, OfTumHasTheScalarOfTheQuaternionLast) {
   const Trajectory read = read_trajectory(write("tum.txt", "# time\n1.5 1 2 3 0 0 0.6 0.8\r\n"));
   ASSERT_EQ(read.size(), 1u);

@@ -253,6 +253,20 @@ std::string_view to_string(PlanDoubt doubt) {
   return "";
 }
 
+double residual_of(const PlanFit& fit) {
+  const auto outliers = static_cast<std::size_t>(std::ranges::count(fit.residuals, true, &PlanResidual::is_outlier));
+  const std::size_t count = fit.residuals.size();
+  const bool are_told_apart = outliers == 0 || (count > 3 && 3 * outliers <= count);
+  if (are_told_apart || count == 0) return fit.rms;
+  double squares = 0.0;
+  for (const PlanResidual& residual : fit.residuals) squares += residual.error_in_plan.squaredNorm();
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+bool is_far_off(const PlanFit& fit) {
+  return residual_of(fit) > kFarOffPlan;
+}
+
 std::optional<PlanFit> register_on_plan(Correspondences correspondences, const DrivingPlane& plane, Scale scale,
                                         const PlanRegistrationOptions& options) {
   if (correspondences.size() < 2) return std::nullopt;

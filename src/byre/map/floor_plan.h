@@ -48,6 +48,15 @@ struct PlanFit {
   std::vector<PlanDoubt> doubts;
 };
 
+// How far a map is off its plan, in metres: the root mean square of the errors of the picks that took part. Where so
+// many were left out that they may be the right ones, it is that of all.
+double residual_of(const PlanFit& fit);
+
+// Off by more than this, in metres, a map is not to be kept on its plan unless somebody who was told the figure wants
+// it.
+inline constexpr double kFarOffPlan = 0.5;
+bool is_far_off(const PlanFit& fit);
+
 // Finds where a map lies on a plan from correspondences seen from above, its height and tilt from the plane driven on,
 // and its scale too when that is free. Correspondences that do not agree with the others are told apart, see
 // find_planar_consensus; the others are fitted by weighted least squares, in which the plane takes part with its own

@@ -4,6 +4,7 @@
 #include "byre/map/floor_plan_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 
@@ -255,6 +256,23 @@ TEST(FloorPlan, SaysOfEveryDoubtWhatToDo) {
                                 PlanDoubt::disagreement, PlanDoubt::uneven_path}) {
     EXPECT_THAT(std::string(to_string(doubt)), Not(IsEmpty()));
   }
+}
+
+PlanFit fit_with(int inliers, int outliers) {
+  PlanFit fit;
+  for (int i = 0; i < inliers; ++i) fit.residuals.push_back({{0.03, 0.04}, false});
+  for (int i = 0; i < outliers; ++i) fit.residuals.push_back({{3.0, 4.0}, true});
+  fit.rms = 0.05;
+  return fit;
+}
+
+TEST(ResidualOf, CountsOutliersWhereTheyMayBeTheRightOnes) {
+  EXPECT_EQ(residual_of(fit_with(6, 0)), 0.05);
+  EXPECT_EQ(residual_of(fit_with(6, 2)), 0.05) << "two of eight are told apart";
+  EXPECT_FALSE(is_far_off(fit_with(6, 2)));
+  EXPECT_NEAR(residual_of(fit_with(2, 1)), std::sqrt((25.0 + 2 * 0.0025) / 3.0), 1e-12) << "one of three is not";
+  EXPECT_NEAR(residual_of(fit_with(3, 3)), std::sqrt((25.0 + 0.0025) / 2.0), 1e-12);
+  EXPECT_TRUE(is_far_off(fit_with(3, 3)));
 }
 
 }  // namespace

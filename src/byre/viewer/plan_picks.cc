@@ -44,6 +44,12 @@ std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map) 
   }
 }
 
+double accepted_residual(const std::string& json) {
+  const nlohmann::json fields = nlohmann::json::parse(json, nullptr, false);
+  const auto found = fields.is_object() ? fields.find("accepted_residual_m") : fields.end();
+  return found != fields.end() && found->is_number() ? found->get<double>() : kFarOffPlan;
+}
+
 std::vector<PlanCorrespondence> correspondences_of(const std::vector<PlanPick>& picks, const StoredMap& stored,
                                                    double pick_sigma) {
   std::vector<PlanCorrespondence> correspondences;

@@ -19,6 +19,10 @@ struct PlanPick {
 // names become spaces. Throws InputError for anything else, and for points that the map does not have.
 std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map);
 
+// What somebody was told that the map is off by, in metres, and wants it saved all the same ("accepted_residual_m"
+// beside the picks); kFarOffPlan where nobody was asked.
+double accepted_residual(const std::string& json);
+
 // pick_sigma: of x and of y as picked on the plan, metres. Precondition: the map has the points.
 std::vector<PlanCorrespondence> correspondences_of(const std::vector<PlanPick>& picks, const StoredMap& stored,
                                                    double pick_sigma);

@@ -8,6 +8,8 @@
 #include "byre/viewer/web_bytes.h"
 #include "byre/viewer/web_json.h"
 
+#include <array>
+#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -19,6 +21,8 @@ using Json = nlohmann::json;
 Json fit_fields(const PlanFit& fit) {
   Json fields = {{"registration", registration_fields(fit.registration)},
                  {"rms_m", fit.rms},
+                 {"residual_m", residual_of(fit)},
+                 {"is_far_off", is_far_off(fit)},
                  {"residuals", Json::array()},
                  {"doubts", Json::array()}};
   for (const PlanResidual& residual : fit.residuals) {
@@ -44,7 +48,7 @@ class MapSite : public WebSite {
   WebResponse answer(const WebRequest& request) override {
     const bool is_post = request.method == WebRequest::Method::post;
     if (request.path == "/registration" && is_post) return json_response(fit_fields(fit(picks_of(request))));
-    if (request.path == "/save" && is_post) return json_response({{"written", save(picks_of(request))}});
+    if (request.path == "/save" && is_post) return json_response({{"written", save(request)}});
     if (request.path == "/") return page_response();
     if (request.path == "/scene") return json_response(scene_fields());
     if (request.path == "/map/offline") return bytes_response(points_);
@@ -87,9 +91,17 @@ class MapSite : public WebSite {
   }
 
   // Gives the names of the files written.
-  std::vector<std::string> save(const std::vector<PlanPick>& picks) {
+  std::vector<std::string> save(const WebRequest& request) {
+    const std::vector<PlanPick> picks = picks_of(request);
     if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
-    map_.stored.plan = fit(picks).registration;
+    const PlanFit found = fit(picks);
+    if (const double residual = residual_of(found); residual > accepted_residual(request.body)) {
+      std::array<char, 32> metres{};
+      std::snprintf(metres.data(), metres.size(), "%.2f m", residual);
+      throw InputError("picks", std::string("fit the map only to ") + metres.data(),
+                       "correct them, or confirm the figure");
+    }
+    map_.stored.plan = found.registration;
     save_map(map_.stored, *map_.output);
     const std::string csv = picks_csv(picks);
     const std::filesystem::path csv_path = picks_path(*map_.output);

@@ -30,7 +30,7 @@ class MapViewer {
   // Throws InputError as WebServer does, and when the plan's image cannot be read.
   MapViewer(ViewedMap map, const WebServerOptions& server);
 
-  const std::string& url() const { return server_.url(); }
+  const std::vector<std::string>& urls() const { return server_.urls(); }
 
  private:
   WebServer server_;  // constant after construction

@@ -55,7 +55,7 @@ class MapViewerTest : public TestFolder {
   }
 
   static WebClient client_of(const MapViewer& viewer) {
-    return WebClient(std::stoi(viewer.url().substr(viewer.url().rfind(':') + 1)));
+    return WebClient(std::stoi(viewer.urls().back().substr(viewer.urls().back().rfind(':') + 1)));
   }
 
   FloorPlanScene scene_;
@@ -99,6 +99,26 @@ TEST_F(MapViewerTest, SavesTheRegisteredMapAndThePicks) {
   std::string header;
   std::getline(csv, header);
   EXPECT_EQ(header, "name,point,plan_x_m,plan_y_m");
+}
+
+TEST_F(MapViewerTest, SavesWhatIsFarOffOnlyWhenTheFigureIsConfirmed) {
+  for (PlanCorrespondence& sign : signs_) sign.point_in_plan *= 1.5;  // as by a plan of a wrong resolution
+  const MapViewer viewer(viewed_, any_port_);
+  const WebClient client = client_of(viewer);
+  const Json fit = client.post("/registration", picks(6)).json();
+  EXPECT_EQ(fit.at("is_far_off"), true);
+  const double residual = fit.at("residual_m");
+  EXPECT_GT(residual, 1.0);
+  const WebClient::Answer refused = client.post("/save", picks(6));
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(refused.json().at("problem").get<std::string>(), HasSubstr("fit the map only to "));
+  Json confirmed = Json::parse(picks(6));
+  confirmed["accepted_residual_m"] = 0.9 * residual;
+  EXPECT_EQ(client.post("/save", confirmed.dump()).status, 400) << "another figure was confirmed";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "barn-plan.byre"));
+  confirmed["accepted_residual_m"] = residual;
+  EXPECT_EQ(client.post("/save", confirmed.dump()).status, 200);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "barn-plan.byre"));
 }
 
 TEST_F(MapViewerTest, SaysWhyItCannotRegisterOrSave) {

@@ -42,7 +42,7 @@ class RunViewer {
   // rectified.
   RunViewer(RunDescription description, const RunViewerOptions& options);
 
-  const std::string& url() const { return server_.url(); }
+  const std::vector<std::string>& urls() const { return server_.urls(); }
 
   // Call it after each frame, from the thread that runs the session.
   void show(const Image& recorded_left, const FrameReport& report, const Session& session);

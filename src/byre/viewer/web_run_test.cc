@@ -55,7 +55,9 @@ class RunViewerTest : public testing::Test {
     viewer.end_run();
   }
 
-  static int port_of(const RunViewer& viewer) { return std::stoi(viewer.url().substr(viewer.url().rfind(':') + 1)); }
+  static int port_of(const RunViewer& viewer) {
+    return std::stoi(viewer.urls().back().substr(viewer.urls().back().rfind(':') + 1));
+  }
 
   Calibration calibration_;
   SimulatedMission mission_;

@@ -2,9 +2,11 @@
 
 #include "byre/input/input_error.h"
 #include "byre/viewer/web_access.h"
+#include "byre/viewer/web_address.h"
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -15,6 +17,8 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -30,7 +34,10 @@ using Response = http::response<http::string_body>;
 
 constexpr auto kIdleTime = std::chrono::seconds(30);
 constexpr auto kPauseAfterFailure = std::chrono::milliseconds(200);
+constexpr std::uint32_t kMaxHeadBytes = 8 << 10;
 constexpr std::size_t kMaxRequestBytes = 1 << 20;
+constexpr int kMaxWaiting = 512;                   // connections that the kernel keeps until they are let in
+constexpr int kNiceness = 5;                       // of the server's thread: what else the program does comes first
 constexpr std::size_t kMaxMessageBytes = 1 << 10;  // from a page, which has nothing to say there
 constexpr auto kPathOfMessages = "/live";
 
@@ -58,10 +65,7 @@ Response finished(const WebResponse& answer, const Request& request) {
   return response;
 }
 
-WebResponse answer(WebSite& site, const WebAccess& access, const Request& request) {
-  if (const std::string_view reason = refusal(access, origin_of(request)); !reason.empty()) {
-    return {403, "text/plain; charset=utf-8", std::string(reason) + "\n"};
-  }
+WebResponse answer(WebSite& site, const Request& request) {
   if (request.method() != http::verb::get && request.method() != http::verb::post) {
     return problem_response(405, "only GET and POST are known");
   }
@@ -75,10 +79,30 @@ WebResponse answer(WebSite& site, const WebAccess& access, const Request& reques
   }
 }
 
+WebResponse refused(int status, std::string_view reason) {
+  return {status, "text/plain; charset=utf-8", std::string(reason) + "\n"};
+}
+
+// The place of a connection among the guests, given back at the end of its life.
+class Seat {
+ public:
+  Seat(WebGuests& guests, WebGuests::Id id) : guests_(guests), id_(id) {}
+  ~Seat() { guests_.leave(id_); }
+  Seat(const Seat&) = delete;
+  Seat& operator=(const Seat&) = delete;
+
+  bool introduce() { return guests_.introduce(id_); }
+
+ private:
+  WebGuests& guests_;
+  WebGuests::Id id_;
+};
+
 // A WebSocket that tells what a site has to tell. Lives as long as an operation on it is under way.
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
-  Listener(tcp::socket&& socket, WebSite& site) : stream_(std::move(socket)), site_(site) {}
+  Listener(tcp::socket&& socket, std::unique_ptr<Seat> seat, WebSite& site)
+      : seat_(std::move(seat)), stream_(std::move(socket)), site_(site) {}
 
   void start(const Request& request) {
     stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
@@ -125,6 +149,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   }
 
   // Owned by the server's thread.
+  std::unique_ptr<Seat> seat_;
   websocket::stream<beast::tcp_stream> stream_;
   WebSite& site_;
   ListenerProgress progress_;
@@ -136,50 +161,84 @@ class Listener : public std::enable_shared_from_this<Listener> {
 
 using Listeners = std::vector<std::weak_ptr<Listener>>;
 
-// Requests of one HTTP connection, one after the other, until one of them makes a listener of it.
+// Requests of one HTTP connection, one after the other, until one of them makes a listener of it. Of a stranger nothing
+// is read but the head of one request, in the time it has for that; if it is refused, the connection ends.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket&& socket, WebSite& site, const WebAccess& access, Listeners& listeners)
-      : stream_(std::move(socket)), site_(site), access_(access), listeners_(listeners) {}
+  Connection(tcp::socket&& socket, std::unique_ptr<Seat> seat, WebSite& site, const WebAccess& access,
+             Listeners& listeners)
+      : seat_(std::move(seat)), stream_(std::move(socket)), site_(site), access_(access), listeners_(listeners) {}
 
-  void read() {
+  void welcome(std::chrono::milliseconds patience) { read_head(patience); }
+
+  void close() { stream_.close(); }
+
+ private:
+  void read_head(std::chrono::milliseconds patience) {
     parser_.emplace();
+    parser_->header_limit(kMaxHeadBytes);
     parser_->body_limit(kMaxRequestBytes);
-    stream_.expires_after(kIdleTime);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (!error) self->respond();
+    stream_.expires_after(patience);
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) self->judge();
     });
   }
 
- private:
-  void respond() {
-    const Request& request = parser_->get();
-    const bool may_listen = refusal(access_, origin_of(request)).empty();
-    if (may_listen && websocket::is_upgrade(request) && path_of(view(request.target())) == kPathOfMessages) {
-      stream_.expires_never();
-      const auto listener = std::make_shared<Listener>(stream_.release_socket(), site_);
-      listeners_.push_back(listener);
-      listener->start(request);
+  void judge() {
+    if (const std::string_view reason = refusal(access_, origin_of(parser_->get())); !reason.empty()) {
+      respond(refused(403, reason), is_known_);
       return;
     }
-    response_ = finished(answer(site_, access_, request), request);
+    if (!is_known_ && !seat_->introduce()) {
+      respond(refused(503, "too many pages are open"), false);
+      return;
+    }
+    is_known_ = true;
+    stream_.expires_after(kIdleTime);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) self->answer_request();
+    });
+  }
+
+  void answer_request() {
+    const Request& request = parser_->get();
+    if (websocket::is_upgrade(request) && path_of(view(request.target())) == kPathOfMessages) {
+      listen(request);
+    } else {
+      respond(answer(site_, request), true);
+    }
+  }
+
+  void listen(const Request& request) {
+    stream_.expires_never();
+    const auto listener = std::make_shared<Listener>(stream_.release_socket(), std::move(seat_), site_);
+    listeners_.push_back(listener);
+    listener->start(request);
+  }
+
+  void respond(const WebResponse& response, bool may_go_on) {
+    const Request& request = parser_->get();
+    response_ = finished(response, request);
+    // What is left of a request that was refused would be taken for the next one.
+    if (!may_go_on || !parser_->is_done()) response_.keep_alive(false);
     stream_.expires_after(kIdleTime);
     http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return;
       if (self->response_.need_eof()) {
-        self->close();
+        self->end();
       } else {
-        self->read();
+        self->read_head(kIdleTime);
       }
     });
   }
 
-  void close() {
+  void end() {
     error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
   }
 
   // Owned by the server's thread.
+  std::unique_ptr<Seat> seat_;
   beast::tcp_stream stream_;
   WebSite& site_;
   const WebAccess& access_;
@@ -187,6 +246,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;  // of one request
   Response response_;                                              // that is being sent
+  bool is_known_ = false;                                          // has asked for what it may have
 };
 
 tcp::endpoint endpoint_of(const WebServerOptions& options) {
@@ -215,18 +275,23 @@ tcp::acceptor listen(asio::io_context& context, const WebServerOptions& options)
   acceptor.open(endpoint.protocol(), error);
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor.listen(kMaxWaiting, error);
   if (error) refuse_to_listen(options, error);
   return acceptor;
 }
 
-// All addresses of a machine are none that a browser could open.
-std::string url_of(const tcp::endpoint& bound, const std::string& token) {
-  asio::ip::address address = bound.address();
-  if (address.is_unspecified()) address = asio::ip::make_address("127.0.0.1");
-  const std::string host = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
-  const std::string page = "http://" + host + ":" + std::to_string(bound.port()) + "/";
+std::string url_of(const std::string& address, int port, const std::string& token) {
+  const std::string host = address.find(':') == std::string::npos ? address : "[" + address + "]";
+  const std::string page = "http://" + host + ":" + std::to_string(port) + "/";
   return token.empty() ? page : page + "?token=" + token;
+}
+
+std::vector<std::string> urls_of(const tcp::endpoint& bound, const std::string& token) {
+  std::vector<std::string> urls;
+  for (const std::string& address : reachable_addresses(bound.address().to_string())) {
+    urls.push_back(url_of(address, bound.port(), token));
+  }
+  return urls;
 }
 
 }  // namespace
@@ -236,11 +301,19 @@ class WebServer::Core {
   Core(const WebServerOptions& options, std::unique_ptr<WebSite> site)
       : site_(std::move(site)),
         access_(access_to(options.address)),
+        limits_(options.limits),
+        end_of_descriptors_(end_of_descriptors(limits_)),
+        guests_(limits_),
+        rate_(limits_, std::chrono::steady_clock::now()),
         acceptor_(listen(context_, options)),
         port_(acceptor_.local_endpoint().port()),
-        url_(url_of(acceptor_.local_endpoint(), access_.token)) {
+        urls_(urls_of(acceptor_.local_endpoint(), access_.token)) {
     accept();
-    thread_ = std::thread([this] { context_.run(); });
+    thread_ = std::thread([this] {
+      const auto self = static_cast<id_t>(gettid());
+      setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNiceness);
+      context_.run();
+    });
   }
 
   ~Core() {
@@ -258,27 +331,53 @@ class WebServer::Core {
     });
   }
 
-  const std::string& url() const { return url_; }
+  const std::vector<std::string>& urls() const { return urls_; }
   int port() const { return port_; }
 
  private:
   void accept() {
+    const std::chrono::milliseconds wait = rate_.wait(std::chrono::steady_clock::now());
+    if (wait.count() > 0) {
+      accept_after(wait);
+      return;
+    }
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
       if (error) {
-        accept_later();
+        // Where there are too many open files, asking again at once would only take up the processor.
+        accept_after(kPauseAfterFailure);
         return;
       }
-      std::make_shared<Connection>(std::move(socket), *site_, access_, listeners_)->read();
+      rate_.count(std::chrono::steady_clock::now());
+      welcome(std::move(socket));
       accept();
     });
   }
 
-  // Where there are too many open files, asking again at once would only take up the processor.
-  void accept_later() {
-    pause_.expires_after(kPauseAfterFailure);
+  void accept_after(std::chrono::milliseconds pause) {
+    pause_.expires_after(pause);
     pause_.async_wait([this](error_code error) {
       if (!error) accept();
     });
+  }
+
+  void welcome(tcp::socket&& socket) {
+    if (socket.native_handle() >= end_of_descriptors_) return;  // which closes it
+    error_code error;
+    const tcp::endpoint peer = socket.remote_endpoint(error);
+    if (error) return;  // it is gone again
+    const WebGuests::Arrival arrival = guests_.arrive(peer.address().to_string());
+    const auto connection = std::make_shared<Connection>(std::move(socket), std::make_unique<Seat>(guests_, arrival.id),
+                                                         *site_, access_, listeners_);
+    connections_[arrival.id] = connection;
+    connection->welcome(limits_.patience);
+    if (arrival.to_close) close(*arrival.to_close);
+    std::erase_if(connections_, [](const auto& each) { return each.second.expired(); });
+  }
+
+  void close(WebGuests::Id id) {
+    const auto found = connections_.find(id);
+    if (found == connections_.end()) return;
+    if (const std::shared_ptr<Connection> connection = found->second.lock()) connection->close();
   }
 
   void tell_listeners() {
@@ -289,8 +388,13 @@ class WebServer::Core {
   // Constant after construction; the site is used by the server's thread alone.
   std::unique_ptr<WebSite> site_;
   WebAccess access_;
+  WebLimits limits_;
+  int end_of_descriptors_;
 
   // Owned by the server's thread. What waits in the context uses what is above it, and goes before that.
+  WebGuests guests_;
+  ArrivalRate rate_;
+  std::map<WebGuests::Id, std::weak_ptr<Connection>> connections_;
   Listeners listeners_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
@@ -298,7 +402,7 @@ class WebServer::Core {
 
   // Constant after construction.
   int port_;
-  std::string url_;
+  std::vector<std::string> urls_;
   std::thread thread_;
 };
 
@@ -307,8 +411,8 @@ WebServer::WebServer(const WebServerOptions& options, std::unique_ptr<WebSite> s
 
 WebServer::~WebServer() = default;
 
-const std::string& WebServer::url() const {
-  return core_->url();
+const std::vector<std::string>& WebServer::urls() const {
+  return core_->urls();
 }
 
 int WebServer::port() const {

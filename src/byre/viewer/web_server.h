@@ -1,19 +1,23 @@
 #pragma once
 
+#include "byre/viewer/web_guests.h"
 #include "byre/viewer/web_site.h"
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace byre {
 
 struct WebServerOptions {
   std::string address = "127.0.0.1";  // an IP address of this machine; 0.0.0.0 or :: for all of them
   int port = 8017;                    // 0: one that is free
+  WebLimits limits{};
 };
 
 // Serves a site over HTTP and, at the path /live, WebSocket, from a thread of its own, until it is destroyed: that
-// closes all connections and waits for nobody. What may be asked by whom is said in web_access.h.
+// closes all connections and waits for nobody. What may be asked by whom is said in web_access.h, and how much
+// connections may take of the program in web_guests.h.
 class WebServer {
  public:
   // Throws InputError when the address is none of this machine's or the port is in use or not allowed.
@@ -22,8 +26,9 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  // To open in a browser; holds the token where one is needed.
-  const std::string& url() const;
+  // To open in a browser; holds the token where one is needed. At all addresses of the machine there are several, those
+  // that other machines can open first, and last the one for this machine.
+  const std::vector<std::string>& urls() const;
   int port() const;
 
   // Has the site refreshed and listeners told what is new, soon and in the server's thread. May be called from any.

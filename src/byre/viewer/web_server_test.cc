@@ -3,15 +3,22 @@
 #include "byre/input/input_error.h"
 #include "byre/viewer/web_client_scene.h"
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 
 namespace byre {
 namespace {
 
+using ::testing::Each;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 // Says back what it was asked, and counts up to a number for its listeners.
@@ -40,8 +47,8 @@ class EchoSite : public WebSite {
 
 class WebServerTest : public testing::Test {
  protected:
-  WebServer serve(const std::string& address = "127.0.0.1") {
-    return {{address, 0}, std::make_unique<EchoSite>(last_)};
+  WebServer serve(const std::string& address = "127.0.0.1", const WebLimits& limits = {}) {
+    return {{address, 0, limits}, std::make_unique<EchoSite>(last_)};
   }
 
   std::atomic<int> last_ = 0;
@@ -50,7 +57,7 @@ class WebServerTest : public testing::Test {
 TEST_F(WebServerTest, HandsRequestsToTheSite) {
   const WebServer server = serve();
   const WebClient client(server.port());
-  EXPECT_EQ(server.url(), "http://127.0.0.1:" + std::to_string(server.port()) + "/");
+  EXPECT_THAT(server.urls(), ElementsAre("http://127.0.0.1:" + std::to_string(server.port()) + "/"));
   EXPECT_EQ(client.get("/page?a=b").body, "get /page ");
   EXPECT_EQ(client.post("/picks", "[1]").body, "post /picks [1]");
 }
@@ -77,8 +84,8 @@ TEST_F(WebServerTest, AsksForTheTokenOnceItIsOpenToTheNetwork) {
   const WebServer server = serve("0.0.0.0");
   const WebClient client(server.port());
   const std::string page = "http://127.0.0.1:" + std::to_string(server.port());
-  ASSERT_THAT(server.url(), StartsWith(page + "/?token="));
-  const std::string target = server.url().substr(page.size());
+  ASSERT_THAT(server.urls().back(), StartsWith(page + "/?token="));
+  const std::string target = server.urls().back().substr(page.size());
   EXPECT_EQ(client.get(target).status, 200);
   EXPECT_EQ(client.get("/").status, 403);
   EXPECT_EQ(client.get(target + "0").status, 403);
@@ -109,6 +116,100 @@ TEST_F(WebServerTest, EndsWithListenersOpen) {
     EXPECT_EQ(listener->next().bytes, "1");
   }
   EXPECT_THROW(listener->next(), boost::system::system_error);
+}
+
+TEST_F(WebServerTest, NamesAddressesThatOtherMachinesCanOpen) {
+  const WebServer server = serve("0.0.0.0");
+  EXPECT_THAT(server.urls(), Each(Not(HasSubstr("0.0.0.0"))));
+  EXPECT_THAT(server.urls(), Each(HasSubstr(":" + std::to_string(server.port()) + "/?token=")));
+  EXPECT_THAT(server.urls().back(), StartsWith("http://127.0.0.1:"));
+}
+
+// Connections that never ask for anything they may have; their sockets are this process' own.
+class Crowd {
+ public:
+  explicit Crowd(int port) : port_(static_cast<std::uint16_t>(port)) {}
+
+  void add(int count, const std::string& bytes) {
+    for (int i = 0; i < count; ++i) {
+      sockets_.push_back(WebClient::connected(context_, port_));
+      boost::system::error_code ignored;
+      boost::asio::write(sockets_.back(), boost::asio::buffer(bytes), ignored);
+    }
+  }
+
+  // One more byte of each request that never ends.
+  void drip() {
+    for (boost::asio::ip::tcp::socket& socket : sockets_) {
+      boost::system::error_code ignored;
+      socket.write_some(boost::asio::buffer("x", 1), ignored);
+    }
+  }
+
+  int still_open() {
+    int count = 0;
+    for (boost::asio::ip::tcp::socket& socket : sockets_) {
+      std::array<char, 4096> bytes{};
+      boost::system::error_code error;
+      socket.non_blocking(true);
+      while (!error) socket.read_some(boost::asio::buffer(bytes), error);
+      count += error == boost::asio::error::would_block ? 1 : 0;
+    }
+    return count;
+  }
+
+ private:
+  std::uint16_t port_;
+  boost::asio::io_context context_;
+  std::vector<boost::asio::ip::tcp::socket> sockets_;
+};
+
+WebLimits impatient() {
+  WebLimits limits;
+  limits.patience = std::chrono::milliseconds(150);
+  limits.arrivals_per_second = 1e4;
+  limits.arrivals_at_once = 1000;
+  return limits;
+}
+
+TEST_F(WebServerTest, ClosesWhoeverDoesNotAskInTime) {
+  const WebServer server = serve("0.0.0.0", impatient());
+  Crowd crowd(server.port());
+  crowd.add(2, "");
+  crowd.add(2, "GET /?token=");
+  for (int i = 0; i < 12 && crowd.still_open() > 0; ++i) {
+    crowd.drip();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_EQ(crowd.still_open(), 0) << "a byte now and then buys no time";
+}
+
+TEST_F(WebServerTest, ReadsNothingButTheHeadOfWhatItRefuses) {
+  const WebServer server = serve("0.0.0.0");
+  Crowd crowd(server.port());
+  crowd.add(1, "POST / HTTP/1.1\r\nHost: barn\r\nContent-Length: 1000000\r\n\r\n");
+  for (int i = 0; i < 100 && crowd.still_open() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(crowd.still_open(), 0) << "long before the body came, or the time to ask was over";
+}
+
+TEST_F(WebServerTest, AnswersWhoeverHasTheTokenAmongHundredsThatHaveNot) {
+  WebLimits limits = impatient();
+  limits.patience = std::chrono::seconds(30);
+  const WebServer server = serve("0.0.0.0", limits);
+  const std::string url = server.urls().back();
+  const std::string target = url.substr(url.rfind('/'));
+  const WebClient client(server.port());
+  LiveClient listener(server.port(), "/live" + target.substr(1));
+  Crowd crowd(server.port());
+  for (int i = 0; i < 10; ++i) {
+    crowd.add(10, "");
+    crowd.add(5, "GET /?token=" + std::string(7, 'a'));
+    crowd.add(5, std::string(20000, '\xff'));
+    crowd.add(5, "GET /?token=wrong HTTP/1.1\r\nHost: barn\r\n\r\n");
+    Crowd(server.port()).add(5, "");
+    EXPECT_EQ(client.get(target).status, 200);
+  }
+  EXPECT_LE(crowd.still_open(), limits.strangers);
 }
 
 TEST_F(WebServerTest, SaysWhatIsWrongWithAnAddressOrPort) {

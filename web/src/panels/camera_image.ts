@@ -26,9 +26,9 @@ export class CameraImage {
       element(
         "p",
         { class: "legend" },
-        element("span", { class: "key offline" }, "● offline"),
-        element("span", { class: "key online" }, "■ online"),
-        element("span", { class: "key" }, "✕ does not fit"),
+        element("span", { class: "key offline", title: "Of the map made before, and in its place" }, "● known point"),
+        element("span", { class: "key online", title: "Found on this drive, and in its place" }, "■ new point"),
+        element("span", { class: "key", title: "Not where it should be: moved, or mistaken for another" }, "✕ does not fit"),
       ),
     );
     onThemeChange(() => this.#draw());
@@ -77,7 +77,7 @@ export class CameraImage {
   #describe(image: SeenImage): void {
     const inliers = image.kinds.filter((kind) => kind & kInlier);
     const online = inliers.filter((kind) => kind & kOnline).length;
-    const said = `Frame ${image.frame}: ${inliers.length - online} offline and ${online} online points fit, ${
+    const said = `Image ${image.frame}: ${inliers.length - online} known and ${online} new points fit, ${
       image.kinds.length - inliers.length
     } do not`;
     this.#caption.textContent = said;

@@ -14,53 +14,76 @@ const percent = (share: number) => `${Math.round(100 * share)} %`;
 
 const kRows: Row[] = [
   {
-    name: "Offline points",
+    name: "Known points",
     value: ({ offline_inliers, offline_expected }) => `${offline_inliers} of ${offline_expected}`,
-    title: "That hold the pose, of those expected in view",
+    title:
+      "Points of the map made before that the camera sees in their place, of those that should be in view. " +
+      "Few of many: things were moved, or the robot is not where it believes to be.",
   },
-  { name: "Online points", value: ({ online_inliers }) => `${online_inliers}`, title: "That hold the pose" },
   {
-    name: "Agree",
+    name: "New points",
+    value: ({ online_inliers }) => `${online_inliers}`,
+    title: "Points found during this drive that the camera sees again in their place",
+  },
+  {
+    name: "Points that agree",
     value: ({ inlier_share, matches }) => `${percent(inlier_share)} of ${matches}`,
-    title: "Share of all matches that fit the pose",
+    title: "Of the points recognised in this image, how many fit the position. Below about a half it is doubtful.",
   },
-  { name: "Spread", value: ({ spread }) => percent(spread), title: "Of the points, in the image where they spread least" },
-  { name: "Position", value: ({ sigma_mm }) => `± ${sigma_mm.toFixed(1)} mm`, title: "One sigma" },
   {
-    name: "Maps differ by",
+    name: "Spread in the image",
+    value: ({ spread }) => percent(spread),
+    title: "How far the points spread over the image. Points in one corner hold the position badly.",
+  },
+  {
+    name: "Position known to",
+    value: ({ sigma_mm }) => `± ${sigma_mm.toFixed(1)} mm`,
+    title: "The true position is within this in two of three cases, as far as the program can tell",
+  },
+  {
+    name: "Known and new differ",
     value: ({ disagreement_mm }) => (disagreement_mm === undefined ? "–" : `${disagreement_mm.toFixed(1)} mm`),
-    title: "The poses from offline and from online points alone",
+    title: "How far apart the positions are by the known points alone and by the new points alone",
   },
   {
-    name: "Since offline",
+    name: "Way since a known place",
     value: ({ since_offline_m }) => `${since_offline_m.toFixed(1)} m`,
-    title: "Path since offline points last held the pose",
+    title: "Driven since known points last held the position. The error grows with it.",
   },
-  { name: "Moved away", value: ({ suspended }) => `${suspended}`, title: "Offline points left out: not where the map has them" },
   {
-    name: "Mapped",
-    value: ({ online_points, online_keyframes }) => `${online_points} points, ${online_keyframes} keyframes`,
-    title: "Of the online map",
+    name: "Things moved",
+    value: ({ suspended }) => `${suspended} points`,
+    title: "Known points that are no longer where the map has them, as on things that were moved; they are left out",
+  },
+  {
+    name: "Mapped on this drive",
+    value: ({ online_points, online_keyframes }) => `${online_points} points, ${online_keyframes} views`,
+    title: "Points found on this drive, and the images that were kept to find them",
   },
 ];
+
+const kVerdictHelp = "Trusted: steer by it. Degraded: likely right, be careful. Untrusted: do not steer by it.";
 
 /** How far the pose of the frame shown may be trusted, and why. */
 export class HealthPanel {
   readonly panel: HTMLElement;
-  readonly #verdict = element("p", { class: "verdict" });
+  readonly #verdict = element("p", { class: "verdict", title: kVerdictHelp });
   readonly #meaning = element("p", { class: "meaning" });
   readonly #values = kRows.map(() => element("dd"));
   readonly #events = element("ol", { class: "events" });
 
   constructor(seek: (frame: number) => void) {
-    const rows = kRows.flatMap(({ name, title }, i) => [element("dt", { title }, name), this.#values[i]]);
+    const rows = kRows.flatMap(({ name, title }, i) => {
+      this.#values[i].title = title;
+      return [element("dt", { title }, name), this.#values[i]];
+    });
     this.panel = element(
       "section",
       { class: "panel health", ariaLabel: "Health" },
       this.#verdict,
       this.#meaning,
       element("dl", {}, ...rows),
-      element("h2", {}, "Events"),
+      element("h2", { title: "What happened so far, the newest first; click one to go there" }, "Events"),
       this.#events,
     );
     this.#events.addEventListener("click", ({ target }) => {

@@ -7,6 +7,8 @@ export interface Layer {
   mark?: string;
   colour?: string;
   key?: string;
+  /** What it is, for whoever points at it. */
+  title?: string;
   isOn: boolean;
   set: (isOn: boolean) => void;
 }
@@ -16,7 +18,7 @@ export function layerButton(layer: Layer): HTMLButtonElement {
   const content: (Node | string)[] = [layer.name];
   if (layer.mark) content.unshift(element("span", { class: `mark ${layer.colour ?? ""}`, ariaHidden: "true" }, layer.mark));
   const button = element("button", { type: "button", class: "layer" }, ...content);
-  if (layer.key) button.title = `Key ${layer.key}`;
+  button.title = [layer.title, layer.key ? `Key ${layer.key}` : ""].filter(Boolean).join(". ");
   const show = () => button.setAttribute("aria-pressed", String(layer.isOn));
   button.addEventListener("click", () => {
     layer.isOn = !layer.isOn;
@@ -28,8 +30,8 @@ export function layerButton(layer: Layer): HTMLButtonElement {
 }
 
 /** A button that does something once. */
-export function actionButton(name: string, key: string, act: () => void): HTMLButtonElement {
-  const button = element("button", { type: "button", class: "layer", title: `Key ${key}` }, name);
+export function actionButton(name: string, key: string, what: string, act: () => void): HTMLButtonElement {
+  const button = element("button", { type: "button", class: "layer", title: `${what}. Key ${key}` }, name);
   button.addEventListener("click", act);
   return button;
 }

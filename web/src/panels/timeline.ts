@@ -31,7 +31,7 @@ export class Timeline {
   readonly panel: HTMLElement;
   readonly #canvas: HTMLCanvasElement;
   readonly #play = element("button", { type: "button", class: "play" });
-  readonly #live = element("button", { type: "button", class: "live" }, "Live");
+  readonly #live = element("button", { type: "button", class: "live", title: "Back to the newest image" }, "Live");
   readonly #time = element("output", { class: "time" });
   readonly #playback: Playback;
   readonly #expected: number;
@@ -44,6 +44,9 @@ export class Timeline {
     this.#canvas = element("canvas", { tabIndex: 0, class: "track" });
     this.#canvas.setAttribute("role", "slider");
     this.#canvas.setAttribute("aria-label", "Frame of the run");
+    this.#canvas.title =
+      "The whole drive. Above: how many points held the position, known ones green, new ones purple. " +
+      "Below: how far it may be trusted. Click to go there.";
     this.panel = element("div", { class: "timeline" }, this.#play, this.#live, this.#canvas, this.#time);
     this.#play.addEventListener("click", () => playback.togglePlay());
     this.#live.addEventListener("click", () => playback.goLive());

@@ -1,0 +1,23 @@
+import { element } from "./dom";
+
+/** Asks before something that is hard to undo; nothing is chosen by hitting Enter at once. */
+export function isConfirmed(question: string, yes: string): Promise<boolean> {
+  const refuse = element("button", { type: "button", autofocus: true }, "Do not save");
+  const accept = element("button", { type: "button", class: "danger" }, yes);
+  const dialog = element(
+    "dialog",
+    { class: "confirm", ariaLabel: "Please confirm" },
+    element("p", {}, question),
+    element("p", { class: "buttons" }, refuse, accept),
+  );
+  document.body.append(dialog);
+  return new Promise((resolve) => {
+    refuse.addEventListener("click", () => dialog.close());
+    accept.addEventListener("click", () => dialog.close("yes"));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      resolve(dialog.returnValue === "yes");
+    });
+    dialog.showModal();
+  });
+}
