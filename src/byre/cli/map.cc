@@ -121,10 +121,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   MapRecord record = record_of(options);
   const auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, options.extended.has_value());
-  if (!options.quiet) {
-    show_warnings(std::cerr, recording->warnings());
-    show_check(std::cerr, *recording);
-  }
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   std::optional<Map> extended = take_extended(options, record);
   record.about.recordings.push_back(describe_source(options.recording, *recording));
   take_known_calibration(record.about.recordings);
@@ -133,6 +130,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   protocol.is_metric = is_metric;
 
   limit_image_threads(1);
+  if (!options.quiet) show_check(std::cerr, *recording);
   const InterruptCatcher interrupt(options.outputs());
   const MapRun run = run_and_autosave(*recording, protocol.options, options, record, std::move(extended), interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);

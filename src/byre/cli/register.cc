@@ -116,7 +116,7 @@ Action declare_register(CLI::App& command) {
       .add_option("--accept-residual", options->accepted_residual,
                   "Write the map although it is off its plan by up to so much (0.5)")
       ->type_name("METRES")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(between(0.0, 1e6))
       ->needs(output);
   command
       .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")

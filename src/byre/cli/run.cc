@@ -169,15 +169,13 @@ void require_frames(const MissionStatistics& statistics) {
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
-  if (!options.quiet) {
-    show_warnings(std::cerr, opened.recording->warnings());
-    show_check(std::cerr, *opened.recording);
-  }
+  if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
   const std::optional<Truth> truth = load_truths(options);
   MapProtocol protocol = protocol_of(options, *opened.recording);
   protocol.is_metric = opened.is_metric;
 
   limit_image_threads(1);
+  if (!options.quiet) show_check(std::cerr, *opened.recording);
   const std::unique_ptr<RunViewer> viewer =
       options.view.is_wanted
           ? start_viewer(options.view, {options.recording, *opened.recording, options.map, protocol.options.offline})

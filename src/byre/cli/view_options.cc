@@ -3,7 +3,6 @@
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/number_check.h"
 
-#include <limits>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -38,10 +37,10 @@ void declare_watching(CLI::App& command, ViewOptions& options) {
   view->each([&options](const std::string&) { options.is_wanted = true; });
   command
       .add_option("--view-for", options.stay_s,
-                  "How long the page stays once the run is over: 0 not at all, inf until Ctrl-C (inf where the program "
-                  "has a terminal, else 0)")
+                  "How long the page stays once the run is over, 0: not at all (until Ctrl-C where the program has a "
+                  "terminal, else not at all)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()).description(""))
+      ->check(between(0.0, 1e9))
       ->needs(view);
   declare_address(command, options)->needs(view);
   declare_plan(command, options, "Floor plan to show under the map, which \"byre register\" has found on it")

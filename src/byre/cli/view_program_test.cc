@@ -52,7 +52,7 @@ TEST_F(ViewProgram, TellsOnlyItsAddressWhenQuiet) {
 
 TEST_F(ViewProgram, GoesOnShowingARunOnceItsFilesAreWritten) {
   const pid_t process =
-      start({"run", room_, "--trajectory", (folder_ / "path.txt").string(), "--view", "0", "--view-for", "inf"});
+      start({"run", room_, "--trajectory", (folder_ / "path.txt").string(), "--view", "0", "--view-for", "1000000"});
   ASSERT_TRUE(appears("until Ctrl-C", "stderr.txt"));
   EXPECT_THAT(read("path.txt"), Not(IsEmpty()));
   EXPECT_THAT(read("stdout.txt"), HasSubstr("path.txt"));
@@ -124,7 +124,7 @@ class HostileCrowd {
 
 TEST_F(ViewProgram, LosesNoFrameToHundredsOfHostileConnections) {
   const pid_t process = start({"run", room_, "--pace", "live", "--stats", (folder_ / "stats.json").string(), "--view",
-                               "0", "--bind", "0.0.0.0", "--view-for", "inf"});
+                               "0", "--bind", "0.0.0.0", "--view-for", "1000000"});
   const rlimit few{64, 64};
   ASSERT_EQ(prlimit(process, RLIMIT_NOFILE, &few, nullptr), 0) << "long before it serves";
   ASSERT_TRUE(appears("viewer: http://127.0.0.1:", "stderr.txt"));

@@ -44,7 +44,7 @@ bool has_terminal() {
 std::string describe_stay(double stay_s, bool is_asked_for) {
   if (stay_s == std::numeric_limits<double>::infinity()) return "goes on until Ctrl-C";
   if (stay_s > 0.0) return formatted("goes on for %g s, or until Ctrl-C", stay_s);
-  return is_asked_for ? "ends with the run" : "ends with the run, as there is no terminal (--view-for inf: goes on)";
+  return is_asked_for ? "ends with the run" : "ends with the run, as there is no terminal (--view-for SECONDS: stays)";
 }
 
 }  // namespace

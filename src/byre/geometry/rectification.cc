@@ -68,11 +68,6 @@ Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
     throw InputError("calibration", "the right camera does not lie to the right of the left one",
                      "check the extrinsic calibration; left and right may be swapped");
   }
-  constexpr double kLongestBaseline = 10.0;  // metres, that any robot carries
-  if (left_from_right.translation.norm() > kLongestBaseline) {
-    throw InputError("calibration", "the baseline is " + std::to_string(left_from_right.translation.norm()) + " m long",
-                     "check the unit of the extrinsic calibration: lengths are in metres");
-  }
   const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d z_axis = (mean_axis - mean_axis.dot(x_axis) * x_axis).normalized();
   Eigen::Matrix3d rotation;
@@ -135,6 +130,11 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
   const double baseline = baseline_of(calibration);
+  constexpr double kLongestBaseline = 10.0;  // metres, that any robot carries
+  if (baseline > kLongestBaseline) {
+    throw InputError("calibration", "the baseline is " + std::to_string(baseline) + " m long",
+                     "check the unit of the extrinsic calibration: lengths are in metres");
+  }
   Rectification result;
   if (is_rectified(calibration)) {
     result.rig = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};
