@@ -105,7 +105,7 @@ describe("A run", () => {
   });
 
   async function openRun() {
-    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0", "--view-for", "inf");
+    viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0", "--view-for", "1000000");
     return openPage(browser, viewer.url);
   }
 

@@ -193,8 +193,8 @@ void Session::recalibrate(const RefinedCalibration& refined) {
 bool Session::switch_camera() {
   const auto change = mission_calibrator_ ? mission_calibrator_->collect() : std::nullopt;
   if (!change) return false;
-  settle_all();
   rig_ = change->rig;
+  hindsight_.turn_rig(change->after_from_before);
   for (AnchoredPose& pose : anchored_)
     pose.camera_from_keyframe = change->after_from_before * pose.camera_from_keyframe;
   velocity_ = adjoint(change->after_from_before) * velocity_;
@@ -334,7 +334,7 @@ void Session::finish_mission(const FinishOptions& options, const FinishHooks& ho
   if (online_.keyframe_count() == 0) return;
   const MapWindow whole = whole_map(map());
   follow(apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_));
-  settle_all();
+  while (const auto seen = hindsight_.take_oldest()) settle(*seen);
 }
 
 Trajectory Session::final_trajectory() const {

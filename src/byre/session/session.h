@@ -206,7 +206,6 @@ class Session {
   void look_for_proof(const HybridTrack& track);
   void lose_pose(ImageFault fault, FrameReport& report);
   void settle(const RememberedFrame& seen);
-  void settle_all();
   bool may_map(const Frame& frame, const HybridTrack& track) const;
   void search_beside(const Frame& frame);
   void add_keyframe(const Frame& frame, const HybridTrack& track);

@@ -67,7 +67,7 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   if (track.online_reference) online_reference_ = track.online_reference;
   anchored_.push_back({frame.time, reference, track.tracked.camera_from_world * inverse(camera_from_world(reference)),
                        segments_.present()});
-  if (mission_) hindsight_.note(anchored_.size() - 1, *frame.features, track.tracked);
+  if (mission_) hindsight_.note(anchored_.size() - 1, rig_, *frame.features, track.tracked);
   last_body_ = body;
   has_pose_ = true;
   if (mission_ && is_registered()) remember_mission(frame, track, step, report);
@@ -162,13 +162,9 @@ void Session::lose_pose(ImageFault fault, FrameReport& report) {
 void Session::settle(const RememberedFrame& seen) {
   AnchoredPose& anchored = anchored_[seen.number];
   const Pose keyframe_from_world = camera_from_world(anchored.keyframe);
-  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, rig_, map(),
-                                      options_.track, options_.hindsight);
+  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map(), options_.track,
+                                      options_.hindsight);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
-}
-
-void Session::settle_all() {
-  while (const auto seen = hindsight_.take_oldest()) settle(*seen);
 }
 
 bool Session::may_map(const Frame& frame, const HybridTrack& track) const {

@@ -57,9 +57,7 @@ Session::Located Session::locate(const Frame& frame) {
   is_focal_asked_ = mission_ && focal_check_.is_due();
   const bool can_search = mission_ || places_;
   if (!anchored_.empty() && (has_pose_ || !can_search)) located.track = find_pose(frame);
-  if (located.track && located.track->focal) {
-    focal_check_.note(*located.track->focal, static_cast<std::size_t>(located.track->offline_matches));
-  }
+  if (located.track && located.track->focal) focal_check_.note(*located.track->focal);
   if (located.track && !is_still_confirming(*located.track)) located.track.reset();
   if (!located.track && can_search) {
     located.track = relocalise(frame);

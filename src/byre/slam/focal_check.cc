@@ -6,15 +6,11 @@
 namespace byre {
 namespace {
 
-std::optional<double> cost_with(double factor, const Pose& camera_from_world, Rig rig,
-                                std::span<const PoseObservation> observations, const PoseRefinementOptions& options) {
+double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations) {
   constexpr double kMaxSquaredError = 16.0;  // pixels: what is farther off is something else
-  rig.focal *= factor;
-  const auto refined = refine_pose(camera_from_world, rig, observations, options);
-  if (!refined) return std::nullopt;
   double sum = 0.0;
   for (const PoseObservation& observation : observations) {
-    const Eigen::Vector3d point_in_camera = refined->camera_from_world * observation.point_in_world;
+    const Eigen::Vector3d point_in_camera = camera_from_world * observation.point_in_world;
     const double squared = point_in_camera.z() > 0.0
                                ? (observation.measured - rig.project(point_in_camera)).head<2>().squaredNorm()
                                : kMaxSquaredError;
@@ -23,15 +19,32 @@ std::optional<double> cost_with(double factor, const Pose& camera_from_world, Ri
   return sum;
 }
 
+// The parabola through the three costs, by steps of the focal length. A cost that is bounded bends down where much does
+// not fit; it is taken to bend up by a tenth of itself at least, lest hardly bent ones say anything at all.
+struct Parabola {
+  double slope = 0.0;
+  double curvature = 0.0;
+
+  explicit Parabola(const FocalEvidence& evidence)
+      : slope(0.5 * (evidence.longer - evidence.shorter)),
+        curvature(std::max(evidence.shorter + evidence.longer - 2.0 * evidence.as_it_is, 0.1 * evidence.as_it_is)) {}
+};
+
 }  // namespace
 
 std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
                                                  std::span<const PoseObservation> observations,
                                                  const PoseRefinementOptions& options) {
-  const auto cost = [&](double factor) { return cost_with(factor, camera_from_world, rig, observations, options); };
-  const auto shorter = cost(1.0 - kFocalStep), as_it_is = cost(1.0), longer = cost(1.0 + kFocalStep);
-  if (!shorter || !as_it_is || !longer) return std::nullopt;
-  return FocalEvidence{*shorter, *as_it_is, *longer};
+  const auto cost_with = [&](double factor) -> std::optional<double> {
+    Rig other = rig;
+    other.focal *= factor;
+    const auto refined = refine_pose(camera_from_world, other, observations, options);
+    return refined ? std::optional(cost_at(refined->camera_from_world, other, observations)) : std::nullopt;
+  };
+  const auto shorter = cost_with(1.0 - kFocalStep), longer = cost_with(1.0 + kFocalStep);
+  if (!shorter || !longer) return std::nullopt;
+  return FocalEvidence{*shorter, cost_at(camera_from_world, rig, observations), *longer,
+                       static_cast<double>(observations.size())};
 }
 
 bool FocalCheck::is_due() {
@@ -39,26 +52,29 @@ bool FocalCheck::is_due() {
   return asked_ < options_.asked_first || frame % options_.asked_every == 0;
 }
 
-void FocalCheck::note(const FocalEvidence& evidence, std::size_t points) {
-  if (points < static_cast<std::size_t>(options_.min_points)) return;
+void FocalCheck::note(const FocalEvidence& evidence) {
+  if (evidence.points < options_.min_points) return;
   ++asked_;
   const auto blend = [this](double& sum, double now) { sum = options_.memory * sum + now; };
   blend(sum_.shorter, evidence.shorter);
   blend(sum_.as_it_is, evidence.as_it_is);
   blend(sum_.longer, evidence.longer);
+  blend(sum_.points, evidence.points);
+  blend(weight_, 1.0);
+  const double share = is_off_ ? options_.release : 1.0;
+  is_off_ = std::abs(error()) > share * options_.max_error && std::abs(sigmas()) > share * options_.min_sigmas;
 }
 
-// The lowest point of the parabola through the three; beyond them where they do not enclose it.
 double FocalCheck::error() const {
-  const double curvature = sum_.shorter + sum_.longer - 2.0 * sum_.as_it_is;
-  const double slope = sum_.longer - sum_.shorter;
-  if (slope == 0.0) return 0.0;
-  if (std::abs(slope) >= 2.0 * curvature) return std::copysign(kFocalStep, slope);
-  return 0.5 * kFocalStep * slope / curvature;
+  const Parabola cost(sum_);
+  return cost.curvature > 0.0 ? kFocalStep * cost.slope / cost.curvature : 0.0;
 }
 
-bool FocalCheck::is_off() const {
-  return std::abs(error()) > options_.max_error;
+double FocalCheck::sigmas() const {
+  const Parabola cost(sum_);
+  if (cost.curvature <= 0.0 || sum_.as_it_is <= 0.0) return 0.0;
+  const double variance = sum_.as_it_is / sum_.points;  // of a point's error
+  return cost.slope / std::sqrt(cost.curvature * variance * weight_);
 }
 
 }  // namespace byre

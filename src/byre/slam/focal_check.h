@@ -13,18 +13,24 @@ struct FocalEvidence {
   double shorter = 0.0;
   double as_it_is = 0.0;
   double longer = 0.0;
+  double points = 0.0;
 };
 
 constexpr double kFocalStep = 0.05;
 
-// Empty where a pose cannot be found by one of the three.
+// The pose is refined already as it is, and the guess for the other two. Empty where one of them finds none.
 std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
                                                  std::span<const PoseObservation> observations,
                                                  const PoseRefinementOptions& options);
 
 struct FocalCheckOptions {
-  // Share of the focal length: a worn calibration is off by 0.003, hand-held frames of a sound camera say up to 0.022.
-  double max_error = 0.025;
+  // Share of the focal length. A worn calibration is off by 0.003; frames of sound cameras say up to 0.007 in a
+  // building and, hand-held with a rolling shutter, 0.015, but then with less than two sigmas. Of an error of 0.05 they
+  // say 0.013 at least, and four sigmas: points that would tell of more are not found where they are expected.
+  double max_error = 0.01;
+  double min_sigmas = 3.0;  // by which it differs from none
+  // What is off stays so until it is less than these shares of both bounds.
+  double release = 0.5;
   int min_points = 60;   // of a frame that counts
   int asked_first = 5;   // frames, one after the other
   int asked_every = 20;  // frames, from then on
@@ -39,15 +45,19 @@ class FocalCheck {
 
   // Whether the next frame is to be asked. Call it once for each frame.
   bool is_due();
-  void note(const FocalEvidence& evidence, std::size_t points);
+  void note(const FocalEvidence& evidence);
 
   // By which share the focal length is too long; 0 while nothing is known.
   double error() const;
-  bool is_off() const;
+  // The error in its standard deviations, as one frame knows it: what a view says wrongly, the next one repeats.
+  double sigmas() const;
+  bool is_off() const { return is_off_; }
 
  private:
   FocalCheckOptions options_;
   FocalEvidence sum_;
+  double weight_ = 0.0;  // of all frames in the sum
+  bool is_off_ = false;
   int frames_ = 0;
   int asked_ = 0;
 };

@@ -30,38 +30,69 @@ std::vector<PoseObservation> seen_with(double focal_factor, double noise_pixels,
   return observations;
 }
 
-double error_of(double focal_factor, unsigned seed) {
+FocalCheck checked(double focal_factor, double noise_pixels, unsigned seed) {
   FocalCheck check({});
   for (unsigned frame = 0; frame < 3; ++frame) {
-    const auto observations = seen_with(focal_factor, 0.4, 10 * seed + frame);
-    const auto evidence = weigh_focal_lengths({}, simulated_rig(), observations, {});
-    if (evidence) check.note(*evidence, observations.size());
+    const auto observations = seen_with(focal_factor, noise_pixels, 10 * seed + frame);
+    const auto refined = refine_pose({}, simulated_rig(), observations, {});
+    if (!refined) continue;
+    const auto evidence = weigh_focal_lengths(refined->camera_from_world, simulated_rig(), observations, {});
+    if (evidence) check.note(*evidence);
   }
-  return check.error();
+  return check;
 }
 
 TEST(FocalCheck, LeavesARightFocalLengthAlone) {
   for (unsigned seed = 0; seed < 5; ++seed) {
-    EXPECT_NEAR(error_of(1.0, seed), 0.0, 0.003);
-    EXPECT_LT(std::abs(error_of(1.004, seed)), 0.01) << "as a worn calibration has it";
+    const FocalCheck sound = checked(1.0, 0.4, seed), worn = checked(1.004, 0.4, seed),
+                     blurred = checked(1.0, 3.0, seed);
+    EXPECT_NEAR(sound.error(), 0.0, 0.003);
+    EXPECT_LT(std::abs(worn.error()), 0.01) << "as a worn calibration has it";
+    EXPECT_FALSE(sound.is_off() || worn.is_off() || blurred.is_off());
   }
 }
 
 TEST(FocalCheck, TellsThatItIsTooLongOrTooShort) {
   for (unsigned seed = 0; seed < 5; ++seed) {
-    EXPECT_GT(error_of(1.0 / 1.05, seed), 0.03);
-    EXPECT_LT(error_of(1.0 / 0.95, seed), -0.03);
+    const FocalCheck too_long = checked(1.0 / 1.05, 0.4, seed), too_short = checked(1.0 / 0.95, 0.4, seed);
+    EXPECT_GT(too_long.error(), 0.03);
+    EXPECT_LT(too_short.error(), -0.03);
+    EXPECT_TRUE(too_long.is_off() && too_short.is_off());
   }
 }
 
 TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
   FocalCheck check({});
   EXPECT_EQ(check.error(), 0.0);
-  check.note({1.0, 5.0, 9.0}, 20);
+  check.note({100.0, 500.0, 900.0, 20.0});
   EXPECT_EQ(check.error(), 0.0);
   EXPECT_FALSE(check.is_off());
-  check.note({1.0, 5.0, 9.0}, 100);
+  check.note({100.0, 500.0, 900.0, 100.0});
   EXPECT_TRUE(check.is_off());
+}
+
+TEST(FocalCheck, HoldsAnErrorThatIsLargeForOneThatCouldBeChance) {
+  FocalCheck check({});
+  check.note({950.0, 900.0, 1050.0, 100.0});  // 9 square pixels a point: the frame is blurred
+  EXPECT_GT(std::abs(check.error()), 0.01);
+  EXPECT_LT(std::abs(check.sigmas()), 3.0);
+  EXPECT_FALSE(check.is_off());
+}
+
+// A parabola about 0.008, with four sigmas: below the bound, above half of it.
+TEST(FocalCheck, WhatIsOffStaysSoUntilItIsClearlyNot) {
+  const FocalEvidence off{500.0, 100.0, 100.0, 100.0}, doubtful{364.0, 100.0, 236.0, 100.0};
+  const FocalEvidence clear{300.0, 100.0, 299.0, 100.0};
+  const auto note = [](FocalCheck& check, const FocalEvidence& evidence) {
+    for (int frame = 0; frame < 40; ++frame) check.note(evidence);
+    return check.is_off();
+  };
+  FocalCheck check({});
+  EXPECT_FALSE(note(check, doubtful));
+  EXPECT_TRUE(note(check, off));
+  EXPECT_TRUE(note(check, doubtful));
+  EXPECT_FALSE(note(check, clear));
+  EXPECT_FALSE(note(check, doubtful));
 }
 
 TEST(FocalCheck, AsksTheFirstFramesThenNowAndThen) {
@@ -73,7 +104,7 @@ TEST(FocalCheck, AsksTheFirstFramesThenNowAndThen) {
   for (int frame = 0; frame < 41; ++frame) {
     if (!check.is_due()) continue;
     ++asked;
-    check.note({9.0, 1.0, 9.0}, 100);
+    check.note({900.0, 100.0, 900.0, 100.0});
   }
   EXPECT_EQ(asked, 2 + 4);
 }

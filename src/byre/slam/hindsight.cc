@@ -1,5 +1,7 @@
 #include "byre/slam/hindsight.h"
 
+#include "byre/slam/tracking_steps.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -7,33 +9,37 @@ namespace byre {
 namespace {
 
 RememberedPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
-  return {seen.point, {seen.pixel.x(), seen.pixel.y(), keypoint.disparity}, seen.pixel_sigma, keypoint.disparity_sigma};
+  return {seen.point,
+          {seen.pixel.x(), seen.pixel.y(), keypoint.disparity},
+          seen.pixel_sigma,
+          keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0f};
 }
 
 PoseObservation observation_of(const RememberedPoint& seen, const MapPoint& point, double offline_weight) {
-  PoseObservation observation;
-  observation.point_in_world = point.position_in_world;
-  observation.point_covariance = point.covariance;
-  observation.measured = seen.measured.cast<double>();
-  observation.pixel_sigma = seen.pixel_sigma;
-  observation.disparity_sigma = seen.disparity_sigma;
+  PoseObservation observation =
+      pose_observation(point, seen.measured.cast<double>(), seen.pixel_sigma, seen.disparity_sigma);
   if (seen.point.origin == Origin::offline) observation.weight = offline_weight;
   return observation;
 }
 
 }  // namespace
 
-void Hindsight::note(std::size_t number, const Features& features, const TrackedFrame& tracked) {
+void Hindsight::note(std::size_t number, const Rig& rig, const Features& features, const TrackedFrame& tracked) {
   const auto offline = std::ranges::count(tracked.features, Origin::offline,
                                           [](const TrackedFeature& seen) { return seen.point.origin; });
   if (2 * static_cast<std::size_t>(offline) > tracked.features.size()) return;
   RememberedFrame frame;
   frame.number = number;
+  frame.rig = rig;
   frame.points.reserve(tracked.features.size());
   for (const TrackedFeature& seen : tracked.features) {
     frame.points.push_back(remember(seen, features.keypoint(seen.feature)));
   }
   frames_.push_back(std::move(frame));
+}
+
+void Hindsight::turn_rig(const Pose& after_from_before) {
+  for (RememberedFrame& frame : frames_) frame.now_from_then = after_from_before * frame.now_from_then;
 }
 
 void Hindsight::forget_from(std::size_t number) {
@@ -51,9 +57,8 @@ std::optional<RememberedFrame> Hindsight::take_oldest() {
   return oldest;
 }
 
-std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const Rig& rig,
-                                      const MapView& map, const TrackOptions& tracking,
-                                      const HindsightOptions& options) {
+std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const MapView& map,
+                                      const TrackOptions& tracking, const HindsightOptions& options) {
   std::vector<PoseObservation> observations;
   observations.reserve(frame.points.size());
   for (const RememberedPoint& seen : frame.points) {
@@ -64,10 +69,11 @@ std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& 
   const double needed = options.min_share * static_cast<double>(observations.size());
   PoseRefinementOptions refinement = tracking.refinement;
   refinement.rounds = 2;  // from where it is nearly right
-  const auto refined = refine_pose(camera_from_world, rig, observations, refinement);
+  const auto refined =
+      refine_pose(inverse(frame.now_from_then) * camera_from_world, frame.rig, observations, refinement);
   if (!refined || refined->inlier_count < std::max(needed, static_cast<double>(tracking.min_inliers)))
     return std::nullopt;
-  return refined->camera_from_world;
+  return frame.now_from_then * refined->camera_from_world;
 }
 
 }  // namespace byre

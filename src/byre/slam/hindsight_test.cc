@@ -33,13 +33,13 @@ class SeenInHindsight : public testing::Test {
   }
   RememberedFrame remembered(const HindsightOptions& options) const {
     Hindsight hindsight(options);
-    hindsight.note(0, features(), tracked());
+    hindsight.note(0, mission_.rig, features(), tracked());
     return hindsight.take_oldest().value();
   }
   std::optional<Pose> pose_of(const RememberedFrame& frame) const {
     Vector6 off;
     off << 0.02, -0.01, 0.015, 0.002, 0.001, -0.002;  // as tracked on points that were not known well yet
-    return pose_in_hindsight(frame, exp_pose(off) * true_pose_, mission_.rig, MapView(nullptr, map_), {}, {});
+    return pose_in_hindsight(frame, exp_pose(off) * true_pose_, MapView(nullptr, map_), {}, {});
   }
 };
 
@@ -67,13 +67,27 @@ TEST_F(SeenInHindsight, SaysNothingWhereTooFewAreLeftOrAgree) {
   EXPECT_FALSE(pose_of(frame));
 }
 
+// It was measured with the rig there was; its pose is wanted of the one there is.
+TEST_F(SeenInHindsight, AFrameOfARigThatWasRecalibratedIsLookedAtWithThatRig) {
+  Vector6 turn;
+  turn << 0.0, 0.0, 0.0, 0.01, -0.02, 0.005;
+  Hindsight hindsight({});
+  hindsight.note(0, mission_.rig, features(), tracked());
+  hindsight.turn_rig(exp_pose(turn));
+  hindsight.turn_rig(exp_pose(turn));
+  const Pose expected = exp_pose(turn) * exp_pose(turn) * true_pose_;
+  const auto pose = pose_in_hindsight(hindsight.take_oldest().value(), expected, MapView(nullptr, map_), {}, {});
+  ASSERT_TRUE(pose);
+  EXPECT_LT(log_pose(*pose * inverse(expected)).norm(), 1e-3);
+}
+
 TEST_F(SeenInHindsight, NoMoreFramesWaitThanAskedFor) {
   HindsightOptions options;
   options.frames = 2;
   Hindsight hindsight(options);
-  for (const std::size_t number : {3u, 4u}) hindsight.note(number, features(), tracked());
+  for (const std::size_t number : {3u, 4u}) hindsight.note(number, mission_.rig, features(), tracked());
   EXPECT_FALSE(hindsight.take_overdue());
-  hindsight.note(5, features(), tracked());
+  hindsight.note(5, mission_.rig, features(), tracked());
   EXPECT_EQ(hindsight.take_overdue().value().number, 3u);
   hindsight.forget_from(5);
   EXPECT_EQ(hindsight.take_oldest().value().number, 4u);
@@ -85,7 +99,7 @@ TEST_F(SeenInHindsight, AFrameThatOfflinePointsHoldIsNotKept) {
   TrackedFrame held = tracked();
   for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;
   Hindsight hindsight({});
-  hindsight.note(0, features(), held);
+  hindsight.note(0, mission_.rig, features(), held);
   EXPECT_FALSE(hindsight.take_oldest());
 }
 

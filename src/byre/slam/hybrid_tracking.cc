@@ -315,7 +315,10 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   if (!solution) return std::nullopt;
   HybridTrack result = told(query, found, opinions, *solution);
   if (options.weigh_focal_lengths) {
-    result.focal = weigh_focal_lengths(guesses->offline, rig, found.measured.offline.observations, options.refinement);
+    const std::vector<PoseObservation>& seen = found.measured.offline.observations;
+    const auto refined =
+        opinions.offline ? opinions.offline : refine_pose(guesses->offline, rig, seen, options.refinement);
+    if (refined) result.focal = weigh_focal_lengths(refined->camera_from_world, rig, seen, options.refinement);
   }
   return result;
 }

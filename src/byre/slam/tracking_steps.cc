@@ -6,14 +6,9 @@
 namespace byre {
 namespace {
 
-PoseObservation pose_observation(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
-  PoseObservation observation;
-  observation.point_in_world = point.position_in_world;
-  observation.point_covariance = point.covariance;
-  observation.measured << pixel.pixel.cast<double>(), keypoint.disparity;
-  observation.pixel_sigma = pixel.sigma;
-  observation.disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
-  return observation;
+PoseObservation observation_of(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
+  const StereoPixel measured(pixel.pixel.x(), pixel.pixel.y(), keypoint.disparity);
+  return pose_observation(point, measured, pixel.sigma, keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0);
 }
 
 // The pixel of the point in the frame.
@@ -37,6 +32,17 @@ std::vector<TrackedFeature> matches_by(const PoseRefinement& refined, const Meas
 
 }  // namespace
 
+PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
+                                 double disparity_sigma) {
+  PoseObservation observation;
+  observation.point_in_world = point.position_in_world;
+  observation.point_covariance = point.covariance;
+  observation.measured = measured;
+  observation.pixel_sigma = pixel_sigma;
+  observation.disparity_sigma = disparity_sigma;
+  return observation;
+}
+
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                                const std::vector<GuidedMatch>& matches) {
   const CameraView view{*frame.features, rig, camera_from_world};
@@ -46,7 +52,7 @@ MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world
   for (const GuidedMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
-    measured.observations.push_back(pose_observation(point, frame.features->keypoint(match.feature), pixel));
+    measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
     measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }
   return measured;
@@ -83,7 +89,7 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
   observations.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
     const Keypoint& keypoint = frame.features->keypoint(match.feature);
-    observations.push_back(pose_observation(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
+    observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
   }
   const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options.refinement);
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;

@@ -11,6 +11,9 @@
 // The steps that tracking on one map and on two have in common.
 namespace byre {
 
+PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
+                                 double disparity_sigma);
+
 // Matches measured in the image: what each says of the pose, and what it becomes when it is an inlier; in step.
 struct MeasuredPoints {
   std::vector<PoseObservation> observations;
