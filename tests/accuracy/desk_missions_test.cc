@@ -22,11 +22,6 @@ constexpr const char* kDesk = "tum/freiburg1_desk";
 constexpr const char* kTurns = "tum/freiburg1_rpy";
 constexpr double kAsGood = 1.1;  // times the error of what it is compared with
 
-const Vocabulary& vocabulary() {
-  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
-  return loaded;
-}
-
 struct Poses {
   Trajectory causal;
   Trajectory final;
@@ -54,7 +49,7 @@ struct DeskMap {
 DeskMap make_desk_map() {
   const auto recording = open_recording(*find_recording(kDesk), {});
   Extractor extractor(recording->calibration(), {});
-  Session session(extractor.rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary());
+  Session session(extractor.rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary());
   follow(session, *recording, extractor);
   session.finish_map({}, {[] { return false; }, [](const char*) {}});
   const auto error = absolute_trajectory_error(
@@ -63,8 +58,8 @@ DeskMap make_desk_map() {
   StoredMap stored;
   stored.map = scaled_copy(offline_copy(session.map().online()), truth_from_map.scale);
   truth_from_map.scale = 1.0;
-  add_words(stored, vocabulary());
-  return {std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary()), truth_from_map};
+  add_words(stored, shipped_vocabulary());
+  return {std::make_shared<const OfflineMap>(std::move(stored.map), shipped_vocabulary()), truth_from_map};
 }
 
 Poses fly(const std::shared_ptr<const OfflineMap>& map, bool map_online) {
@@ -72,7 +67,8 @@ Poses fly(const std::shared_ptr<const OfflineMap>& map, bool map_online) {
   Extractor extractor(recording->calibration(), {});
   SessionOptions options;
   options.map_online = map_online;
-  Session session(extractor.rig(), options, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), map);
+  Session session(extractor.rig(), options, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary(),
+                  map);
   return follow(session, *recording, extractor);
 }
 

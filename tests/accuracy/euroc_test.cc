@@ -7,11 +7,11 @@
 namespace byre {
 namespace {
 
-constexpr const char* kName = "euroc/MH_01_easy";
+constexpr const char* kRecordingName = "euroc/MH_01_easy";
 constexpr int kLatency = 4;  // frames that a mapping job takes
 
 MappedRecording map_all(std::unique_ptr<Executor> executor) {
-  return map_recording(*find_recording(kName), {}, std::move(executor));
+  return map_recording(*find_recording(kRecordingName), {}, std::move(executor));
 }
 
 // The truth's clock is late by about 7.5 ms; what of the error is not due to that shows once it is corrected.
@@ -24,8 +24,8 @@ AssociationOptions corrected_clock() {
 class EurocMh01 : public testing::Test {
  protected:
   void SetUp() override {
-    if (!find_recording(kName)) GTEST_SKIP() << missing(kName);
-    truth_ = truth_of(*find_recording(kName));
+    if (!find_recording(kRecordingName)) GTEST_SKIP() << missing(kRecordingName);
+    truth_ = truth_of(*find_recording(kRecordingName));
   }
 
   // The run that most tests judge, made once.
@@ -79,7 +79,7 @@ TEST_F(EurocMh01, LiveMappingIsHardlyWorse) {
 TEST_F(EurocMh01, EveryThirdFrameIsEnough) {
   FrameRange range;
   range.stride = 3;
-  const MappedRecording mapped = map_recording(*find_recording(kName), range, make_inline_executor());
+  const MappedRecording mapped = map_recording(*find_recording(kRecordingName), range, make_inline_executor());
   EXPECT_EQ(mapped.frame_times.size(), 100);
   EXPECT_EQ(frames_without_pose(mapped), 0);
   EXPECT_LE(final_error(mapped), 0.006);

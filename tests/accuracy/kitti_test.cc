@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-constexpr const char* kName = "kitti/sequences/00";
+constexpr const char* kSequence = "kitti/sequences/00";
 
 Trajectory part(const Trajectory& trajectory, std::ptrdiff_t first, std::ptrdiff_t last) {
   return {trajectory.begin() + first, trajectory.begin() + last + 1};
@@ -16,11 +16,11 @@ Trajectory part(const Trajectory& trajectory, std::ptrdiff_t first, std::ptrdiff
 class Kitti00 : public testing::Test {
  protected:
   void SetUp() override {
-    if (!find_recording(kName)) GTEST_SKIP() << missing(kName);
+    if (!find_recording(kSequence)) GTEST_SKIP() << missing(kSequence);
   }
 
   static const MappedRecording& inline_run() {
-    static const MappedRecording mapped = map_recording(*find_recording(kName), {}, make_inline_executor());
+    static const MappedRecording mapped = map_recording(*find_recording(kSequence), {}, make_inline_executor());
     return mapped;
   }
 };
@@ -34,7 +34,7 @@ TEST_F(Kitti00, EveryFrameHasAPose) {
 // although the images show the car accelerating from 0.68 m a frame, and it jumps at frames 39 to 45.
 TEST_F(Kitti00, FinalTrajectoryIsTrueToCentimetresWhereTheTruthIsSmooth) {
   ASSERT_EQ(frames_without_pose(inline_run()), 0);
-  EXPECT_LE(position_error(part(inline_run().final, 17, 38), truth_of(*find_recording(kName))), 0.03);
+  EXPECT_LE(position_error(part(inline_run().final, 17, 38), truth_of(*find_recording(kSequence))), 0.03);
 }
 
 }  // namespace

@@ -25,17 +25,12 @@ constexpr const char* kSparse = "euroc/V1_01_easy_sparse";
 constexpr const char* kHall = "euroc/MH_01_easy";
 constexpr const char* kElsewhere = "vocabulary";
 
-const Vocabulary& vocabulary() {
-  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
-  return loaded;
-}
-
 // A map with its words, ready to look for frames in it.
 struct KnownPlace {
   explicit KnownPlace(const Map& mapped) {
     stored.map = offline_copy(mapped);
-    add_words(stored, vocabulary());
-    index = index_of(stored.map, vocabulary());
+    add_words(stored, shipped_vocabulary());
+    index = index_of(stored.map, shipped_vocabulary());
   }
 
   Localisation find(const Frame& frame, const Rig& rig) const {
@@ -44,7 +39,7 @@ struct KnownPlace {
 
   StoredMap stored;
   Map nothing_online{Origin::online};
-  PlaceIndex index{vocabulary()};
+  PlaceIndex index{shipped_vocabulary()};
 };
 
 struct PosedFrames {

@@ -4,6 +4,7 @@
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/input_error.h"
+#include "byre/place/vocabulary.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -78,6 +79,11 @@ std::optional<fs::path> find_recording(const fs::path& name) {
 std::string missing(const fs::path& name) {
   return "no recording at " + (data_folder() / name).string() + "; BYRE_DATA may name the folder that holds " +
          name.string();
+}
+
+const Vocabulary& shipped_vocabulary() {
+  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
+  return loaded;
 }
 
 }  // namespace byre

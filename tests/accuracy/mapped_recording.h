@@ -2,6 +2,7 @@
 
 #include "byre/dataset/recording.h"
 #include "byre/evaluation/trajectory_error.h"
+#include "byre/place/vocabulary.h"
 #include "byre/session/session.h"
 
 #include <filesystem>
@@ -40,5 +41,8 @@ std::optional<std::filesystem::path> find_recording(const std::filesystem::path&
 
 // Why a test without its recording is skipped, and how to have it run.
 std::string missing(const std::filesystem::path& name);
+
+// What byre brings along.
+const Vocabulary& shipped_vocabulary();
 
 }  // namespace byre

@@ -23,18 +23,13 @@ using ::testing::Each;
 constexpr double kFrameRateHz = 20.0;
 constexpr int kTurnFrames = 200;  // ten seconds
 
-const Vocabulary& vocabulary() {
-  static const Vocabulary loaded = Vocabulary::load(default_vocabulary_path());
-  return loaded;
-}
-
 Calibration left_alone(Calibration calibration) {
   calibration.right.reset();
   return calibration;
 }
 
 Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), std::move(offline)};
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary(), std::move(offline)};
 }
 
 std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
@@ -107,9 +102,9 @@ TEST_F(TurnOnTheSpot, IsFollowedFrameByFrameOnAStereoMap) {
   mapping.finish();
   StoredMap stored;
   stored.map = offline_copy(mapping.map().online());
-  add_words(stored, vocabulary());
+  add_words(stored, shipped_vocabulary());
   Session mission = session_of(rig_of(left_alone(kCalibration)),
-                               std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary()));
+                               std::make_shared<const OfflineMap>(std::move(stored.map), shipped_vocabulary()));
   const Trajectory truth = turn(100.025);
   const auto reports = run(mission, left_alone(kCalibration), truth);
   EXPECT_THAT(has_pose(reports), Each(true));

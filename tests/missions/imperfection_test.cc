@@ -14,7 +14,7 @@ constexpr Imperfection kExact{CameraCondition::exact, 1};
 constexpr Imperfection kGood{CameraCondition::good, 1};
 constexpr Imperfection kWorn{CameraCondition::worn, 1};
 
-ImageFrame pair_of_images() {
+ImageFrame two_textures() {
   return {from_seconds(3.0), to_image(render(376, 240, Texture(71, 0.6))),
           to_image(render(376, 240, Texture(72, 0.6)))};
 }
@@ -39,7 +39,7 @@ double mean(const Image& image) {
 }
 
 TEST(Imperfection, OfAnExactCameraChangesNothing) {
-  const ImageFrame images = pair_of_images(), seen = imperfect_cameras(kExact)(images, 4);
+  const ImageFrame images = two_textures(), seen = imperfect_cameras(kExact)(images, 4);
   EXPECT_EQ(seen.left.pixels, images.left.pixels);
   EXPECT_EQ(seen.right->pixels, images.right->pixels);
   const Calibration calibration = euroc_like_calibration(1), told = told_calibration(calibration, kExact);
@@ -48,7 +48,7 @@ TEST(Imperfection, OfAnExactCameraChangesNothing) {
 }
 
 TEST(Imperfection, GivesTheSameBytesWhateverCameBefore) {
-  const ImageFrame images = pair_of_images();
+  const ImageFrame images = two_textures();
   const Degradation first = imperfect_cameras(kWorn), second = imperfect_cameras(kWorn);
   first({images.time, *images.right, images.left}, 0);
   const ImageFrame seen = first(images, 1), again = second(images, 0);
@@ -59,7 +59,7 @@ TEST(Imperfection, GivesTheSameBytesWhateverCameBefore) {
 }
 
 TEST(Imperfection, BlursTheCornersMoreThanTheMiddleAndMoreWhereWorn) {
-  const ImageFrame images = pair_of_images();
+  const ImageFrame images = two_textures();
   const auto kept = [&](const Imperfection& imperfection, double x, double y) {
     return detail(imperfect_cameras(imperfection)(images, 0).left, x, y) / detail(images.left, x, y);
   };
@@ -69,7 +69,7 @@ TEST(Imperfection, BlursTheCornersMoreThanTheMiddleAndMoreWhereWorn) {
 }
 
 TEST(Imperfection, BrightensTheRightImageAlone) {
-  const ImageFrame images = pair_of_images(), seen = imperfect_cameras(kGood)(images, 0);
+  const ImageFrame images = two_textures(), seen = imperfect_cameras(kGood)(images, 0);
   EXPECT_NEAR(mean(seen.left), mean(images.left), 0.2);
   EXPECT_NEAR(mean(seen.right.value()), 1.02 * mean(images.right.value()) + 1.0, 0.3);
 }

@@ -34,7 +34,7 @@ struct BenchmarkCommandOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kBenchmarkFooter = R"(Examples:
   byre benchmark euroc --data ~/recordings/euroc
   byre benchmark mh_short --data ~/recordings/euroc --runs 1 -o out
   byre benchmark my_barn.yaml --data /data --only "tuesday*" monday --pace live
@@ -156,7 +156,7 @@ Action declare_benchmark(CLI::App& command) {
             "Vocabulary to recognise places with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  command.footer(kFooter);
+  command.footer(kBenchmarkFooter);
   return [options](std::ostream& result) { return run_benchmark_command(*options, result); };
 }
 

@@ -35,7 +35,7 @@ struct CalibrateOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kCalibrateFooter = R"(Examples:
   byre calibrate evening_round -o calibration.yaml
   byre map evening_round --calibration calibration.yaml -o barn.byre
 
@@ -95,7 +95,7 @@ Action declare_calibrate(CLI::App& command) {
   declare_frame_range(command, options->range);
   command.add_flag("--json", options->json, "Print what was found as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  command.footer(kFooter);
+  command.footer(kCalibrateFooter);
   return [options](std::ostream& result) { return run_calibrate(*options, result); };
 }
 

@@ -24,7 +24,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kCheckFooter = R"(Examples:
   byre check evening_round
   byre check evening_round --calibration calibration.yaml --json
 
@@ -65,7 +65,7 @@ Action declare_check(CLI::App& command) {
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
   command.add_flag("--json", options->json, "Print what was found as JSON");
-  command.footer(kFooter);
+  command.footer(kCheckFooter);
   return [options](std::ostream& result) { return run_check(*options, result); };
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kDemoFooter = R"(Examples:
   byre demo
   byre demo -o ~/demo --seed 7
 
@@ -76,7 +76,7 @@ Action declare_demo(CLI::App& command) {
             "Vocabulary to recognise places with (the one byre comes with)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  command.footer(kFooter);
+  command.footer(kDemoFooter);
   return [options](std::ostream& result) { return run_demo_command(*options, result); };
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kDrawFooter = R"(Examples:
   byre draw barn.byre -o barn.svg
   byre draw barn-plan.byre --plan plan.yaml --mission stats.json -o mission.svg
   byre draw barn.byre --trajectory morning.txt --trajectory evening.txt -o rounds.png
@@ -147,7 +147,7 @@ void declare_draw_options(CLI::App& command, DrawOptions& options) {
   declare_frame_range(command, options.range);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
-  command.footer(kFooter);
+  command.footer(kDrawFooter);
 }
 
 }  // namespace byre::cli

@@ -40,7 +40,7 @@ struct EvaluateOptions {
   bool is_of_camera = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kEvaluateFooter = R"(Examples:
   byre evaluate --estimate out.txt --truth MH_01_easy --frames-of MH_01_easy --label final
   byre evaluate --estimate out.txt --truth MH_01_easy --time-offset -0.0075
   byre evaluate --estimate out.txt --truth kitti/poses/00.txt --times kitti/sequences/00/times.txt
@@ -171,7 +171,7 @@ Action declare_evaluate(CLI::App& command) {
   add_output(command, Output::picture, "--plot", options->plot,
              "Also draw both paths from above, and the error over time, as an SVG picture")
       ->type_name("FILE");
-  command.footer(kFooter);
+  command.footer(kEvaluateFooter);
   return [options](std::ostream& result) {
     run_evaluate(*options, result);
     return ExitCode::done;

@@ -25,7 +25,7 @@ struct ExportCommandOptions {
   bool binary = false;  // the default, said
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kExportColmapFooter = R"(Examples:
   byre export-colmap barn.byre -o model
   byre export-colmap barn.byre -o model --text --images-of MH_01_easy
 
@@ -71,7 +71,7 @@ Action declare_export_colmap(CLI::App& command) {
   declare_open_options(command, options->open);
   auto* const text = command.add_flag("--text", options->text, "Write the text format");
   command.add_flag("--binary", options->binary, "Write the binary format (the default)")->excludes(text);
-  command.footer(kFooter);
+  command.footer(kExportColmapFooter);
   return [options](std::ostream& result) { return run_export(*options, result); };
 }
 

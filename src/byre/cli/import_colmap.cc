@@ -36,7 +36,7 @@ struct ImportCommandOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kImportColmapFooter = R"(Examples:
   byre import-colmap sparse/0 images -o site.byre
   byre import-colmap sparse/0 images -o site.byre --scale 0.25 --site "Barn 2"
 
@@ -111,7 +111,7 @@ Action declare_import_colmap(CLI::App& command) {
             "Vocabulary of the map's words (the one that comes with byre)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
-  command.footer(kFooter);
+  command.footer(kImportColmapFooter);
   return [options](std::ostream& result) { return run_import(*options, result); };
 }
 

@@ -23,7 +23,7 @@ struct InspectOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kInspectFooter = R"(Examples:
   byre inspect barn.byre
   byre inspect barn.byre --json
   byre inspect barn.byre --points points.ply
@@ -52,7 +52,7 @@ Action declare_inspect(CLI::App& command) {
   add_output(command, Output::point_cloud, "--points", options->points,
              "Also write the points, coloured by their observations. PLY format")
       ->type_name("FILE");
-  command.footer(kFooter);
+  command.footer(kInspectFooter);
   return [options](std::ostream& result) { return run_inspect(*options, result); };
 }
 

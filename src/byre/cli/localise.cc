@@ -43,7 +43,7 @@ struct LocaliseCommandOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kLocaliseFooter = R"(Examples:
   byre localise barn.byre evening_round --truth evening_round
   byre localise barn.byre MH_01_easy --frames 150:300 --trajectory found.txt
   byre localise barn.byre evening_round --camera right
@@ -186,7 +186,7 @@ Action declare_localise(CLI::App& command) {
   command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   check_when_parsed(command, [options] { require_sense(options->range); });
-  command.footer(kFooter);
+  command.footer(kLocaliseFooter);
   return [options](std::ostream& result) { return run_localise(*options, result); };
 }
 

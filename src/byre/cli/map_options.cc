@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kMapFooter = R"(Examples:
   byre map MH_01_easy -o barn.byre
   byre map MH_01_easy -o barn.byre --trajectory out.txt --site "Barn 2"
   byre map kitti/sequences/00 --trajectory out.txt --causal-trajectory causal.txt --stats stats.json
@@ -131,7 +131,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
-  command.footer(kFooter);
+  command.footer(kMapFooter);
 }
 
 }  // namespace byre::cli

@@ -30,7 +30,7 @@ struct RefineOptions {
   const fs::path& written() const { return output ? *output : map; }
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRefineFooter = R"(Examples:
   byre refine barn.byre
   byre refine barn.byre -o better.byre --json
 
@@ -94,7 +94,7 @@ Action declare_refine(CLI::App& command) {
       ->type_name("FILE");
   command.add_flag("--json", options->json, "Print what changed as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  command.footer(kFooter);
+  command.footer(kRefineFooter);
   return [options](std::ostream& result) { return run_refine(*options, result); };
 }
 

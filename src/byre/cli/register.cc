@@ -31,7 +31,7 @@ struct RegisterCommandOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRegisterFooter = R"(Examples:
   byre register barn.byre --plan plan.yaml --points picks.csv
   byre register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre
   byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
@@ -122,7 +122,7 @@ Action declare_register(CLI::App& command) {
       .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
       ->needs(output);
   command.add_flag("--json", options->json, "Print the result as JSON");
-  command.footer(kFooter);
+  command.footer(kRegisterFooter);
   return [options](std::ostream& result) { return run_register(*options, result); };
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kRunFooter = R"(Examples:
   byre run evening_round --map barn.byre --events events.jsonl
   byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
   byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
@@ -149,7 +149,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_trajectory_format(command, options.trajectory_format);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
-  command.footer(kFooter);
+  command.footer(kRunFooter);
 }
 
 }  // namespace byre::cli

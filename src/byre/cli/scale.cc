@@ -23,7 +23,7 @@ struct ScaleOptions {
   std::filesystem::path output;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kScaleFooter = R"(Examples:
   byre scale barn.byre --between point:1204 point:9433 --metres 4.20 -o barn_metric.byre
   byre scale barn.byre --between time:1403636580.1 time:1403636584.6 --metres 2.5 -o barn_metric.byre
   byre scale barn.byre --between 0.1,0.5,2.2 1.7,0.5,2.3 --metres 4.20 -o barn_metric.byre
@@ -58,7 +58,7 @@ Action declare_scale(CLI::App& command) {
   add_output(command, Output::map, "-o,--output", options->output, "The map with lengths in metres")
       ->type_name("MAP")
       ->required();
-  command.footer(kFooter);
+  command.footer(kScaleFooter);
   return [options](std::ostream& result) { return run_scale(*options, result); };
 }
 

@@ -27,7 +27,7 @@ struct SimulateOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed -o barn_1
   byre simulate cowshed --mission 2 -o barn_2
   byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
@@ -142,7 +142,7 @@ Action declare_simulate(CLI::App& command) {
       ->required();
   cowshed.add_flag("--json", options->json, "Print the report as JSON");
   cowshed.add_flag("--quiet", options->quiet, "Show no progress");
-  cowshed.footer(kFooter);
+  cowshed.footer(kSimulateFooter);
   return [options](std::ostream& result) {
     options->recording.camera = asked_for(options->imperfection);
     return run_simulate(*options, result);

@@ -11,7 +11,7 @@
 namespace byre::cli {
 namespace {
 
-constexpr const char* kFooter = R"(Example:
+constexpr const char* kValidateFooter = R"(Example:
   byre validate barn.byre && cp barn.byre /backup
 
 Exit codes: 0 the map is sound, 1 it has faults, which are listed, 3 the file cannot be read as a map.)";
@@ -31,7 +31,7 @@ ExitCode run_validate(const std::filesystem::path& path, std::ostream& result) {
 Action declare_validate(CLI::App& command) {
   const auto path = std::make_shared<std::filesystem::path>();
   add_input(command, Input::file, "MAP", *path, "Map file, as \"byre map -o\" writes it")->type_name("MAP")->required();
-  command.footer(kFooter);
+  command.footer(kValidateFooter);
   return [path](std::ostream& result) { return run_validate(*path, result); };
 }
 

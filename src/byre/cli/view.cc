@@ -28,7 +28,7 @@ struct ViewCommandOptions {
   bool quiet = false;
 };
 
-constexpr const char* kFooter = R"(Examples:
+constexpr const char* kViewFooter = R"(Examples:
   byre view barn.byre
   byre view barn.byre --plan plan.yaml -o barn-plan.byre
   byre view barn.byre --bind 0.0.0.0
@@ -89,7 +89,7 @@ Action declare_view(CLI::App& command) {
       ->check(between(-100.0, 100.0));
   command.add_flag("--quiet", options->quiet, "Tell nothing but the address");
   check_when_parsed(command, [options] { require_consistent(*options); });
-  command.footer(kFooter);
+  command.footer(kViewFooter);
   return [options](std::ostream&) { return view(*options); };
 }
 

@@ -13,12 +13,6 @@ namespace {
                    "distortion (none): calibrate with one of these, Kalibr by --models pinhole-radtan or pinhole-equi");
 }
 
-void require_sense(const Camera& camera, const std::string& place) {
-  if (camera.fx <= 0.0 || camera.fy <= 0.0) throw InputError(place, "the focal lengths must be positive");
-  if (camera.contains({camera.cx, camera.cy})) return;
-  throw InputError(place, "the principal point lies outside the image", "check that they belong to this resolution");
-}
-
 CameraModel lens_of_word(const CalibrationFields& fields) {
   const std::string distortion = fields.word("distortion_model");
   if (distortion == "radial-tangential" || distortion == "radtan") return CameraModel::radial_tangential;
@@ -100,6 +94,12 @@ void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
 }
 
 }  // namespace
+
+void require_sense(const Camera& camera, const std::string& place) {
+  if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) throw InputError(place, "the focal lengths must be positive");
+  if (camera.contains({camera.cx, camera.cy})) return;
+  throw InputError(place, "the principal point lies outside the image", "check that they belong to this resolution");
+}
 
 Camera read_camera_fields(const CalibrationFields& fields, const std::string& coefficients) {
   Camera camera;

@@ -16,4 +16,7 @@ Camera read_camera_fields(const CalibrationFields& fields, const std::string& co
 // distortion_coefficients, an equidistant lens where distortion_model or fisheye_model says so. Throws likewise.
 Camera read_opencv_camera(const CalibrationFields& fields);
 
+// Throws InputError, naming the place, for focal lengths that are not positive or a principal point outside the image.
+void require_sense(const Camera& camera, const std::string& place);
+
 }  // namespace byre

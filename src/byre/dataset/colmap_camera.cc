@@ -1,5 +1,6 @@
 #include "byre/dataset/colmap_camera.h"
 
+#include "byre/dataset/camera_fields.h"
 #include "byre/input/input_error.h"
 
 #include <algorithm>
@@ -61,14 +62,6 @@ Camera lens_of(const ColmapCamera& camera, const std::string& place) {
   throw InputError(place, "cameras of the model " + camera.model + " are not supported",
                    "make the model with SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or OPENCV_FISHEYE, or "
                    "undistort its images with \"colmap image_undistorter\"");
-}
-
-void require_sense(const Camera& camera, const std::string& place) {
-  if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) throw InputError(place, "the focal lengths must be positive");
-  if (!camera.contains({camera.cx, camera.cy})) {
-    throw InputError(place, "the principal point lies outside the image",
-                     "check that the parameters belong to this image size");
-  }
 }
 
 }  // namespace

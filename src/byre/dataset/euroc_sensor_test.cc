@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string kSensor = R"(# General sensor definitions.
+const std::string kEurocSensor = R"(# General sensor definitions.
 sensor_type: camera
 T_BS:
   cols: 4
@@ -30,7 +30,7 @@ class EurocSensorFile : public TestFolder {
  protected:
   // The sensor file with one piece of its text replaced.
   EurocSensor read(const std::string& old_text = "", const std::string& new_text = "") const {
-    std::string text = kSensor;
+    std::string text = kEurocSensor;
     if (const std::size_t at = text.find(old_text); at != std::string::npos)
       text.replace(at, old_text.size(), new_text);
     write("sensor.yaml", text);
@@ -85,7 +85,7 @@ TEST_F(EurocSensorFile, NamesTheFieldThatMakesNoSense) {
        "has 5 numbers"},
       {"distortion_model: radial-tangential", "", "distortion_model: is missing"},
       {"resolution: [752", "resolution: [752]]", "sensor.yaml:10: "},
-      {kSensor, "nothing", "is not a YAML file of named fields"},
+      {kEurocSensor, "nothing", "is not a YAML file of named fields"},
   };
   for (const Case& bad : cases) {
     EXPECT_THAT(error_of([&] { read(bad.old_text, bad.new_text); }), HasSubstr(bad.message)) << bad.new_text;

@@ -16,8 +16,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr int kWidth = 32;
-constexpr int kHeight = 24;
+constexpr int kSmallWidth = 32;
+constexpr int kSmallHeight = 24;
 
 std::string sensor_yaml(double x_in_body) {
   return "T_BS:\n  data: [1, 0, 0, " + std::to_string(x_in_body) +
@@ -35,8 +35,8 @@ class EurocRecording : public TestFolder {
     write("mav0/cam0/data.csv", kCsv);
     write("mav0/cam1/data.csv", kCsv);
     for (int i = 1; i <= 4; ++i) {
-      write_image("mav0/cam0/data/" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i);
-      write_image("mav0/cam1/data/" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 5);
+      write_image("mav0/cam0/data/" + std::to_string(i) + ".png", kSmallWidth, kSmallHeight, 10 * i);
+      write_image("mav0/cam1/data/" + std::to_string(i) + ".png", kSmallWidth, kSmallHeight, 10 * i + 5);
     }
   }
 
@@ -56,7 +56,7 @@ TEST_F(EurocRecording, GivesPairsWithTheirTimes) {
   const std::optional<ImageFrame> frame = recording->read(1);
   ASSERT_TRUE(frame && frame->right);
   EXPECT_EQ(frame->time, milliseconds(200));
-  EXPECT_EQ(frame->left.width, kWidth);
+  EXPECT_EQ(frame->left.width, kSmallWidth);
   EXPECT_EQ(frame->left.pixels.back(), 20);
   EXPECT_EQ(frame->right->pixels.back(), 25);
   EXPECT_THAT(recording->warnings(), IsEmpty());
@@ -98,7 +98,7 @@ TEST_F(EurocRecording, PairsImagesByTimeAndNotByTheirNumber) {
 TEST_F(EurocRecording, GoesOnAfterABadImage) {
   write("mav0/cam0/data/1.png", "broken");
   fs::remove(folder_ / "mav0/cam1/data/2.png");
-  write_image("mav0/cam0/data/3.png", kWidth, kHeight + 1, 30);
+  write_image("mav0/cam0/data/3.png", kSmallWidth, kSmallHeight + 1, 30);
   const std::unique_ptr<Recording> recording = open();
   EXPECT_FALSE(recording->read(0).has_value());
   EXPECT_FALSE(recording->read(1)->right.has_value());
@@ -191,8 +191,8 @@ class KittiRecording : public TestFolder {
     write("sequences/07/calib.txt", kCalib);
     write("sequences/07/times.txt", "0.000000e+00\n1.000000e-01\n2.000000e-01\n");
     for (int i = 0; i < 3; ++i) {
-      write_image("sequences/07/image_0/00000" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 10);
-      write_image("sequences/07/image_1/00000" + std::to_string(i) + ".png", kWidth, kHeight, 10 * i + 15);
+      write_image("sequences/07/image_0/00000" + std::to_string(i) + ".png", kSmallWidth, kSmallHeight, 10 * i + 10);
+      write_image("sequences/07/image_1/00000" + std::to_string(i) + ".png", kSmallWidth, kSmallHeight, 10 * i + 15);
     }
   }
 
@@ -208,7 +208,7 @@ TEST_F(KittiRecording, GivesRectifiedPairsInTheFrameOfTheLeftCamera) {
   const std::unique_ptr<Recording> recording = open();
   const Calibration& calibration = recording->calibration();
   EXPECT_EQ(calibration.left.model, CameraModel::pinhole);
-  EXPECT_EQ(calibration.left.width, kWidth);
+  EXPECT_EQ(calibration.left.width, kSmallWidth);
   EXPECT_EQ(calibration.left.fx, 20.0);
   EXPECT_EQ(calibration.left.cy, 11.5);
   ASSERT_TRUE(calibration.right.has_value());

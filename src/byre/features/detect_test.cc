@@ -18,7 +18,7 @@ using testing::SizeIs;
 
 constexpr int kPlenty = 100000;
 
-cv::Mat textured_image() {
+cv::Mat image_of_texture() {
   return render(400, 304, Texture(21));
 }
 
@@ -40,7 +40,7 @@ std::vector<int> count_by_square(const std::vector<Corner>& corners, const cv::S
 }
 
 TEST(DetectCorners, LeavesNoPartOfATexturedImageEmpty) {
-  const cv::Mat image = textured_image();
+  const cv::Mat image = image_of_texture();
   const DetectOptions options;
   const auto corners = detect_corners(image, 500, options);
   const auto counts = count_by_square(corners, image.size(), options.border, 40);
@@ -58,13 +58,13 @@ TEST(DetectCorners, SpreadsEvenlyWhereOneHalfHasFarStrongerCorners) {
 }
 
 TEST(DetectCorners, GivesNoMoreThanWanted) {
-  const cv::Mat image = textured_image();
+  const cv::Mat image = image_of_texture();
   for (const int wanted : {0, 1, 37, 250}) EXPECT_THAT(detect_corners(image, wanted, {}), SizeIs(wanted));
   EXPECT_GT(detect_corners(image, kPlenty, {}).size(), 250u);
 }
 
 TEST(DetectCorners, GivesTheStrongestOfASquareFirst) {
-  const cv::Mat image = textured_image();
+  const cv::Mat image = image_of_texture();
   const auto all = detect_corners(image, kPlenty, {});
   const auto one = detect_corners(image, 1, {});
   const auto strongest = std::max_element(all.begin(), all.end(),
@@ -73,14 +73,14 @@ TEST(DetectCorners, GivesTheStrongestOfASquareFirst) {
 }
 
 TEST(DetectCorners, NamesNoPixelTwice) {
-  const auto corners = detect_corners(textured_image(), kPlenty, {});
+  const auto corners = detect_corners(image_of_texture(), kPlenty, {});
   std::set<std::pair<int, int>> pixels;
   for (const Corner& corner : corners) pixels.insert({corner.x, corner.y});
   EXPECT_EQ(pixels.size(), corners.size());
 }
 
 TEST(DetectCorners, KeepsTheBorderFreeAndReachesUpToIt) {
-  const cv::Mat image = textured_image();
+  const cv::Mat image = image_of_texture();
   for (const int border : {3, 19, 30}) {
     DetectOptions options;
     options.border = border;
@@ -127,7 +127,7 @@ TEST(DetectCorners, KeepsTheHighThresholdWhereACellGivesItsShare) {
 }
 
 TEST(DetectCorners, GivesTheSameCornersForTheSameImage) {
-  const cv::Mat image = textured_image();
+  const cv::Mat image = image_of_texture();
   const auto first = detect_corners(image, 200, {});
   const auto second = detect_corners(image.clone(), 200, {});
   EXPECT_TRUE(std::equal(first.begin(), first.end(), second.begin(), second.end(), same_corner));

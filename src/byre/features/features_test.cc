@@ -14,12 +14,12 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAreArray;
 
-constexpr int kWidth = 333;  // not a multiple of the cells' size
-constexpr int kHeight = 215;
+constexpr int kOddWidth = 333;  // not a multiple of the cells' size
+constexpr int kOddHeight = 215;
 
 std::vector<Keypoint> random_keypoints(int count, unsigned seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<float> u(0.0f, kWidth - 1.0f), v(0.0f, kHeight - 1.0f);
+  std::uniform_real_distribution<float> u(0.0f, kOddWidth - 1.0f), v(0.0f, kOddHeight - 1.0f);
   std::uniform_int_distribution<int> octave(0, kOctaves - 1);
   std::vector<Keypoint> keypoints(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
@@ -38,7 +38,7 @@ Features make_features(const std::vector<Keypoint>& keypoints) {
     descriptors.push_back({static_cast<std::uint64_t>(keypoint.response), 0, 0, 0});
     patches.emplace_back().centre.x() = keypoint.response;
   }
-  return {kWidth, kHeight, keypoints, descriptors, patches};
+  return {kOddWidth, kOddHeight, keypoints, descriptors, patches};
 }
 
 std::vector<int> visited(const Features& features, const Eigen::Vector2f& pixel, float radius, int min_octave,
@@ -62,7 +62,7 @@ std::vector<int> looked_for_one_by_one(const Features& features, const Eigen::Ve
 TEST(FeaturesVisitArea, FindsWhatALookAtEveryKeypointFinds) {
   const Features features = make_features(random_keypoints(600, 1));
   std::mt19937 random(2);
-  std::uniform_real_distribution<float> u(-60.0f, kWidth + 60.0f), v(-60.0f, kHeight + 60.0f), size(0.0f, 70.0f);
+  std::uniform_real_distribution<float> u(-60.0f, kOddWidth + 60.0f), v(-60.0f, kOddHeight + 60.0f), size(0.0f, 70.0f);
   std::uniform_int_distribution<int> octave(0, kOctaves - 1);
   std::size_t found = 0;
   for (int trial = 0; trial < 500; ++trial) {
@@ -78,7 +78,7 @@ TEST(FeaturesVisitArea, FindsWhatALookAtEveryKeypointFinds) {
 
 TEST(FeaturesVisitArea, ReachesKeypointsOnTheLastRowAndColumn) {
   Keypoint corner;
-  corner.pixel = {kWidth - 1.0f, kHeight - 1.0f};
+  corner.pixel = {kOddWidth - 1.0f, kOddHeight - 1.0f};
   EXPECT_THAT(visited(make_features({corner}), corner.pixel, 0.0f, 0, 0), ElementsAre(0));
 }
 
@@ -119,12 +119,12 @@ TEST(Features, KeepTheOrderGivenWithinACell) {
 
 TEST(Features, AreUnchangedWhenOrderedAgain) {
   const Features once = make_features(random_keypoints(300, 5));
-  const Features twice(kWidth, kHeight, once.keypoints(), once.descriptors(), {});
+  const Features twice(kOddWidth, kOddHeight, once.keypoints(), once.descriptors(), {});
   EXPECT_EQ(once.descriptors(), twice.descriptors());
 }
 
 TEST(Features, MayComeWithoutPatches) {
-  const Features features(kWidth, kHeight, random_keypoints(5, 6), std::vector<Descriptor>(5), {});
+  const Features features(kOddWidth, kOddHeight, random_keypoints(5, 6), std::vector<Descriptor>(5), {});
   EXPECT_EQ(features.size(), 5);
   EXPECT_EQ(features.find_patch(0), nullptr);
 }
@@ -133,7 +133,7 @@ TEST(Features, KeepSomePatchesOnly) {
   const std::vector<Keypoint> keypoints = random_keypoints(3, 7);
   std::vector<Patch> patches(1);
   patches[0].centre.x() = keypoints[1].response;
-  const Features features(kWidth, kHeight, keypoints, std::vector<Descriptor>(3), patches, {-1, 0, -1});
+  const Features features(kOddWidth, kOddHeight, keypoints, std::vector<Descriptor>(3), patches, {-1, 0, -1});
   for (int i = 0; i < features.size(); ++i) {
     const bool kept = features.keypoint(i).response == keypoints[1].response;
     ASSERT_EQ(features.find_patch(i) != nullptr, kept);

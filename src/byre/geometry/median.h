@@ -16,4 +16,9 @@ Value median(std::vector<Value> values) {
   return *middle;
 }
 
+template <typename Value>
+Value median_or(std::vector<Value> values, Value of_none) {
+  return values.empty() ? of_none : median(std::move(values));
+}
+
 }  // namespace byre

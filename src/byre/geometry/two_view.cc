@@ -2,6 +2,7 @@
 
 #include "byre/geometry/essential.h"
 #include "byre/geometry/homography.h"
+#include "byre/geometry/median.h"
 #include "byre/geometry/triangulation.h"
 
 #include <algorithm>
@@ -43,13 +44,6 @@ double parallax(const Pose& second_from_first, const TwoViewMatch& match) {
   return std::atan2(turned.cross(match.ray_in_second).norm(), turned.dot(match.ray_in_second));
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 // A motion and what speaks for it: the same kind of score as a model's, of the lines, and of them only those of matches
 // that lie in front of both cameras.
 struct Candidate {
@@ -77,7 +71,7 @@ Candidate weigh(const Pose& second_from_first, Matches matches) {
     candidate.score += kMaxEpipolarError - error;
     parallaxes.push_back(match_parallax);
   }
-  candidate.motion.median_parallax = median(std::move(parallaxes));
+  candidate.motion.median_parallax = median_or(std::move(parallaxes), 0.0);
   return candidate;
 }
 

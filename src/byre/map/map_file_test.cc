@@ -22,16 +22,6 @@ MapBytes scene_bytes() {
   return write_map(StoredMapScene().stored());
 }
 
-// What is wrong with the bytes; empty for a map.
-std::string refusal_of(const MapBytes& bytes) {
-  try {
-    read_map(bytes, "barn.byre");
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
-
 TEST(MapFile, GivesBackWhatTheSceneHolds) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");

@@ -24,15 +24,6 @@ using testing::StartsWith;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::string refusal_of(const MapBytes& bytes) {
-  try {
-    read_map(bytes, "barn.byre");
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
-
 struct BrokenInvariant {
   const char* name;
   const char* section;  // that is refused

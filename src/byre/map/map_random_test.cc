@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-constexpr int kFeatures = 12;
+constexpr int kMostFeatures = 12;
 constexpr int kOfflinePoints = 5;
 
 struct Model {
@@ -112,23 +112,23 @@ class RandomOperations {
     if (below(5) > 0) return any_online_point();
     return {Origin::offline, static_cast<std::uint32_t>(below(kOfflinePoints))};
   }
-  Observation any_observation() { return {any_keyframe(), below(kFeatures)}; }
+  Observation any_observation() { return {any_keyframe(), below(kMostFeatures)}; }
 
   void add_keyframe() {
     static const auto kSharedFeatures =
-        std::make_shared<Features>(640, 480, std::vector<Keypoint>(kFeatures, Keypoint{{1.0f, 1.0f}}),
-                                   std::vector<Descriptor>(kFeatures), std::vector<Patch>{});
+        std::make_shared<Features>(640, 480, std::vector<Keypoint>(kMostFeatures, Keypoint{{1.0f, 1.0f}}),
+                                   std::vector<Descriptor>(kMostFeatures), std::vector<Patch>{});
     Keyframe keyframe;
     keyframe.frame.features = kSharedFeatures;
     if (const KeyframeId parent = any_keyframe(); model.parents.contains(parent)) keyframe.parent = parent;
-    for (int i = 0; i < kFeatures / 2; ++i) keyframe.sightings.push_back({any_point()});
+    for (int i = 0; i < kMostFeatures / 2; ++i) keyframe.sightings.push_back({any_point()});
 
     const std::vector<Sighting> wanted = keyframe.sightings;
     const std::optional<KeyframeId> parent = keyframe.parent;
     const KeyframeId id = map.add_keyframe(std::move(keyframe));
     ASSERT_EQ(id.number, keyframes_++);
     model.parents[id] = parent;
-    for (int i = 0; i < kFeatures / 2; ++i) {
+    for (int i = 0; i < kMostFeatures / 2; ++i) {
       model.add_observation({id, i}, *wanted[static_cast<std::size_t>(i)].point);
     }
   }
@@ -182,7 +182,7 @@ void expect_same_keyframes(const Map& map, const Model& model) {
     const Keyframe* keyframe = map.find_keyframe(id);
     ASSERT_NE(keyframe, nullptr);
     ASSERT_EQ(keyframe->parent, parent);
-    for (int i = 0; i < kFeatures; ++i) {
+    for (int i = 0; i < kMostFeatures; ++i) {
       const auto seen = model.sightings.find({id, i});
       const std::optional<PointId> expected =
           seen == model.sightings.end() ? std::nullopt : std::optional(seen->second);

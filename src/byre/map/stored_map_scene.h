@@ -1,11 +1,15 @@
 #pragma once
 
+#include "byre/input/input_error.h"
 #include "byre/map/map_file.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
+#include <string>
 
 namespace byre {
 
@@ -155,5 +159,15 @@ class StoredMapScene {
   MapParts parts_;
   StoredMap stored_;
 };
+
+// What is wrong with the bytes; empty for a map.
+inline std::string refusal_of(std::span<const std::byte> bytes) {
+  try {
+    read_map(bytes, "barn.byre");
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #include "byre/optimise/bundle_adjustment.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/geometry/median.h"
 #include "byre/optimise/bundle_scene.h"
 #include "byre/optimise/huber.h"
 
@@ -36,12 +37,6 @@ void expect_recovered(const BundleResult& result, const BundleProblem& truth, do
 
 bool identical(const Pose& first, const Pose& second) {
   return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Of every third point that five poses see or more.

@@ -43,21 +43,6 @@ bool in_front(const BundleProblem& solved, const BundleObservation& observation)
   return (camera_from_world * solved.points[observation.point].position_in_world).z() >= kNearestDepth;
 }
 
-// Indices of the observations in front of their cameras, those of one point side by side.
-std::vector<int> by_point(const BundleProblem& solved) {
-  std::vector<int> start(solved.points.size() + 1, 0);
-  for (const BundleObservation& observation : solved.observations) {
-    start[observation.point + 1] += in_front(solved, observation);
-  }
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> indices(start.back());
-  for (int i = 0; i < static_cast<int>(solved.observations.size()); ++i) {
-    const BundleObservation& observation = solved.observations[i];
-    if (in_front(solved, observation)) indices[start[observation.point]++] = i;
-  }
-  return indices;
-}
-
 // The place of each moving, observed pose in the reduced matrix; negative for the others. The wanted pose comes last,
 // where a Cholesky factor shows its marginal.
 std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>& observations, int wanted) {
@@ -169,10 +154,24 @@ std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
 
 }  // namespace
 
+std::vector<int> observations_by_point(const BundleProblem& solved) {
+  std::vector<int> start(solved.points.size() + 1, 0);
+  for (const BundleObservation& observation : solved.observations) {
+    start[observation.point + 1] += in_front(solved, observation);
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> indices(start.back());
+  for (int i = 0; i < static_cast<int>(solved.observations.size()); ++i) {
+    const BundleObservation& observation = solved.observations[i];
+    if (in_front(solved, observation)) indices[start[observation.point]++] = i;
+  }
+  return indices;
+}
+
 std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
                                            int pose, double huber_width) {
   assert(pose >= 0 && pose < static_cast<int>(solved.poses.size()));
-  const std::vector<int> observations = by_point(solved);
+  const std::vector<int> observations = observations_by_point(solved);
   const std::vector<int> slots = pose_slots(solved, observations, pose);
   if (slots[pose] < 0) return std::nullopt;
   ReducedMatrix reduced = reduce_to_poses(solved, observations, slots, slots[pose] + 1, huber_width);

@@ -22,4 +22,7 @@ struct HeldDistance {
 std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
                                            int pose, double huber_width);
 
+// Indices of the observations in front of their cameras, those of one point side by side.
+std::vector<int> observations_by_point(const BundleProblem& solved);
+
 }  // namespace byre

@@ -1,5 +1,6 @@
 #include "byre/optimise/calibration_covariance.h"
 
+#include "byre/optimise/bundle_covariance.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
 
@@ -41,19 +42,6 @@ Share weighted_share(const BundleProblem& solved, const BundleObservation& obser
   share.by_calibration =
       per_pixel.asDiagonal() * solved.calibration->sensitivity->at(observation.measured).topRows<3>();
   return share;
-}
-
-// Indices of the observations in front of their cameras, those of one point side by side.
-std::vector<int> by_point(const BundleProblem& solved) {
-  std::vector<int> indices;
-  for (int i = 0; i < static_cast<int>(solved.observations.size()); ++i) {
-    const BundleObservation& observation = solved.observations[static_cast<std::size_t>(i)];
-    const Pose& camera_from_world = solved.poses[observation.pose].camera_from_world;
-    const double depth = (camera_from_world * solved.points[observation.point].position_in_world).z();
-    if (depth >= kNearestDepth) indices.push_back(i);
-  }
-  std::ranges::stable_sort(indices, {}, [&](int i) { return solved.observations[static_cast<std::size_t>(i)].point; });
-  return indices;
 }
 
 // The normal matrix over moving poses, then the calibration; lower triangle.
@@ -134,7 +122,7 @@ class ReducedSystem {
 };
 
 // The place of each pose that moves and is seen in the reduced matrix, negative for the others.
-std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>& observations, int& count) {
+std::vector<int> slots_of_moving_poses(const BundleProblem& solved, const std::vector<int>& observations, int& count) {
   std::vector<int> slots(solved.poses.size(), -1);
   for (const int i : observations) slots[solved.observations[static_cast<std::size_t>(i)].pose] = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -148,9 +136,9 @@ std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>&
 
 std::optional<CalibrationMatrix> calibration_information(const BundleProblem& solved, double huber_width) {
   assert(solved.calibration);
-  const std::vector<int> observations = by_point(solved);
+  const std::vector<int> observations = observations_by_point(solved);
   int pose_count = 0;
-  const std::vector<int> slots = pose_slots(solved, observations, pose_count);
+  const std::vector<int> slots = slots_of_moving_poses(solved, observations, pose_count);
   ReducedSystem reduced(pose_count);
   std::vector<Share> shares;
   for (std::size_t i = 0; i < observations.size(); ++i) {

@@ -20,7 +20,7 @@ namespace byre {
 namespace {
 
 // What takes part in the solution.
-struct Roles {
+struct GraphRoles {
   std::vector<bool> node_moves;
   std::vector<int> edges;  // indices: with an end that moves
 };
@@ -63,10 +63,10 @@ std::vector<bool> joined_to(std::vector<bool> reached, const std::vector<std::ve
   return reached;
 }
 
-Roles choose_roles(const PoseGraph& graph) {
+GraphRoles choose_roles(const PoseGraph& graph) {
   const auto neighbours_of = neighbours(graph);
   const std::vector<bool> held = held_nodes(graph, neighbours_of);
-  Roles roles{joined_to(held, neighbours_of), {}};
+  GraphRoles roles{joined_to(held, neighbours_of), {}};
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i]) roles.node_moves[i] = false;
   }
@@ -108,12 +108,12 @@ struct NodeBlocks {
 // Ceres' view of a graph. Lives for one call.
 class CeresGraph {
  public:
-  CeresGraph(const PoseGraph& graph, const Roles& roles, const PoseGraphOptions& options)
+  CeresGraph(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options)
       : options_(options), nodes_(graph.nodes.begin(), graph.nodes.end()) {
     for (const int i : roles.edges) costs_.emplace_back(graph.edges[i], options.scale_is_free);
   }
 
-  ceres::Solver::Summary solve(const PoseGraph& graph, const Roles& roles, RobustLoss robust_loss) {
+  ceres::Solver::Summary solve(const PoseGraph& graph, const GraphRoles& roles, RobustLoss robust_loss) {
     const auto loss = make_loss(robust_loss, options_.loss_width);
     ceres::Problem problem(borrowing_problem());
     auto cost = costs_.begin();
@@ -175,7 +175,7 @@ std::vector<RobustLoss> stages(RobustLoss loss) {
   return {loss};
 }
 
-PoseGraphResult solve(const PoseGraph& graph, const Roles& roles, const PoseGraphOptions& options) {
+PoseGraphResult solve(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options) {
   PoseGraphResult result = unmoved(graph);
   if (roles.edges.empty()) return result;
   CeresGraph ceres_graph(graph, roles, options);

@@ -32,7 +32,7 @@ void expect_poses(const PoseGraphResult& result, const PoseGraph& truth, double 
   }
 }
 
-bool identical(const Pose& first, const Pose& second) {
+bool same_to_the_bit(const Pose& first, const Pose& second) {
   return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
 }
 
@@ -231,9 +231,9 @@ TEST(OptimisePoseGraph, HoldsTheFirstNodeWithAnEdgeWhenNothingIsFixed) {
   graph.nodes.front().fixed = false;
   std::erase_if(graph.edges, [](const PoseGraphEdge& edge) { return edge.first == 0; });
   const PoseGraphResult result = optimise_pose_graph(graph, {});
-  EXPECT_TRUE(identical(result.camera_from_world[0], graph.nodes[0].camera_from_world));
-  EXPECT_TRUE(identical(result.camera_from_world[1], graph.nodes[1].camera_from_world));
-  EXPECT_FALSE(identical(result.camera_from_world[2], graph.nodes[2].camera_from_world));
+  EXPECT_TRUE(same_to_the_bit(result.camera_from_world[0], graph.nodes[0].camera_from_world));
+  EXPECT_TRUE(same_to_the_bit(result.camera_from_world[1], graph.nodes[1].camera_from_world));
+  EXPECT_FALSE(same_to_the_bit(result.camera_from_world[2], graph.nodes[2].camera_from_world));
 }
 
 TEST(OptimisePoseGraph, LeavesFixedAndDisconnectedNodesBitIdentical) {
@@ -245,7 +245,7 @@ TEST(OptimisePoseGraph, LeavesFixedAndDisconnectedNodesBitIdentical) {
   ASSERT_TRUE(result.usable);
   for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i) {
     const bool stays = i == 0 || i == 40 || i >= kCut;
-    EXPECT_EQ(identical(result.camera_from_world[i], graph.nodes[i].camera_from_world), stays) << "node " << i;
+    EXPECT_EQ(same_to_the_bit(result.camera_from_world[i], graph.nodes[i].camera_from_world), stays) << "node " << i;
   }
   EXPECT_EQ(result.squared_errors.size(), graph.edges.size());
 }
@@ -255,7 +255,7 @@ TEST(OptimisePoseGraph, RepeatsBitForBit) {
   const PoseGraphOptions options{.loss = RobustLoss::cauchy, .scale_is_free = true};
   const PoseGraphResult first = optimise_pose_graph(graph, options);
   const PoseGraphResult second = optimise_pose_graph(graph, options);
-  EXPECT_TRUE(std::ranges::equal(first.camera_from_world, second.camera_from_world, identical));
+  EXPECT_TRUE(std::ranges::equal(first.camera_from_world, second.camera_from_world, same_to_the_bit));
   EXPECT_EQ(first.scales, second.scales);
   EXPECT_EQ(first.squared_errors, second.squared_errors);
 }
@@ -266,7 +266,7 @@ TEST(OptimisePoseGraph, TakesAnEmptyGraphAndOneWithoutEdges) {
   const PoseGraphResult result = optimise_pose_graph(lonely, {});
   EXPECT_TRUE(result.usable);
   EXPECT_EQ(result.iterations, 0);
-  EXPECT_TRUE(std::ranges::equal(result.camera_from_world, poses_of(lonely), identical));
+  EXPECT_TRUE(std::ranges::equal(result.camera_from_world, poses_of(lonely), same_to_the_bit));
 }
 
 TEST(OptimisePoseGraph, GivesAnEdgeFromANodeToItselfNoSay) {
@@ -275,7 +275,7 @@ TEST(OptimisePoseGraph, GivesAnEdgeFromANodeToItselfNoSay) {
   with_self.edges.push_back({.first = 5, .second = 5, .second_from_first = exp_pose(Vector6::Constant(0.1))});
   const PoseGraphResult result = optimise_pose_graph(with_self, {});
   EXPECT_TRUE(
-      std::ranges::equal(result.camera_from_world, optimise_pose_graph(graph, {}).camera_from_world, identical));
+      std::ranges::equal(result.camera_from_world, optimise_pose_graph(graph, {}).camera_from_world, same_to_the_bit));
   EXPECT_NEAR(result.squared_errors.back(), 0.06, 1e-6);
 }
 
@@ -294,7 +294,7 @@ TEST(OptimisePoseGraph, ReturnsWhatWasGivenWhenTheSolverFails) {
   graph.edges[7].second_from_first.translation.x() = std::numeric_limits<double>::quiet_NaN();
   const PoseGraphResult result = optimise_pose_graph(graph, {});
   EXPECT_FALSE(result.usable);
-  EXPECT_TRUE(std::ranges::equal(result.camera_from_world, poses_of(graph), identical));
+  EXPECT_TRUE(std::ranges::equal(result.camera_from_world, poses_of(graph), same_to_the_bit));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 // The root has a leaf, then a node with two leaves, then a leaf.
-VocabularyTree small_tree() {
+VocabularyTree tree_of_two_levels() {
   VocabularyTree tree;
   tree.centres = {{}, {1, 2, 3, 4}, {5}, {6}, {7}, {8}};
   tree.first_child = {1, 4, 4, 6, 6, 6, 6};
@@ -48,7 +48,7 @@ void put(std::vector<std::byte>& bytes, std::size_t at, std::uint32_t value) {
 }
 
 TEST(VocabularyFile, IsReadAsItWasWritten) {
-  const VocabularyTree tree = small_tree();
+  const VocabularyTree tree = tree_of_two_levels();
   const std::vector<std::byte> bytes = write_vocabulary(tree);
   const VocabularyView view = read_vocabulary(bytes, "some.vocabulary");
   EXPECT_THAT(view.centres, testing::ElementsAreArray(tree.centres));
@@ -59,11 +59,11 @@ TEST(VocabularyFile, IsReadAsItWasWritten) {
 }
 
 TEST(VocabularyFile, NumbersWordsFromLeftToRight) {
-  EXPECT_THAT(first_words(small_tree().first_child), ElementsAre(0, 0, 1, 3, 1, 2));
+  EXPECT_THAT(first_words(tree_of_two_levels().first_child), ElementsAre(0, 0, 1, 3, 1, 2));
 }
 
 TEST(VocabularyFile, HasTheLayoutThatIsDocumented) {
-  const std::vector<std::byte> bytes = write_vocabulary(small_tree());
+  const std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   ASSERT_EQ(bytes.size(), 64u + 6 * 32 + 7 * 4 + 4 * 4);
   EXPECT_EQ(std::memcmp(bytes.data(), "byrevoc\n\1\0\0\0\6\0\0\0\4\0\0\0\0\0\0\0", 24), 0);
   EXPECT_EQ(std::memcmp(bytes.data() + 64 + 32, "\1\0\0\0\0\0\0\0\2", 9), 0);             // centre of node 1
@@ -74,17 +74,17 @@ TEST(VocabularyFile, ChecksumTellsVocabulariesApart) {
   const auto checksum_of = [](const VocabularyTree& tree) {
     return read_vocabulary(write_vocabulary(tree), "").checksum;
   };
-  VocabularyTree other = small_tree();
-  EXPECT_EQ(checksum_of(other), checksum_of(small_tree()));
+  VocabularyTree other = tree_of_two_levels();
+  EXPECT_EQ(checksum_of(other), checksum_of(tree_of_two_levels()));
   other.weights[3] = 4.5f;
-  EXPECT_NE(checksum_of(other), checksum_of(small_tree()));
-  other = small_tree();
+  EXPECT_NE(checksum_of(other), checksum_of(tree_of_two_levels()));
+  other = tree_of_two_levels();
   other.centres[5][3] ^= 1;
-  EXPECT_NE(checksum_of(other), checksum_of(small_tree()));
+  EXPECT_NE(checksum_of(other), checksum_of(tree_of_two_levels()));
 }
 
 TEST(VocabularyFile, NoticesEveryFlippedBit) {
-  std::vector<std::byte> bytes = write_vocabulary(small_tree());
+  std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   for (std::size_t i = 0; i < bytes.size() * 8; ++i) {
     const std::byte mask{static_cast<unsigned char>(1 << i % 8)};
     bytes[i / 8] ^= mask;
@@ -94,7 +94,7 @@ TEST(VocabularyFile, NoticesEveryFlippedBit) {
 }
 
 TEST(VocabularyFile, NoticesEveryLengthButItsOwn) {
-  std::vector<std::byte> bytes = write_vocabulary(small_tree());
+  std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THAT(damage_in(std::span(bytes).first(size)), StartsWith("some.vocabulary: section ")) << size;
   }
@@ -103,16 +103,16 @@ TEST(VocabularyFile, NoticesEveryLengthButItsOwn) {
 }
 
 TEST(VocabularyFile, NamesSectionAndByte) {
-  std::vector<std::byte> bytes = write_vocabulary(small_tree());
+  std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   bytes[70] ^= std::byte{1};
   EXPECT_THAT(damage_in(bytes), HasSubstr("section centres at byte 64: does not have the checksum"));
-  bytes = write_vocabulary(small_tree());
+  bytes = write_vocabulary(tree_of_two_levels());
   EXPECT_THAT(damage_in(std::span(bytes).first(260)), HasSubstr("section children at byte 260: ends too early"));
   EXPECT_THAT(damage_in(std::span(bytes).first(20)), HasSubstr("section header at byte 20: ends too early"));
 }
 
 TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
-  std::vector<std::byte> bytes = write_vocabulary(small_tree());
+  std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   put(bytes, 8, 2);
   EXPECT_THAT(damage_in(bytes), HasSubstr("is of format 2, this program reads format 1"));
   const std::string text = "10 6 0 0\n0 1 17";
@@ -121,7 +121,7 @@ TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
 
 // A file may be whole and still be nonsense.
 TEST(VocabularyFile, RefusesTreesThatAreNone) {
-  VocabularyTree tree = small_tree();
+  VocabularyTree tree = tree_of_two_levels();
   tree.first_child = {1, 4, 4, 6, 5, 6, 6};  // goes back
   EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 268: gives node 3 children that it cannot have"));
   tree.first_child = {1, 1, 1, 1, 1, 1, 6};  // node 5 is its own child
@@ -136,11 +136,11 @@ TEST(VocabularyFile, RefusesTreesThatAreNone) {
 
 TEST(VocabularyFile, RefusesWeightsThatAreNone) {
   for (const float weight : {-1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
-    VocabularyTree tree = small_tree();
+    VocabularyTree tree = tree_of_two_levels();
     tree.weights[2] = weight;
     EXPECT_THAT(damage_in(tree), HasSubstr("section weights at byte 292: word 2 has no valid weight"));
   }
-  VocabularyTree tree = small_tree();
+  VocabularyTree tree = tree_of_two_levels();
   tree.weights.push_back(1.0f);
   EXPECT_THAT(damage_in(tree), HasSubstr("are not as many as the words"));
 }

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMaxBranching = 255;
+constexpr int kMostBranches = 255;
 constexpr int kMaxDepth = 16;
 
 void require_range(const char* option, int value, int min, int max) {
@@ -145,7 +145,7 @@ class TreeGrowth {
 
 VocabularyTree train_tree(std::span<const std::vector<Descriptor>> descriptors_of_images,
                           const VocabularyOptions& options, const std::function<void(double)>& progress) {
-  require_range("branching", options.branching, 2, kMaxBranching);
+  require_range("branching", options.branching, 2, kMostBranches);
   require_range("depth", options.depth, 1, kMaxDepth);
   require_range("rounds", options.rounds, 1, 1000);
   if (descriptors_of_images.size() < 2) {

@@ -2,7 +2,7 @@
 // the same in every frame, which no number of points averages out.
 
 #include "byre/geometry/alignment.h"
-#include "byre/session/session.h"
+#include "byre/session/session_scene.h"
 #include "byre/slam/place_scene.h"
 
 #include <algorithm>
@@ -46,17 +46,8 @@ SimulatedMission visit(std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(kFrames, 10.0, 2.0, 0.75), options);
 }
 
-const Vocabulary& vocabulary() {
-  static const Vocabulary trained = vocabulary_of(visit(1));
-  return trained;
-}
-
 std::shared_ptr<const OfflineMap> mapped() {
-  Map map = true_map(visit(1), 4, Origin::offline);
-  for (const KeyframeId id : map.keyframe_ids()) {
-    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
-  }
-  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+  return offline_map_of(visit(1));
 }
 
 struct Outcome {
@@ -92,7 +83,8 @@ Outcome mission_outcome(bool map_online, const CalibrationError& error) {
   const SimulatedMission mission = visit(2);
   SessionOptions options;
   options.map_online = map_online;
-  return outcome_of({mission.rig, options, Lanes(make_inline_executor()), vocabulary(), offline}, mission, error);
+  return outcome_of({mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary(), offline}, mission,
+                    error);
 }
 
 // Without any map, laid over the truth as well as it goes.

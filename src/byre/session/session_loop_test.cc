@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"
-#include "byre/session/session.h"
+#include "byre/session/session_scene.h"
 #include "byre/simulation/simulated_mission.h"
 #include "byre/slam/online_copy.h"
 
@@ -23,20 +23,8 @@ SimulatedMission laps(double count, std::uint64_t noise_seed = 1) {
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, count), options);
 }
 
-const Vocabulary& vocabulary() {
-  static const Vocabulary trained = [] {
-    const SimulatedMission mission = laps(1.0);
-    std::vector<std::vector<Descriptor>> images;
-    for (std::size_t i = 0; i < mission.frames.size(); i += 3) {
-      images.push_back(mission.frames[i].features->descriptors());
-    }
-    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
-  }();
-  return trained;
-}
-
 Session recognising_session(const Rig& rig) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary()};
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary()};
 }
 
 // Metres from where the frame truly was, the first frame being the world.
@@ -144,7 +132,7 @@ TEST(SessionThatRecognisesPlaces, GoesOnWithAMapMadeBefore) {
 
   SessionOptions options;
   options.recording = 1;
-  Session later(second.rig, options, Lanes(make_inline_executor(), make_inline_executor()), vocabulary());
+  Session later(second.rig, options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary());
   later.continue_map(online_copy(offline_copy(earlier.map().online())));
   for (std::size_t i = 10; i < second.frames.size(); ++i) {
     const FrameReport report = later.process(second.frames[i]);
@@ -163,7 +151,7 @@ TEST(SessionThatRecognisesPlaces, GoesOnWithAMapMadeBefore) {
 TEST(SessionThatRecognisesPlaces, GivesTheSameMapEachTime) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&] {
-    Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), vocabulary());
+    Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), simulated_vocabulary());
     for (const Frame& frame : mission.frames) session.process(frame);
     session.finish();
     session.finish_map({}, {});
@@ -178,7 +166,7 @@ TEST(SessionThatRecognisesPlaces, CarriesKeyframesAlongThatCameWhileTheMapWasCor
   const SimulatedMission mission = laps(1.6);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;  // a correction of the whole map, however small the drift
-  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(15)), vocabulary());
+  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(15)), simulated_vocabulary());
   const MissionResult closed = run(session, mission);
   EXPECT_GE(closed.corrections, 1);
   EXPECT_LT(closed.last_error, 0.05);  // in the noise, as it would not be with a keyframe left behind
@@ -189,7 +177,8 @@ TEST(SessionThatRecognisesPlaces, EndsSoonWithASoundMapWhenHurried) {
   const SimulatedMission mission = laps(1.2);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;
-  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(1000)), vocabulary());
+  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(1000)),
+                  simulated_vocabulary());
   for (const Frame& frame : mission.frames) session.process(frame);
   session.hurry();
   session.finish();

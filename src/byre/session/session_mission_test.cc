@@ -1,8 +1,7 @@
 // Missions on an offline map: finding oneself in it, leaving it, being blinded, carried and lost.
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/session/session.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/session/session_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,40 +12,24 @@
 namespace byre {
 namespace {
 
-constexpr int kLap = 120;  // frames, at 10 Hz
+constexpr int kLapFrames = 120;  // frames, at 10 Hz
 constexpr double kDegree = 0.0174533;
 
 SimulatedMission circling(double laps, std::uint64_t noise_seed, std::uint64_t room = 1) {
   SimulationOptions options;
   options.seed = room;
   options.noise_seed = noise_seed;
-  const int frames = static_cast<int>(kLap * laps);
+  const int frames = static_cast<int>(kLapFrames * laps);
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, laps), options);
-}
-
-const Vocabulary& vocabulary() {
-  static const Vocabulary trained = [] {
-    const SimulatedMission mission = circling(1.0, 1);
-    std::vector<std::vector<Descriptor>> images;
-    for (std::size_t i = 0; i < mission.frames.size(); i += 4) {
-      images.push_back(mission.frames[i].features->descriptors());
-    }
-    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
-  }();
-  return trained;
 }
 
 // A map of so many laps, by a visit before.
 std::shared_ptr<const OfflineMap> mapped(double laps, std::uint64_t room = 1) {
-  Map map = true_map(circling(laps, 1, room), 4, Origin::offline);
-  for (const KeyframeId id : map.keyframe_ids()) {
-    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
-  }
-  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+  return offline_map_of(circling(laps, 1, room));
 }
 
 Session session_on(std::shared_ptr<const OfflineMap> offline, const SessionOptions& options = {}) {
-  return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(),
+  return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
           std::move(offline)};
 }
 
@@ -85,12 +68,6 @@ Frame at_time_of(const Frame& frame, const Frame& now) {
   return {now.time, frame.features};
 }
 
-std::vector<FrameReport> run(Session& session, const std::vector<Frame>& frames) {
-  std::vector<FrameReport> reports;
-  for (const Frame& frame : frames) reports.push_back(session.process(frame));
-  return reports;
-}
-
 int count(const std::vector<FrameReport>& reports, SessionEvent event) {
   return static_cast<int>(std::ranges::count_if(reports, [=](const FrameReport& report) { return report.has(event); }));
 }
@@ -125,7 +102,7 @@ double worst_step(const std::vector<FrameReport>& reports, const Trajectory& tru
 TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
   const SimulatedMission mission = circling(0.5, 2);
   Session session = session_on(mapped(1.0));
-  const auto reports = run(session, mission.frames);
+  const auto reports = reports_of(session, mission.frames);
   ASSERT_TRUE(reports[0].map_from_body);
   EXPECT_THAT(*reports[0].map_from_body, PoseNear(mission.truth[0].world_from_body, 0.03, 0.3 * kDegree));
   EXPECT_EQ(reports[0].health.verdict, Verdict::untrusted);
@@ -143,7 +120,7 @@ TEST(Mission, IsNotTrustedBeforeFramesSeeMuchOfWhatShouldBeThere) {
   Session session = session_on(mapped(1.0), options);
   std::vector<Frame> frames = mission.frames;
   for (std::size_t i = 0; i < 20; ++i) frames[i] = thinned(frames[i]);
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_TRUE(reports[i].map_from_body) << i;
     EXPECT_EQ(reports[i].health.doubt, Doubt::unconfirmed) << i;
@@ -159,11 +136,11 @@ void expect_to_leave_the_wrong_place(bool map_online) {
   options.map_online = map_online;
   Session session = session_on(mapped(1.0), options);
   std::vector<Frame> frames;
-  for (std::size_t i = 0; i < kLap / 2; ++i) {
-    const Frame elsewhere = thinned(mission.frames[i + kLap / 2]);
+  for (std::size_t i = 0; i < kLapFrames / 2; ++i) {
+    const Frame elsewhere = thinned(mission.frames[i + kLapFrames / 2]);
     frames.push_back(at_time_of(i < 20 ? elsewhere : overlaid(mission.frames[i], elsewhere), mission.frames[i]));
   }
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   EXPECT_GT((reports[19].map_from_body->translation - mission.truth[19].world_from_body.translation).norm(), 3.0);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
@@ -188,7 +165,7 @@ TEST(Mission, LeavesAWrongPlaceAlsoWhereItOnlyLocalises) {
 TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(0.4));
-  run(session, mission.frames);
+  reports_of(session, mission.frames);
   session.finish();
   const Trajectory before = session.final_trajectory();
   session.finish_mission({}, {});
@@ -199,17 +176,18 @@ TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
     EXPECT_THAT(after[i].world_from_body, PoseNear(mission.truth[i].world_from_body, 0.03, 0.3 * kDegree)) << i;
     moved += (after[i].world_from_body.translation - before[i].world_from_body.translation).norm() > 1e-6 ? 1 : 0;
   }
-  EXPECT_GT(moved, kLap / 4);
+  EXPECT_GT(moved, kLapFrames / 4);
 }
 
 TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session on_map = session_on(mapped(1.0));
-  Session plain(mission.rig, {}, Lanes(make_inline_executor()), vocabulary());
+  Session plain(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
   const auto count_keyframes = [](const std::vector<FrameReport>& reports) {
     return std::ranges::count(reports, true, &FrameReport::keyframe_added);
   };
-  EXPECT_LE(10 * count_keyframes(run(on_map, mission.frames)), count_keyframes(run(plain, mission.frames)));
+  EXPECT_LE(10 * count_keyframes(reports_of(on_map, mission.frames)),
+            count_keyframes(reports_of(plain, mission.frames)));
 }
 
 TEST(Mission, MakesNoKeyframesWhenItOnlyLocalises) {
@@ -217,23 +195,23 @@ TEST(Mission, MakesNoKeyframesWhenItOnlyLocalises) {
   SessionOptions options;
   options.map_online = false;
   Session session = session_on(mapped(0.3), options);
-  run(session, mission.frames);
+  reports_of(session, mission.frames);
   EXPECT_EQ(session.map().online().keyframe_count(), 0);
 }
 
 TEST(Mission, GoesOnOutsideTheMappedAreaAndIsHeldAgainWhenItComesBack) {
   const SimulatedMission mission = circling(2.0, 2);
   Session session = session_on(mapped(0.25));
-  const auto reports = run(session, mission.frames);
+  const auto reports = reports_of(session, mission.frames);
   session.finish();
   EXPECT_TRUE(std::ranges::all_of(reports, [](const FrameReport& report) { return report.map_from_body.has_value(); }));
   EXPECT_GE(count(reports, SessionEvent::left_mapped_area), 1);
   EXPECT_GE(count(reports, SessionEvent::entered_mapped_area), 2);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.2);
   EXPECT_LT(worst_step(reports, mission.truth), 0.05);
-  const FrameReport& back = reports[kLap + 10];
+  const FrameReport& back = reports[kLapFrames + 10];
   EXPECT_GT(back.health.offline_inliers, 20);
-  EXPECT_THAT(*back.map_from_body, PoseNear(mission.truth[kLap + 10].world_from_body, 0.05, kDegree));
+  EXPECT_THAT(*back.map_from_body, PoseNear(mission.truth[kLapFrames + 10].world_from_body, 0.05, kDegree));
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
@@ -242,7 +220,7 @@ TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
   SessionOptions options;
   options.state.lost_after = 2.0;
   Session session = session_on(mapped(1.0), options);
-  const auto reports = run(session, mission.frames);
+  const auto reports = reports_of(session, mission.frames);
   EXPECT_EQ(count_trusted(reports), 0);
   EXPECT_EQ(count(reports, SessionEvent::navigation_error), 1);
   EXPECT_TRUE(reports.back().odometry_from_body);
@@ -260,7 +238,7 @@ TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
     frames.push_back(at_time_of(mission.frames[mission.frames.size() - 1 - i], mission.frames[i]));
   }
   Session session = session_on(mapped(0.2));
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   session.finish();
   EXPECT_FALSE(reports.front().map_from_body);
   EXPECT_EQ(count(reports, SessionEvent::online_corrected), 1);
@@ -279,7 +257,7 @@ TEST(Mission, IsTrustedAgainSoonAfterItWasBlinded) {
   Session session = session_on(mapped(1.0));
   std::vector<Frame> frames = mission.frames;
   for (std::size_t i = 30; i < 50; ++i) frames[i] = without_features(frames[i]);
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   EXPECT_TRUE(reports[30].has(SessionEvent::pose_lost));
   for (std::size_t i = 30; i < 50; ++i) {
     EXPECT_EQ(reports[i].map_from_body, std::nullopt);
@@ -302,7 +280,7 @@ TEST(Mission, FindsItselfWhereItWasCarried) {
     frames.push_back(at_time_of(mission.frames[place], mission.frames[i]));
     truth.push_back(mission.truth[place]);
   }
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   EXPECT_NE(reports[30].health.verdict, Verdict::trusted);
   for (std::size_t i = 45; i < reports.size(); ++i) EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
   EXPECT_LT(worst_trusted(reports, truth), 0.03);
@@ -312,7 +290,7 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   const SimulatedMission mission = circling(1.0, 2);
   Map map = true_map(circling(1.0, 1), 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
-    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+    map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }
   for (const PointId id : map.point_ids()) {  // what stands before a part of one wall
     MapPoint point = *map.find_point(id);
@@ -320,8 +298,8 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
     point.position_in_world += Eigen::Vector3d(0.0, 0.06, 0.0);
     map.update_point(id, point);
   }
-  Session session = session_on(std::make_shared<const OfflineMap>(std::move(map), vocabulary()));
-  const auto reports = run(session, mission.frames);
+  Session session = session_on(std::make_shared<const OfflineMap>(std::move(map), simulated_vocabulary()));
+  const auto reports = reports_of(session, mission.frames);
   EXPECT_GT(reports.back().health.suspended, 10);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
@@ -333,7 +311,7 @@ TEST(Mission, TellsANavigationErrorOnceAndGoesOnSearching) {
   Session session = session_on(mapped(1.0), options);
   std::vector<Frame> frames = mission.frames;
   for (std::size_t i = 20; i < 50; ++i) frames[i] = without_features(frames[i]);
-  const auto reports = run(session, frames);
+  const auto reports = reports_of(session, frames);
   EXPECT_EQ(count(reports, SessionEvent::navigation_error), 1);
   EXPECT_EQ(reports[45].state, State::lost);
   EXPECT_EQ(reports.back().state, State::tracking);

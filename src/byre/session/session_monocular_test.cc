@@ -1,8 +1,7 @@
 // One camera: a map from its motion alone, and missions on a map that a stereo camera has made.
 
 #include "byre/evaluation/trajectory_error.h"
-#include "byre/session/session.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/session/session_scene.h"
 
 #include <algorithm>
 
@@ -13,7 +12,7 @@ namespace {
 
 using ::testing::Each;
 
-constexpr int kLap = 120;  // frames, at 10 Hz
+constexpr int kFramesOfALap = 120;  // frames, at 10 Hz
 
 Rig one_camera() {
   Rig rig = simulated_rig();
@@ -21,7 +20,7 @@ Rig one_camera() {
   return rig;
 }
 
-SimulationOptions visit(std::uint64_t noise_seed) {
+SimulationOptions noisy_visit(std::uint64_t noise_seed) {
   SimulationOptions options;
   options.landmarks = 8000;
   options.noise_seed = noise_seed;
@@ -29,42 +28,16 @@ SimulationOptions visit(std::uint64_t noise_seed) {
 }
 
 SimulatedMission circling(const Rig& rig, double laps, std::uint64_t noise_seed) {
-  const int frames = static_cast<int>(kLap * laps);
-  return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), visit(noise_seed));
+  const int frames = static_cast<int>(kFramesOfALap * laps);
+  return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), noisy_visit(noise_seed));
 }
 
 SimulatedMission turning_in_place(const Rig& rig) {
-  return simulate_mission(rig, turning_in_place_trajectory(100, 10.0, 1.0), visit(2));
-}
-
-const Vocabulary& vocabulary() {
-  static const Vocabulary trained = [] {
-    std::vector<std::vector<Descriptor>> images;
-    for (const Frame& frame : circling(simulated_rig(), 1.0, 1).frames) {
-      images.push_back(frame.features->descriptors());
-    }
-    return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
-  }();
-  return trained;
-}
-
-// Made by a stereo camera on visits before.
-std::shared_ptr<const OfflineMap> map_of(const SimulatedMission& mission) {
-  Map map = true_map(mission, 4, Origin::offline);
-  for (const KeyframeId id : map.keyframe_ids()) {
-    map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
-  }
-  return std::make_shared<const OfflineMap>(std::move(map), vocabulary());
+  return simulate_mission(rig, turning_in_place_trajectory(100, 10.0, 1.0), noisy_visit(2));
 }
 
 Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), std::move(offline)};
-}
-
-std::vector<FrameReport> run(Session& session, const SimulatedMission& mission) {
-  std::vector<FrameReport> reports;
-  for (const Frame& frame : mission.frames) reports.push_back(session.process(frame));
-  return reports;
+  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(), std::move(offline)};
 }
 
 std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
@@ -76,7 +49,7 @@ std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
 TEST(Monocular, BeginsAMapOnceTheCameraHasMovedAndTracksOnUpToScale) {
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
   Session session = session_of(one_camera());
-  const auto reports = run(session, mission);
+  const auto reports = reports_of(session, mission.frames);
   const auto first = std::ranges::find_if(reports, [](const FrameReport& r) { return r.map_from_body.has_value(); });
   ASSERT_NE(first, reports.end());
   EXPECT_TRUE(first->has(SessionEvent::initialised));
@@ -90,23 +63,23 @@ TEST(Monocular, BeginsAMapOnceTheCameraHasMovedAndTracksOnUpToScale) {
 
 TEST(Monocular, RefusesToBeginWhileItTurnsOnTheSpotAndSaysWhy) {
   Session session = session_of(one_camera());
-  const auto reports = run(session, turning_in_place(one_camera()));
+  const auto reports = reports_of(session, turning_in_place(one_camera()).frames);
   EXPECT_THAT(has_pose(reports), Each(false));
   EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), 20);
 }
 
 TEST(Monocular, TurnsOnTheSpotInAMapWithoutLosingItself) {
   SimulatedMission mapping = turning_in_place(simulated_rig());
-  Session session = session_of(one_camera(), map_of(mapping));
-  SimulationOptions options = visit(3);
+  Session session = session_of(one_camera(), offline_map_of(mapping));
+  SimulationOptions options = noisy_visit(3);
   const SimulatedMission mission = simulate_mission(one_camera(), turning_in_place_trajectory(100, 10.0, 1.0), options);
-  EXPECT_THAT(has_pose(run(session, mission)), Each(true));
+  EXPECT_THAT(has_pose(reports_of(session, mission.frames)), Each(true));
 }
 
 TEST(Monocular, HasTheScaleOfTheMapItIsOn) {
-  Session session = session_of(one_camera(), map_of(circling(simulated_rig(), 1.0, 1)));
+  Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
-  const auto reports = run(session, mission);
+  const auto reports = reports_of(session, mission.frames);
   for (std::size_t i = 0; i < reports.size(); ++i) {
     ASSERT_TRUE(reports[i].map_from_body) << "frame " << i;
     EXPECT_LT((reports[i].map_from_body->translation - mission.truth[i].world_from_body.translation).norm(), 0.03)
@@ -115,11 +88,11 @@ TEST(Monocular, HasTheScaleOfTheMapItIsOn) {
 }
 
 TEST(Monocular, WaitsForItsPlaceInAMapRatherThanBeginAnother) {
-  SimulationOptions another_room = visit(2);
+  SimulationOptions another_room = noisy_visit(2);
   another_room.seed = 99;
-  Session session = session_of(one_camera(), map_of(circling(simulated_rig(), 1.0, 1)));
-  const auto reports =
-      run(session, simulate_mission(one_camera(), circling_trajectory(40, 10.0, 2.0, 0.33), another_room));
+  Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
+  const auto reports = reports_of(
+      session, simulate_mission(one_camera(), circling_trajectory(40, 10.0, 2.0, 0.33), another_room).frames);
   EXPECT_THAT(has_pose(reports), Each(false));
   EXPECT_EQ(session.map().online().keyframe_count(), 0);
 }
@@ -130,14 +103,14 @@ double error_of(const Session& session, const SimulatedMission& mission) {
 }
 
 TEST(Monocular, ClosesItsLoopsAndTakesItsFramesAlong) {
-  SimulationOptions options = visit(2);
+  SimulationOptions options = noisy_visit(2);
   options.landmarks = 5000;
   const SimulatedMission mission = simulate_mission(one_camera(), circling_trajectory(160, 10.0, 2.0, 1.33), options);
   Session open(one_camera(), {}, Lanes(make_inline_executor()));
-  run(open, mission);
+  reports_of(open, mission.frames);
   open.finish();
   Session session = session_of(one_camera());
-  run(session, mission);
+  reports_of(session, mission.frames);
   session.finish();
   EXPECT_EQ(session.loops().size(), 1u);
   EXPECT_LT(error_of(session, mission), 0.75 * error_of(open, mission));

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kLength = kCowshedSize.length;
+constexpr float kAlleyLength = kCowshedSize.length;
 constexpr float kFence = kCowshedSize.alley_half_width;
 
 const SurfaceLook kSteel{.picture = BarnPicture::rust, .picture_width = 0.7f};
-const SurfaceLook kConcrete{.picture = BarnPicture::concrete, .picture_width = 1.5f};
+const SurfaceLook kFloorConcrete{.picture = BarnPicture::concrete, .picture_width = 1.5f};
 
 // A place to eat: two bars that lean towards each other, one of them with a shackle.
 void add_feeding_place(QuadMesh& mesh, float x, float y, SeededDraws& draws) {
@@ -30,12 +30,12 @@ void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
   QuadMesh& mesh = barn.still;
   const float y = side * kFence;
   constexpr float kCurb = 2.5f;  // metres: the length of a piece
-  for (float x = 0.5f * kCurb; x < kLength; x += kCurb) {
-    add_box(mesh, placed({x, y, 0.24f}), {0.5f * kCurb, 0.15f, 0.24f}, varied(kConcrete, draws), 0.4f);
+  for (float x = 0.5f * kCurb; x < kAlleyLength; x += kCurb) {
+    add_box(mesh, placed({x, y, 0.24f}), {0.5f * kCurb, 0.15f, 0.24f}, varied(kFloorConcrete, draws), 0.4f);
   }
-  add_outline_of_box(barn, placed({0.5f * kLength, y, 0.0f}), {0.5f * kLength, 0.15f, 0.24f});
-  for (const float z : {0.52f, 1.36f}) add_bar(mesh, {0.0f, y, z}, {kLength, y, z}, 0.03f, varied(kSteel, draws));
-  for (float x = 1.25f; x < kLength; x += 2.5f) {
+  add_outline_of_box(barn, placed({0.5f * kAlleyLength, y, 0.0f}), {0.5f * kAlleyLength, 0.15f, 0.24f});
+  for (const float z : {0.52f, 1.36f}) add_bar(mesh, {0.0f, y, z}, {kAlleyLength, y, z}, 0.03f, varied(kSteel, draws));
+  for (float x = 1.25f; x < kAlleyLength; x += 2.5f) {
     const float post_x = x + draws.between(-0.08f, 0.08f);
     add_bar(mesh, {post_x, y, 0.4f}, {post_x, y, 1.6f}, 0.05f, varied(kSteel, draws), 10);
     add_drum(mesh, {post_x, y, 1.6f}, {post_x, y, 1.64f}, 0.06f, 0.05f, varied(kSteel, draws));
@@ -87,8 +87,8 @@ void add_signs(Cowshed& barn) {
   }
   add_sign(barn, hanging({0.02f, -3.2f, 1.9f}, Vector3f::UnitX()), 0.4f, 12, "west-gable-south");
   add_sign(barn, hanging({0.02f, 2.9f, 2.1f}, Vector3f::UnitX()), 0.3f, 13, "west-gable-north");
-  add_sign(barn, hanging({kLength - 0.02f, -2.9f, 2.2f}, -Vector3f::UnitX()), 0.3f, 14, "east-gable-south");
-  add_sign(barn, hanging({kLength - 0.02f, 3.3f, 1.9f}, -Vector3f::UnitX()), 0.4f, 15, "east-gable-north");
+  add_sign(barn, hanging({kAlleyLength - 0.02f, -2.9f, 2.2f}, -Vector3f::UnitX()), 0.3f, 14, "east-gable-south");
+  add_sign(barn, hanging({kAlleyLength - 0.02f, 3.3f, 1.9f}, -Vector3f::UnitX()), 0.4f, 15, "east-gable-north");
 }
 
 // A pile is highest at its middle and uneven everywhere.
@@ -130,11 +130,11 @@ void add_cubicles(Cowshed& barn, std::uint64_t seed) {
   SeededDraws draws(seed, 22);
   const SurfaceLook straw{.picture = BarnPicture::straw, .brightness = 0.9f, .picture_width = 1.6f};
   for (const float side : {-1.0f, 1.0f}) {
-    const Eigen::Isometry3f bed = placed({0.5f * kLength, side * 6.95f, 0.1f});
-    const Vector3f half_size(0.5f * kLength - 1.0f, 1.5f, 0.1f);
+    const Eigen::Isometry3f bed = placed({0.5f * kAlleyLength, side * 6.95f, 0.1f});
+    const Vector3f half_size(0.5f * kAlleyLength - 1.0f, 1.5f, 0.1f);
     add_box(barn.still, bed, half_size, straw);
-    add_outline_of_box(barn, placed({0.5f * kLength, side * 5.5f, 0.0f}), {half_size.x(), 0.05f, 0.1f});
-    for (float x = 1.2f; x < kLength - 1.0f; x += 1.2f) {
+    add_outline_of_box(barn, placed({0.5f * kAlleyLength, side * 5.5f, 0.0f}), {half_size.x(), 0.05f, 0.1f});
+    for (float x = 1.2f; x < kAlleyLength - 1.0f; x += 1.2f) {
       add_divider(barn.still, x, side, draws);
       add_outline_of_box(barn, placed({x, side * 6.95f, 0.0f}), {0.03f, 1.4f, 1.0f});
     }
@@ -145,13 +145,13 @@ void add_fittings(Cowshed& barn, std::uint64_t seed) {
   SeededDraws draws(seed, 23);
   add_signs(barn);
   for (const float side : {-1.0f, 1.0f}) {
-    add_bar(barn.still, {0.0f, side * 2.85f, 2.6f}, {kLength, side * 2.85f, 2.6f}, 0.035f, varied(kSteel, draws));
+    add_bar(barn.still, {0.0f, side * 2.85f, 2.6f}, {kAlleyLength, side * 2.85f, 2.6f}, 0.035f, varied(kSteel, draws));
     for (const float x : {5.4f, 14.8f, 24.1f}) {  // drinking troughs
       const Eigen::Isometry3f trough = placed({x, side * 3.6f, 0.4f});
-      add_box(barn.still, trough, {0.6f, 0.25f, 0.4f}, varied(kConcrete, draws));
+      add_box(barn.still, trough, {0.6f, 0.25f, 0.4f}, varied(kFloorConcrete, draws));
       add_outline_of_box(barn, trough, {0.6f, 0.25f, 0.4f});
     }
-    for (const float x : {0.55f, kLength - 0.55f}) {  // barrels in the corners of the alley
+    for (const float x : {0.55f, kAlleyLength - 0.55f}) {  // barrels in the corners of the alley
       const Vector3f foot(x, side * draws.between(1.95f, 2.05f), 0.0f);
       const SurfaceLook look =
           varied({.picture = BarnPicture::plastic, .brightness = 0.6f, .picture_width = 1.0f}, draws);
@@ -175,7 +175,7 @@ void add_lamp(Cowshed& barn, const Vector3f& middle, float ceiling, BarnTime tim
 }
 
 void add_lamps(Cowshed& barn, BarnTime time) {
-  for (float x = kCowshedSize.bay; x < kLength - 0.1f; x += kCowshedSize.bay) {
+  for (float x = kCowshedSize.bay; x < kAlleyLength - 0.1f; x += kCowshedSize.bay) {
     add_lamp(barn, {x, 0.0f, 3.5f}, kCowshedSize.ridge, time);
   }
 }
@@ -184,8 +184,8 @@ void add_feed(Cowshed& barn, const CowshedOptions& options) {
   SeededDraws draws(hash(options.seed, static_cast<std::uint64_t>(options.mission), 0), 24);
   for (const float side : {-1.0f, 1.0f}) {
     float x = draws.between(1.5f, 3.0f);
-    while (x < kLength - 4.0f) {
-      const float end = std::min(x + draws.between(2.5f, 6.0f), kLength - 1.5f);
+    while (x < kAlleyLength - 4.0f) {
+      const float end = std::min(x + draws.between(2.5f, 6.0f), kAlleyLength - 1.5f);
       add_pile(barn.still, x, end, side, draws);
       x = end + draws.between(0.6f, 1.6f);
     }

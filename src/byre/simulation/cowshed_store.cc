@@ -16,13 +16,13 @@ constexpr float kHalfWidth = kCowshedSize.store_half_width;
 constexpr float kHeight = kCowshedSize.store_height;
 constexpr float kPlinth = 1.2f;  // metres: the height of concrete walls
 
-const SurfaceLook kConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
+const SurfaceLook kStoreConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
 const SurfaceLook kPlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
 const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.1f};
 
 // A wall between two points on the floor, seen from its right; concrete up to the plinth, planks above.
 void add_wall(QuadMesh& mesh, const Vector3f& from, const Vector3f& to) {
-  add_panel(mesh, from, to - from, {0.0f, 0.0f, kPlinth}, kConcrete);
+  add_panel(mesh, from, to - from, {0.0f, 0.0f, kPlinth}, kStoreConcrete);
   add_panel(mesh, from + Vector3f(0.0f, 0.0f, kPlinth), to - from, {0.0f, 0.0f, kHeight - kPlinth}, kPlanks);
 }
 
@@ -125,7 +125,7 @@ void add_stock(Cowshed& barn, SeededDraws& draws) {
 void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed) {
   SeededDraws draws(seed, 25);
   add_panel(barn.still, {kCowshedSize.length, -kHalfWidth, 0.0f}, {kEast - kCowshedSize.length, 0.0f, 0.0f},
-            {0.0f, 2.0f * kHalfWidth, 0.0f}, kConcrete, 0.4f);
+            {0.0f, 2.0f * kHalfWidth, 0.0f}, kStoreConcrete, 0.4f);
   add_walls(barn);
   add_ceiling(barn, time == BarnTime::day ? 3.0f : 0.12f, draws);
   add_bales(barn, draws);

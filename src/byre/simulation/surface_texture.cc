@@ -1,4 +1,5 @@
 #include "byre/simulation/surface_texture.h"
+#include "byre/simulation/smooth_step.h"
 
 #include <algorithm>
 #include <array>
@@ -41,10 +42,6 @@ float visible_part(float size, float footprint) {
 // Unlike std::lerp not exact at the far end, and several times as fast.
 float mix(float from, float to, float part) {
   return from + part * (to - from);
-}
-
-float smooth_step(float x) {
-  return x * x * (3.0f - 2.0f * x);
 }
 
 // Value noise (Perlin's lattice with values instead of gradients), -1 to 1.

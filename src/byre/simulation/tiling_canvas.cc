@@ -1,14 +1,11 @@
 #include "byre/simulation/tiling_canvas.h"
+#include "byre/simulation/smooth_step.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace byre {
 namespace {
-
-float smooth_step(float x) {
-  return x * x * (3.0f - 2.0f * x);
-}
 
 // The values of one octave on its lattice.
 std::vector<float> lattice_values(int cells_x, int cells_y, std::uint64_t seed) {

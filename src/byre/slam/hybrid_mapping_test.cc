@@ -15,7 +15,7 @@ using ::testing::IsEmpty;
 using ::testing::Lt;
 
 constexpr double kDegree = 0.0174533;
-constexpr KeyframeId kNewest{Origin::online, 19};
+constexpr KeyframeId kLastKeyframe{Origin::online, 19};
 
 struct MeanError {
   double position = 0.0;  // metres
@@ -116,7 +116,7 @@ TEST(HybridMapping, PullsTheWholeMapIntoTheOfflineFrameAtOnce) {
 HybridScene scene_of_one_keyframe() {
   HybridScene scene = true_hybrid_scene(without_noise());
   for (const PointId id : scene.online.point_ids()) scene.online.remove_point(id);
-  Keyframe newest = *scene.online.find_keyframe(kNewest);
+  Keyframe newest = *scene.online.find_keyframe(kLastKeyframe);
   newest.parent.reset();
   Map alone(Origin::online);
   alone.add_rig(scene.second.rig);
@@ -166,9 +166,9 @@ int count_sightings_of_offline_points(const Map& online) {
 // As after localising anew: only the newest keyframe sees offline points.
 HybridScene scene_with_duplicates() {
   HybridScene scene = two_true_maps({});
-  const std::vector<Sighting> sightings = scene.online.find_keyframe(kNewest)->sightings;
+  const std::vector<Sighting> sightings = scene.online.find_keyframe(kLastKeyframe)->sightings;
   for (int feature = 0; feature < static_cast<int>(sightings.size()); ++feature) {
-    const Observation seen{kNewest, feature};
+    const Observation seen{kLastKeyframe, feature};
     Sighting sighting = sightings[static_cast<std::size_t>(feature)];
     if (!sighting.point || feature % 2 == 0) continue;
     const auto known = scene.known_points.find(true_landmark(scene.second, scene.online, *sighting.point));
@@ -198,7 +198,7 @@ TEST(HybridMapping, FusesOnlinePointsIntoTheOfflinePointsTheyAre) {
 // An online point seen in a feature of an offline keyframe that sees the offline point it is.
 TEST(HybridMapping, FusesWhatAnOfflineKeyframeSeesAsAnOfflinePoint) {
   HybridScene scene = scene_with_duplicates();
-  const MapWindow window = cut_window(scene.view(), {kNewest}, {});
+  const MapWindow window = cut_window(scene.view(), {kLastKeyframe}, {});
   MapWindow fused = window;
   MappingOptions options;
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
@@ -213,9 +213,9 @@ TEST(HybridMapping, FusesWhatAnOfflineKeyframeSeesAsAnOfflinePoint) {
 
 TEST(HybridMapping, RemovesKeyframesThatSeeNextToNothingButOfflinePoints) {
   HybridScene scene = true_hybrid_scene({});
-  const MapWindow window = cut_window(scene.view(), {kNewest}, {});
+  const MapWindow window = cut_window(scene.view(), {kLastKeyframe}, {});
   for (const PointId id : scene.online.point_ids()) scene.online.remove_point(id);
-  const MapWindow known = cut_window(scene.view(), {kNewest}, {});
+  const MapWindow known = cut_window(scene.view(), {kLastKeyframe}, {});
   const auto removed = [](MapWindow thinned) {
     remove_redundant_keyframes(thinned, {});
     return std::ranges::count_if(thinned.keyframes, &WindowKeyframe::removed);
@@ -236,8 +236,8 @@ double error_beside_wrong_anchors(double offline_weight, double offline_sigma) {
   MappingOptions options;
   options.window.movable = 1;
   options.offline_weight = offline_weight;
-  apply(extend_map(cut_window(scene.view(), {kNewest}, options.window), options), scene.online);
-  const Pose off = inverse(scene.online.camera_from_world(kNewest)) * scene.true_pose(kNewest);
+  apply(extend_map(cut_window(scene.view(), {kLastKeyframe}, options.window), options), scene.online);
+  const Pose off = inverse(scene.online.camera_from_world(kLastKeyframe)) * scene.true_pose(kLastKeyframe);
   return off.translation.norm();
 }
 

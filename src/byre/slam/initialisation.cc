@@ -1,5 +1,6 @@
 #include "byre/slam/initialisation.h"
 
+#include "byre/geometry/median.h"
 #include "byre/slam/guided_matching.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/mapping_steps.h"
@@ -15,14 +16,6 @@
 
 namespace byre {
 namespace {
-
-template <typename Scalar>
-Scalar median(std::vector<Scalar> values) {
-  if (values.empty()) return Scalar{};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 std::vector<TwoViewMatch> rays_of(const std::vector<Match>& matches, const Features& first, const Features& second,
                                   const Rig& rig) {
@@ -43,7 +36,7 @@ double scale_for(const TwoViewMotion& motion, double median_depth) {
   for (const auto& point : motion.points_in_first) {
     if (point) depths.push_back(point->z());
   }
-  return median_depth / median(std::move(depths));
+  return median_depth / median_or(std::move(depths), 0.0);
 }
 
 KeyframeId add_keyframe(Map& map, const Frame& frame, const Rig& rig, const Pose& camera_from_world,
@@ -102,7 +95,7 @@ double median_parallax(const MonocularStart& start) {
     const Eigen::Vector3d from_second = point - second_in_world;
     parallaxes.push_back(std::atan2(from_first.cross(from_second).norm(), from_first.dot(from_second)));
   }
-  return median(std::move(parallaxes));
+  return median_or(std::move(parallaxes), 0.0);
 }
 
 // The sightings of the points as they were measured.
@@ -215,7 +208,7 @@ void MonocularInitialiser::follow(const std::vector<Match>& matches, const Featu
     right.push_back(shift.x());
     down.push_back(shift.y());
   }
-  const Eigen::Vector2f shift(median(std::move(right)), median(std::move(down)));
+  const Eigen::Vector2f shift(median_or(std::move(right), 0.0f), median_or(std::move(down), 0.0f));
   for (Eigen::Vector2f& pixel : expected_) pixel += shift;
   for (const Match& match : matches) {
     expected_[static_cast<std::size_t>(match.first)] = features.keypoint(match.second).pixel;

@@ -16,7 +16,7 @@ namespace {
 using Failure = LocalisationFailure;
 
 // What is needed wherever the frame is looked for.
-struct Query {
+struct FrameQuery {
   const Frame& frame;
   const Rig& rig;
   const MapView& map;
@@ -29,14 +29,14 @@ Localisation failed(Failure failure, int matches, std::size_t inliers) {
   return {std::nullopt, failure, 0, matches, static_cast<int>(inliers)};
 }
 
-PointSighting sighting_of(const Query& query, const PointMatch& match) {
+PointSighting sighting_of(const FrameQuery& query, const PointMatch& match) {
   const Keypoint& keypoint = query.frame.features->keypoint(match.feature);
   PointSighting sighting{query.map.find_point(match.point)->position_in_world, keypoint.pixel.cast<double>()};
   if (keypoint.has_disparity()) sighting.disparity = keypoint.disparity;
   return sighting;
 }
 
-std::optional<AbsolutePose> pose_from_matches(const Query& query, const std::vector<PointMatch>& matches) {
+std::optional<AbsolutePose> pose_from_matches(const FrameQuery& query, const std::vector<PointMatch>& matches) {
   std::vector<PointSighting> sightings;
   sightings.reserve(matches.size());
   for (const PointMatch& match : matches) sightings.push_back(sighting_of(query, match));
@@ -44,7 +44,7 @@ std::optional<AbsolutePose> pose_from_matches(const Query& query, const std::vec
 }
 
 // Looks for the points around a first pose, then for those around the keyframe that shares most of them.
-std::optional<TrackedFrame> refine(const Query& query, const Pose& camera_from_world, KeyframeId place) {
+std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_from_world, KeyframeId place) {
   const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
     return track(query.frame, predicted, query.rig, query.map,
                  local_points(query.map, reference, query.options.local_keyframes), query.options.track);
@@ -55,7 +55,7 @@ std::optional<TrackedFrame> refine(const Query& query, const Pose& camera_from_w
   return second && second->features.size() > first->features.size() ? second : first;
 }
 
-Localisation try_place(const PlaceCandidate& place, const Query& query) {
+Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   const LocaliseOptions& options = query.options;
   const std::vector<PointMatch> matches =
       match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, options.matching);
@@ -85,7 +85,7 @@ bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapVie
 
 // The attempt that came further; of two successes the one with more inliers, unless the other is nearly as good
 // somewhere else.
-Localisation better_of(const Localisation& best, const Localisation& other, const Query& query) {
+Localisation better_of(const Localisation& best, const Localisation& other, const FrameQuery& query) {
   if (!best.tracked || !other.tracked) {
     const bool other_is_further = other.tracked || (!best.tracked && other.failure > best.failure);
     return other_is_further ? other : best;
@@ -159,7 +159,7 @@ Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, co
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
                          const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
                          const LocaliseOptions& options) {
-  const Query query{frame, rig, map, vocabulary, words, options};
+  const FrameQuery query{frame, rig, map, vocabulary, words, options};
   Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
   for (const PlaceCandidate& place : places) {
     best = better_of(best, try_place(place, query), query);

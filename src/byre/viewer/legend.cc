@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kTextSize = 13.0;  // pixels, as all lengths here
-constexpr double kCharacter = 7.6;  // at most, on average, of that text
-constexpr double kMargin = 16.0;
+constexpr double kLegendTextSize = 13.0;  // pixels, as all lengths here
+constexpr double kCharacter = 7.6;        // at most, on average, of that text
+constexpr double kLegendMargin = 16.0;
 constexpr double kSample = 24.0;
 constexpr double kSampleGap = 8.0;
 constexpr double kEntryGap = 24.0;
@@ -38,17 +38,18 @@ PictureMark sample_of(const LegendEntry& entry, const Vector2d& left) {
 Pane legend(const std::vector<LegendEntry>& entries, const std::string& note, int width) {
   Pane pane;
   pane.width = width;
-  Vector2d at(kMargin, kRow);
+  Vector2d at(kLegendMargin, kRow);
   for (const LegendEntry& entry : entries) {
-    if (at.x() > kMargin && at.x() + width_of(entry) - kEntryGap > width - kMargin) at = {kMargin, at.y() + kRow};
+    if (at.x() > kLegendMargin && at.x() + width_of(entry) - kEntryGap > width - kLegendMargin)
+      at = {kLegendMargin, at.y() + kRow};
     pane.marks.emplace_back(sample_of(entry, at - Vector2d(0.0, 4.5)));
     pane.marks.emplace_back(
-        PictureText{at + Vector2d(kSample + kSampleGap, 0.0), entry.meaning, kTextSize, palette::kInk});
+        PictureText{at + Vector2d(kSample + kSampleGap, 0.0), entry.meaning, kLegendTextSize, palette::kInk});
     at.x() += width_of(entry);
   }
   if (!note.empty()) {
     at.y() += kRow;
-    pane.marks.emplace_back(PictureText{{kMargin, at.y()}, note, kTextSize - 1.0, palette::kFaint});
+    pane.marks.emplace_back(PictureText{{kLegendMargin, at.y()}, note, kLegendTextSize - 1.0, palette::kFaint});
   }
   pane.height = static_cast<int>(std::lround(at.y() + 0.6 * kRow));
   return pane;
@@ -71,7 +72,7 @@ std::vector<PictureMark> scale_bar(const Vector2d& right_end, double pixels_per_
   const int decimals = length < 1.0 ? static_cast<int>(std::ceil(-std::log10(length) - 1e-9)) : 0;
   const std::string label = fixed_point(length, decimals) + (is_metric ? " m" : " map units");
   return {PictureLine{{left + up, left, right_end, right_end + up}, palette::kInk, 2.0},
-          PictureText{left - Vector2d(kSampleGap, 0.0), label, kTextSize, palette::kInk, Align::right}};
+          PictureText{left - Vector2d(kSampleGap, 0.0), label, kLegendTextSize, palette::kInk, Align::right}};
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 // Ways, keyframes and the camera on a plan picture.
 
+#include "byre/geometry/median.h"
 #include "byre/viewer/palette.h"
 #include "byre/viewer/plan_view.h"
 
@@ -17,18 +18,10 @@ using Eigen::Vector2d;
 constexpr double kCasing = 1.5;  // pixels of white at either side of a way, so that it stands out from the points
 constexpr std::array kVerdicts = {Verdict::trusted, Verdict::degraded, Verdict::untrusted};
 
-template <typename Value>
-Value median(std::vector<Value> values) {
-  if (values.empty()) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 double median_step(const std::vector<Vector2d>& pixels) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < pixels.size(); ++i) steps.push_back((pixels[i] - pixels[i - 1]).norm());
-  return median(std::move(steps));
+  return median_or(std::move(steps), 0.0);
 }
 
 // A piece of a way without a gap, of one verdict.
@@ -48,7 +41,7 @@ Timestamp longest_step(const PlanPath& path) {
   for (std::size_t i = 1; i < path.map_from_body.size(); ++i) {
     steps.push_back(path.map_from_body[i].time - path.map_from_body[i - 1].time);
   }
-  return kMissed * median(std::move(steps));
+  return kMissed * median_or(std::move(steps), Timestamp::zero());
 }
 
 // Points closer than half a pixel to the one before add nothing to be seen.
