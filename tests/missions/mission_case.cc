@@ -28,6 +28,15 @@ std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, con
   return frames;
 }
 
+// As the first pose has it.
+std::optional<Similarity> truth_from_own_map(const std::vector<MissionFrame>& frames) {
+  for (const MissionFrame& frame : frames) {
+    if (!frame.report.map_from_body || !frame.true_world_from_body) continue;
+    return Similarity{1.0, *frame.true_world_from_body * inverse(*frame.report.map_from_body)};
+  }
+  return std::nullopt;
+}
+
 std::string formatted(const char* format, double value) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), format, value);
@@ -37,9 +46,8 @@ std::string formatted(const char* format, double value) {
 }  // namespace
 
 std::optional<RecordingName> missing_recording(const MissionCase& mission_case) {
-  for (const RecordingName& name : {mission_case.recording, mission_case.map.recipe.recording}) {
-    if (!find(name)) return name;
-  }
+  if (!find(mission_case.recording)) return mission_case.recording;
+  if (!mission_case.map.is_absent && !find(mission_case.map.recipe.recording)) return mission_case.map.recipe.recording;
   return std::nullopt;
 }
 
@@ -63,7 +71,8 @@ KnownMap KnownMaps::get(const MapChoice& choice) {
 }
 
 FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
-  const KnownMap known = maps.get(mission_case.map);
+  const bool has_map = !mission_case.map.is_absent;
+  const KnownMap known = has_map ? maps.get(mission_case.map) : KnownMap{};
   const auto recording = open_recording(find(mission_case.recording).value(), mission_case.range);
   MissionPlan plan = mission_case.plan(recording->times());
   if (mission_case.mapped_again_after) {
@@ -71,7 +80,8 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
   }
   FlownMission flown;
   flown.frames = run(plan, *recording, mission_case.imperfection, truth_of(mission_case.recording), known.map);
-  if (!mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
+  if (!has_map) flown.truth_from_map = truth_from_own_map(flown.frames);
+  if (has_map && !mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
   flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
   if (const auto doubt = mission_case.demand.doubt) {
     flown.score.time_to_doubt = time_to_doubt(flown.frames, *doubt, plan.disturbed_from());

@@ -17,6 +17,7 @@ struct MapChoice {
   double share_deleted = 0.0;  // of its points
   std::optional<Span> hole{};  // seconds of its recording of which it knows nothing
   bool is_of_another_place = false;
+  bool is_absent = false;  // plain SLAM, its frame laid on the truth by the first pose
 };
 
 // What the robot must get right beyond never trusting a wrong pose for long.
@@ -50,7 +51,7 @@ MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfectio
 std::vector<MissionCase> real_mission_cases();
 std::vector<MissionCase> twin_mission_cases();
 
-// What cameras may say that is not so, in the hall and in the rendered room.
+// What cameras may say that is not so, in the hall and in the rendered room, with the map of it and without any.
 std::vector<MissionCase> lying_mission_cases();
 
 // The first recording that the case needs and that is not there.

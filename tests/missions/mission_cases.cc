@@ -241,11 +241,19 @@ std::vector<Lie> lies() {
           {"focal_10_percent_short", as_recorded, Doubt::calibration, 0.9}};
 }
 
+// Without points of a map nothing tells of a wrong focal length at once.
+MissionCase without_map(MissionCase mission_case) {
+  mission_case.name += "plain_";
+  mission_case.map.is_absent = true;
+  return mission_case;
+}
+
 MissionCase told(MissionCase mission_case, const Lie& lie) {
-  mission_case.name += std::string("_lie_") + lie.name;
+  mission_case.name += std::string("lie_") + lie.name;
   mission_case.plan = lie.plan;
   mission_case.imperfection.focal_factor = lie.focal_factor;
-  mission_case.demand = {false, 0.0, true, lie.doubt};
+  const bool is_known_at_once = !(mission_case.map.is_absent && lie.doubt == Doubt::calibration);
+  mission_case.demand = {false, 0.0, true, is_known_at_once ? lie.doubt : std::nullopt};
   return mission_case;
 }
 
@@ -254,10 +262,12 @@ MissionCase told(MissionCase mission_case, const Lie& lie) {
 std::vector<MissionCase> lying_mission_cases() {
   std::vector<MissionCase> cases;
   for (const Lie& lie : lies()) {
-    cases.push_back(told(in_hall("", frames(150, 250), as_recorded), lie));
-    cases.push_back(told(in_room("", seconds(25.0, 33.0), as_recorded), lie));
+    for (const MissionCase& honest :
+         {in_hall("", frames(150, 250), as_recorded), in_room("", seconds(25.0, 33.0), as_recorded)}) {
+      cases.push_back(told(honest, lie));
+      cases.push_back(told(without_map(honest), lie));
+    }
   }
-  for (MissionCase& lying : cases) lying.name.erase(lying.name.find("__"), 1);
   return cases;
 }
 

@@ -1,4 +1,5 @@
 #include "byre/evaluation/trajectory_error.h"
+#include "byre/geometry/degrees.h"
 
 #include <cmath>
 #include <numbers>
@@ -11,8 +12,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // A helix flown with a slow roll: no symmetry, 20 Hz.
 Trajectory helix(int samples) {

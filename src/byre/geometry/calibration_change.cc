@@ -1,4 +1,5 @@
 #include "byre/geometry/calibration_change.h"
+#include "byre/geometry/degrees.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +7,6 @@
 
 namespace byre {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Order of a camera's parameters.
 enum : int { kFocal, kAspect, kCentreU, kCentreV, kFirstDistortion };

@@ -1,5 +1,6 @@
 #include "byre/geometry/two_view.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/essential.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/geometry/two_view_scene.h"
@@ -12,8 +13,6 @@
 
 namespace byre {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TwoViewFailure failure_of(const std::vector<TwoViewMatch>& matches) {
   return estimate_two_view_motion(matches, {}).failure;

@@ -1,5 +1,6 @@
 #include "byre/map/driving_plane.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/map/floor_plan_scene.h"
 
 #include <numbers>
@@ -10,8 +11,6 @@ namespace byre {
 namespace {
 
 using testing::SizeIs;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double tilt_error(const DrivingPlane& plane, const FloorPlanScene& scene) {
   return std::acos(std::min(1.0, plane.up_in_map.dot(scene.up_of_rig_in_map())));

@@ -1,5 +1,6 @@
 #include "byre/map/floor_plan.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/floor_plan_scene.h"
 
@@ -18,7 +19,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr double kDegreeOfPlan = std::numbers::pi / 180.0;
 constexpr double kPickNoise = 0.03;  // metres
 
 std::vector<std::string> outliers_of(const std::vector<PlanCorrespondence>& correspondences, const PlanFit& fit) {
@@ -62,16 +62,16 @@ TEST(FloorPlan, IsWithinACentimetreAndATenthOfADegreeFromSixExactPicksAndARealPa
   Worst degrees("worst_rotation_error_deg");
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     FloorPlanScene scene(seed);
-    const DrivingPlane plane = fit_driving_plane(scene.path_in_map(3.0, 0.005),
-                                                 scene.up_of_rig_in_map(1.0 * kDegreeOfPlan, 3.0 * kDegreeOfPlan));
+    const DrivingPlane plane =
+        fit_driving_plane(scene.path_in_map(3.0, 0.005), scene.up_of_rig_in_map(1.0 * kDegree, 3.0 * kDegreeOfPlan));
     const auto fit = register_on_plan(scene.correspondences(6), plane, Scale::fixed);
     ASSERT_TRUE(fit.has_value());
     EXPECT_THAT(fit->registration.plan_from_map.target_from_source,
-                PoseNear(scene.plan_from_map.target_from_source, 0.01, 0.1 * kDegreeOfPlan));
+                PoseNear(scene.plan_from_map.target_from_source, 0.01, 0.1 * kDegree));
     const Pose& estimate = fit->registration.plan_from_map.target_from_source;
     const Pose& truth = scene.plan_from_map.target_from_source;
     metres.add((estimate.translation - truth.translation).norm());
-    degrees.add(angle_between(estimate.rotation, truth.rotation) / kDegreeOfPlan);
+    degrees.add(angle_between(estimate.rotation, truth.rotation) / kDegree);
     EXPECT_LT(scene.worst_error(fit->registration.plan_from_map), 0.02);
   }
 }
@@ -165,12 +165,12 @@ TEST(FloorPlan, IsHigherByTheHeightOfTheBody) {
 TEST(FloorPlan, TakesTheTiltThatAStraightPathLeavesOpenFromPicksOfManyHeights) {
   FloorPlanScene scene;
   auto correspondences = scene.correspondences(12);
-  const DrivingPlane plane = fit_driving_plane(scene.path_in_map(0.0), scene.up_of_rig_in_map(3.0 * kDegreeOfPlan));
+  const DrivingPlane plane = fit_driving_plane(scene.path_in_map(0.0), scene.up_of_rig_in_map(3.0 * kDegree));
   const auto fit = register_on_plan(correspondences, plane, Scale::fixed);
   ASSERT_TRUE(fit.has_value());
   EXPECT_THAT(outliers_of(correspondences, *fit), IsEmpty());
   EXPECT_THAT(fit->registration.plan_from_map.target_from_source,
-              PoseNear(scene.plan_from_map.target_from_source, 0.1, 1.0 * kDegreeOfPlan));
+              PoseNear(scene.plan_from_map.target_from_source, 0.1, 1.0 * kDegree));
 }
 
 // The mean of the squared error of a corner in units of its covariance: two coordinates.

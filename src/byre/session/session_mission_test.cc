@@ -1,5 +1,6 @@
 // Missions on an offline map: finding oneself in it, leaving it, being blinded, carried and lost.
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/session/session_scene.h"
 
@@ -13,7 +14,6 @@ namespace byre {
 namespace {
 
 constexpr int kLapFrames = 120;  // frames, at 10 Hz
-constexpr double kDegree = 0.0174533;
 
 SimulatedMission circling(double laps, std::uint64_t noise_seed, std::uint64_t room = 1) {
   SimulationOptions options;

@@ -3,6 +3,7 @@
 #include "byre/session/session.h"
 
 #include "byre/evaluation/trajectory_error.h"
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/mission_scene.h"
 
@@ -19,7 +20,6 @@ using ::testing::Field;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr double kDegree = 0.0174533;
 constexpr double kMaxError = 0.05;  // metres, root mean square over a mission of ten metres or a full turn
 
 // What a session made of a mission.

@@ -1,5 +1,6 @@
 // Mapping beside a fixed map: what is online adapts, and what is offline stays as it is.
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/hybrid_scene.h"
@@ -14,7 +15,6 @@ using ::testing::Gt;
 using ::testing::IsEmpty;
 using ::testing::Lt;
 
-constexpr double kDegree = 0.0174533;
 constexpr KeyframeId kLastKeyframe{Origin::online, 19};
 
 struct MeanError {

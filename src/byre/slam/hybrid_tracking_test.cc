@@ -1,5 +1,6 @@
 #include "byre/slam/hybrid_tracking.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/mission_scene.h"
 
@@ -13,7 +14,6 @@ namespace byre {
 namespace {
 
 constexpr std::size_t kFrame = 20;
-constexpr double kDegree = 0.01745;
 
 Pose shift_by(double metres) {
   return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};

@@ -1,5 +1,6 @@
 #include "byre/slam/initialisation.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/mission_scene.h"
 
@@ -14,8 +15,6 @@ namespace {
 using ::testing::AnyOf;
 using ::testing::Each;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Rig one_camera() {
   Rig rig = simulated_rig();

@@ -1,5 +1,6 @@
 #include "byre/slam/map_from_poses.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/mission_scene.h"
 
@@ -15,8 +16,6 @@ using testing::Each;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
-
-constexpr double kDegree = 0.0174533;
 
 // Every frames_apart-th frame of a mission; 8 cm and 2 degrees a frame.
 std::vector<PosedFrame> posed_frames(const SimulatedMission& mission, std::size_t frames_apart) {

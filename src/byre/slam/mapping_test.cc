@@ -1,5 +1,6 @@
 #include "byre/slam/mapping.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/mission_scene.h"
@@ -16,7 +17,6 @@ using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr double kDegree = 0.0174533;
 constexpr KeyframeId kFirst{Origin::online, 0};
 constexpr KeyframeId kNewest{Origin::online, 19};
 

@@ -1,5 +1,6 @@
 #include "byre/slam/tracking.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/measurement.h"
 #include "byre/slam/mission_scene.h"
@@ -20,7 +21,6 @@ using ::testing::IsEmpty;
 using ::testing::Le;
 using ::testing::SizeIs;
 
-constexpr double kDegree = 0.0174533;
 constexpr std::size_t kFrame = 21;  // between two keyframes
 
 Pose displaced(const Pose& camera_from_world, const Eigen::Vector3d& metres, const Eigen::Vector3d& radians) {
