@@ -15,7 +15,9 @@ std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, con
   limit_image_threads(1);
   Extractor extractor(told_calibration(recording.calibration(), imperfection), {});
   const Degradation cameras = imperfect_cameras(imperfection);
+  const bool is_plain = map == nullptr;
   Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
+  if (is_plain) session.refine_calibration(told_calibration(recording.calibration(), imperfection), {});
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);

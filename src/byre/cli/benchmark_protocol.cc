@@ -30,7 +30,7 @@ Arm read_arm(const YamlValue& value) {
   const std::string text = value.text();
   const auto* const arm = std::ranges::find(kArms, text, [](Arm candidate) { return name_of(candidate); });
   if (arm != kArms.end()) return *arm;
-  value.fail("\"" + text + "\" is no arm", "use " + listed(kArms, name_of));
+  value.fail("\"" + text + "\" is no arm", "use " + listed(kArms, [](Arm known) { return name_of(known); }));
 }
 
 FrameRange read_frames(const YamlValue& value) {

@@ -36,8 +36,9 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   const std::vector<std::byte> bytes = read_file(options.map);
   const StoredMap stored = read_map(bytes, name);
   if (options.points) replace_file(*options.points, point_cloud(stored.map));
-  const auto print = options.json ? to_json : to_text;
-  result << print(stored, inspect(stored), {name, bytes.size(), section_sizes(bytes, name)});
+  const MapInspection inspection = inspect(stored);
+  const InspectedFile file{name, bytes.size(), section_sizes(bytes, name)};
+  result << (options.json ? to_json(stored, inspection, file) : to_text(stored, inspection, file));
   return ExitCode::done;
 }
 

@@ -81,8 +81,7 @@ ExitCode run_register(const RegisterCommandOptions& options, std::ostream& resul
   }
   RegisterProtocol protocol{options.map.string(), plan, is_kept ? options.output->string() : "", {}};
   if (options.fix_scale) protocol.scaled_by = registered.factor;
-  const auto print = options.json ? to_json : to_text;
-  result << print(registered.registering, protocol);
+  result << (options.json ? to_json(registered.registering, protocol) : to_text(registered.registering, protocol));
   if (options.output && !is_kept) refuse_to_write(fit, options);
   return ExitCode::done;
 }

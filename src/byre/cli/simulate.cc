@@ -79,7 +79,7 @@ ExitCode run_simulate(const SimulateOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   const Rendering rendering = render_cowshed(options.recording, options.output, interrupt, options.quiet);
   if (rendering.stopped) return ExitCode::interrupted;
-  result << (options.json ? to_json : to_text)(options, rendering);
+  result << (options.json ? to_json(options, rendering) : to_text(options, rendering));
   return ExitCode::done;
 }
 

@@ -63,7 +63,7 @@ TEST(FloorPlan, IsWithinACentimetreAndATenthOfADegreeFromSixExactPicksAndARealPa
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     FloorPlanScene scene(seed);
     const DrivingPlane plane =
-        fit_driving_plane(scene.path_in_map(3.0, 0.005), scene.up_of_rig_in_map(1.0 * kDegree, 3.0 * kDegreeOfPlan));
+        fit_driving_plane(scene.path_in_map(3.0, 0.005), scene.up_of_rig_in_map(1.0 * kDegree, 3.0 * kDegree));
     const auto fit = register_on_plan(scene.correspondences(6), plane, Scale::fixed);
     ASSERT_TRUE(fit.has_value());
     EXPECT_THAT(fit->registration.plan_from_map.target_from_source,

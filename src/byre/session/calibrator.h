@@ -26,7 +26,7 @@ class Calibrator {
   Frame corrected(const Frame& frame) const;
 
   // Whether a map of so many keyframes has grown enough since the last time for another look.
-  bool is_due(int keyframes) const { return keyframes >= (last_keyframes_ ? 2 * *last_keyframes_ : 20); }
+  bool is_due(int keyframes) const { return keyframes >= (last_keyframes_ ? 2 * *last_keyframes_ : 10); }
   // The same at the end, when there is no other time. A look that the end cut short has no result.
   bool is_worth_a_last_look(int keyframes) const {
     return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;

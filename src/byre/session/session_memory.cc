@@ -248,7 +248,8 @@ Health Session::health_of(const Frame& frame, const Located& located, const Matr
   evidence.maps_disagree = located.track && located.track->maps_disagree && !located.track->offline_stands;
   evidence.image_fault = image_fault(frame);
   evidence.input = input_;
-  evidence.is_miscalibrated = focal_check_.is_off();
+  const bool is_refused = calibrator_ && calibrator_->result() && calibrator_->result()->was_refused();
+  evidence.is_miscalibrated = focal_check_.is_off() || is_refused;
   health.focal_error = focal_check_.error();
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());

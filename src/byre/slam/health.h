@@ -87,7 +87,7 @@ struct HealthEvidence {
   bool maps_disagree = false;  // beyond what the uncertainties of both explain
   ImageFault image_fault = ImageFault::none;
   InputEvidence input{};
-  bool is_miscalibrated = false;  // see FocalCheck
+  bool is_miscalibrated = false;  // by FocalCheck; without an offline map by a self-calibration that was refused
 };
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose
