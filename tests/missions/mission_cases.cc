@@ -252,8 +252,9 @@ MissionCase told(MissionCase mission_case, const Lie& lie) {
   mission_case.name += std::string("lie_") + lie.name;
   mission_case.plan = lie.plan;
   mission_case.imperfection.focal_factor = lie.focal_factor;
-  const bool is_known_at_once = !(mission_case.map.is_absent && lie.doubt == Doubt::calibration);
-  mission_case.demand = {false, 0.0, true, is_known_at_once ? lie.doubt : std::nullopt};
+  const bool has_map = !mission_case.map.is_absent;
+  mission_case.demand = {.recovers = false, .is_never_wrong = has_map, .doubt = lie.doubt};
+  if (!has_map && lie.doubt == Doubt::calibration) mission_case.demand.doubt.reset();
   return mission_case;
 }
 

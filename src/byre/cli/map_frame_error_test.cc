@@ -7,7 +7,7 @@
 namespace byre::cli {
 namespace {
 
-Pose at(double x) {
+Pose pose_at_second(double x) {
   return {rotation_exp({0.0, 0.0, 0.1 * x}), {x, 0.1 * x * x, 0.0}};
 }
 
@@ -17,39 +17,39 @@ Map small_map(int keyframes) {
   for (int i = 0; i < keyframes; ++i) {
     Keyframe keyframe;
     keyframe.frame.time = from_seconds(i);
-    keyframe.camera_from_world = inverse(at(i));
+    keyframe.camera_from_world = inverse(pose_at_second(i));
     map.add_keyframe(keyframe);
   }
   return map;
 }
 
-const Pose kTruthFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
+const Pose kTurnedTruthFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
 
-Trajectory truth() {
+Trajectory true_path() {
   Trajectory result;
-  for (int i = 0; i < 9; ++i) result.push_back({from_seconds(0.5 * i), kTruthFromMap * at(0.5 * i)});
+  for (int i = 0; i < 9; ++i) result.push_back({from_seconds(0.5 * i), kTurnedTruthFromMap * pose_at_second(0.5 * i)});
   return result;
 }
 
 TEST(MapAlignment, RestsOnTheMapsKeyframes) {
-  const MapAlignment alignment = align_to_truth(small_map(4), Scale::fixed, truth());
+  const MapAlignment alignment = align_to_truth(small_map(4), Scale::fixed, true_path());
   EXPECT_EQ(alignment.poses, 4);
-  EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTruthFromMap).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTurnedTruthFromMap).norm(), 0.0, 1e-9);
 }
 
 TEST(MapAlignment, IsLeftOutWhereTheTruthCoversTooFewKeyframes) {
-  EXPECT_EQ(align_to_truth(small_map(2), Scale::fixed, truth()).poses, 0);
+  EXPECT_EQ(align_to_truth(small_map(2), Scale::fixed, true_path()).poses, 0);
   EXPECT_EQ(align_to_truth(small_map(4), Scale::fixed, {}).poses, 0);
 }
 
 TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
   Vector6 delta;
   delta << 0.01, -0.02, 0.03, 0.1, 0.2, -0.1;
-  const Trajectory estimate = {{from_seconds(0.5), at(0.5)},
-                               {from_seconds(1.0), at(1.0) * inverse(exp_pose(delta))},
-                               {from_seconds(60.0), at(2.0)}};
-  const MapAlignment alignment{{1.0, kTruthFromMap}, 4};
-  const std::vector<PoseError> errors = errors_in_map(estimate, truth(), alignment);
+  const Trajectory estimate = {{from_seconds(0.5), pose_at_second(0.5)},
+                               {from_seconds(1.0), pose_at_second(1.0) * inverse(exp_pose(delta))},
+                               {from_seconds(60.0), pose_at_second(2.0)}};
+  const MapAlignment alignment{{1.0, kTurnedTruthFromMap}, 4};
+  const std::vector<PoseError> errors = errors_in_map(estimate, true_path(), alignment);
   ASSERT_EQ(errors.size(), 2u) << "the last pose has no truth";
   EXPECT_NEAR(errors[0].delta.norm(), 0.0, 1e-9);
   EXPECT_EQ(errors[1].time, from_seconds(1.0));

@@ -44,7 +44,7 @@ MappedFrame tracked_frame(int number) {
 }
 
 // Four frames, the second of which could not be read.
-MapRun small_run() {
+MapRun small_map_run() {
   MapRun run;
   for (int i = 0; i < 4; ++i) run.frames.push_back(tracked_frame(i));
   run.frames[1].report.reset();
@@ -66,7 +66,7 @@ json stats_of(const MapRun& run, Pace pace = Pace::paced) {
 }
 
 TEST(MapJson, BeginsWithTheProtocol) {
-  const json protocol = stats_of(small_run()).at("protocol");
+  const json protocol = stats_of(small_map_run()).at("protocol");
   EXPECT_EQ(protocol.at("recording"), "MH_01_easy");
   EXPECT_EQ(protocol.at("format"), "euroc");
   EXPECT_EQ(protocol.at("pace"), "paced");
@@ -79,7 +79,7 @@ TEST(MapJson, BeginsWithTheProtocol) {
 }
 
 TEST(MapJson, CountsFramesAndWhatBecameOfThem) {
-  const json counts = stats_of(small_run()).at("counts");
+  const json counts = stats_of(small_map_run()).at("counts");
   EXPECT_EQ(counts.at("frames"), 4);
   EXPECT_EQ(counts.at("frames_with_pose"), 3);
   EXPECT_EQ(counts.at("coverage"), 0.75);
@@ -89,7 +89,7 @@ TEST(MapJson, CountsFramesAndWhatBecameOfThem) {
 }
 
 TEST(MapJson, SummarisesTimesInMilliseconds) {
-  const json stats = stats_of(small_run());
+  const json stats = stats_of(small_map_run());
   EXPECT_EQ(stats.at("frame_thread_ms").at("mean"), 11.667);
   EXPECT_EQ(stats.at("frame_thread_ms").at("max"), 13.0);
   EXPECT_EQ(stats.at("stages_ms").at("stereo").at("p99"), 2.0);
@@ -100,12 +100,12 @@ TEST(MapJson, SummarisesTimesInMilliseconds) {
 }
 
 TEST(MapJson, TellsFramesWithoutTheirJobsWhereTheseShareTheThread) {
-  EXPECT_EQ(stats_of(small_run(), Pace::same_thread).at("frame_thread_without_jobs_ms").at("max"), 12.0);
-  EXPECT_FALSE(stats_of(small_run()).contains("frame_thread_without_jobs_ms"));
+  EXPECT_EQ(stats_of(small_map_run(), Pace::same_thread).at("frame_thread_without_jobs_ms").at("max"), 12.0);
+  EXPECT_FALSE(stats_of(small_map_run()).contains("frame_thread_without_jobs_ms"));
 }
 
 TEST(MapJson, TellsLateFramesWhenLive) {
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   run.lateness = {0.002, 0.0405};
   EXPECT_EQ(stats_of(run, Pace::live).at("late"), (json{{"frames", 2}, {"max_ms", 40.5}}));
   EXPECT_FALSE(stats_of(run).contains("late"));
@@ -114,18 +114,18 @@ TEST(MapJson, TellsLateFramesWhenLive) {
 TEST(MapJson, TellsOfFinishingAndOfWhatWasExtended) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   run.finishing.emplace().report.loops = 0;
   const json stats = json::parse(to_json(run, protocol, {}));
   EXPECT_EQ(stats.at("finishing").at("cut_short"), false);
   EXPECT_EQ(stats.at("extension").at("frames_until_found"), 0);
   EXPECT_EQ(stats.at("extension").at("recordings"), (json{{{"name", "MH_01_easy"}, {"keyframes", 1}}}));
-  EXPECT_TRUE(stats_of(small_run()).at("finishing").is_null());
-  EXPECT_TRUE(stats_of(small_run()).at("extension").is_null());
+  EXPECT_TRUE(stats_of(small_map_run()).at("finishing").is_null());
+  EXPECT_TRUE(stats_of(small_map_run()).at("extension").is_null());
 }
 
 TEST(MapJson, HoldsEveryFrame) {
-  const json frames = stats_of(small_run()).at("frames");
+  const json frames = stats_of(small_map_run()).at("frames");
   ASSERT_EQ(frames.size(), 4u);
   const json& frame = frames[2];
   EXPECT_EQ(frame.at("time_s"), 0.1);
@@ -150,7 +150,7 @@ TEST(MapJson, HoldsEveryFrame) {
 }
 
 TEST(MapJson, HoldsHealthAndSmoothPoseOfEveryFrame) {
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   FrameReport& report = *run.frames[2].report;
   report.odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {0.0, 1.5, 0.0}};
   report.odometry_covariance(0, 1) = 0.125;
@@ -180,25 +180,25 @@ TEST(MapJson, TellsOfTheMissionAndHowFarEachPoseWasOff) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.offline = "barn.byre";
   protocol.options.session.map_online = false;
-  const json stats = json::parse(to_json(small_run(), protocol, {}, mission));
+  const json stats = json::parse(to_json(small_map_run(), protocol, {}, mission));
   EXPECT_EQ(stats.at("protocol").at("offline_map"), "barn.byre");
   EXPECT_EQ(stats.at("protocol").at("localise_only"), true);
   EXPECT_EQ(stats.at("mission").at("losses"), 3);
   EXPECT_EQ(stats.at("errors").at("causal").at("count"), 1);
   EXPECT_EQ(stats.at("frames")[2].at("error").at("position_m"), 1.0);
   EXPECT_FALSE(stats.at("frames")[3].contains("error"));
-  EXPECT_FALSE(stats_of(small_run()).contains("mission"));
+  EXPECT_FALSE(stats_of(small_map_run()).contains("mission"));
 }
 
 TEST(MapJson, KeepsAFrameThatCouldNotBeRead) {
-  const json frame = stats_of(small_run()).at("frames")[1];
+  const json frame = stats_of(small_map_run()).at("frames")[1];
   EXPECT_EQ(frame.at("state"), "unreadable");
   EXPECT_EQ(frame.at("time_s"), 0.05);
   EXPECT_FALSE(frame.contains("position_m"));
 }
 
 TEST(MapJson, ListsTheFirstTwentyWarnings) {
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   run.warnings.assign(45, "torn");
   const json warnings = stats_of(run).at("warnings");
   EXPECT_EQ(warnings.at("count"), 45);
@@ -214,7 +214,7 @@ TEST(MapJson, IsWholeForARunWithoutFrames) {
 }
 
 TEST(MapText, SumsTheRunUp) {
-  const std::string text = to_text(small_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
+  const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
   EXPECT_THAT(text, HasSubstr("map          1 keyframes, of 1 made; 1234 points\n"));
@@ -231,7 +231,7 @@ TEST(MapText, SumsTheRunUp) {
 }
 
 TEST(MapText, TellsWhatFinishingChanged) {
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;
   EXPECT_THAT(to_text(run, protocol_of(Pace::paced), {}, {}),
               HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
@@ -241,7 +241,7 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
   protocol.recordings = {"MH_01_easy", "MH_02_easy"};
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   Keyframe keyframe;
   keyframe.recording = 1;
   for (int i = 0; i < 2; ++i) run.map.add_keyframe(keyframe);
@@ -255,7 +255,7 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
 TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
   Mission mission;
   mission.statistics.seconds_to_first_pose = 0.1;
-  const std::string text = to_text(small_run(), protocol_of(Pace::paced), {}, {}, mission);
+  const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {}, {}, mission);
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
   EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
   EXPECT_THAT(text, HasSubstr("finishing    left out")) << "as of a map, for there is no offline one";
@@ -263,7 +263,7 @@ TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
 }
 
 TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {
-  MapRun run = small_run();
+  MapRun run = small_map_run();
   run.frames.pop_back();
   run.lateness = {0.0405};
   const std::string text = to_text(run, protocol_of(Pace::live), {}, {"out.txt"});

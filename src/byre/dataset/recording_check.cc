@@ -1,6 +1,7 @@
 #include "byre/dataset/recording_check.h"
 
 #include "byre/features/extract.h"
+#include "byre/features/stereo.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 
@@ -188,17 +189,17 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
 }
 
 void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
-  constexpr double kFewMatched = 0.12, kFarOffRow = 0.8, kFarOffCalibration = 0.5;
+  constexpr double kFarOffCalibration = 0.5;  // pixels
   if (check.without_right > check.looked_at / 20) {
     findings.push_back({false, formatted("%.0f frames have no right image", check.without_right),
                         "look for what drops them, or use one camera with --camera left"});
   }
   if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
-  if (check.pair->matched < kFewMatched) {
+  if (check.pair->matched < kLeastStereoShare) {
     findings.push_back(
         {true, formatted("only %.1f %% of the features are found in the right image", 100.0 * check.pair->matched),
          "left and right may be swapped, upside down or out of step, or the calibration another one's"});
-  } else if (check.pair->row_error > kFarOffRow) {
+  } else if (check.pair->row_error > kMostRowOffset) {
     findings.push_back({true, formatted("features of the right image lie %.2f px off their row", check.pair->row_error),
                         "the cameras are out of step, or one was moved since they were calibrated: see to the trigger, "
                         "then \"byre calibrate\""});

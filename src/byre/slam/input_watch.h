@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/features.h"
+#include "byre/features/stereo.h"
 
 #include <optional>
 
@@ -8,10 +9,10 @@ namespace byre {
 
 struct InputWatchOptions {
   ImageConditionOptions image;
-  int min_features = 100;      // of a frame whose pair is judged
-  double min_matched = 0.12;   // share of features found in the right image; usual are 0.4 and more
-  double max_row_error = 0.8;  // pixels, the median; worn calibrations leave up to 0.7
-  double memory = 0.7;         // of both, from frame to frame
+  int min_features = 100;  // of a frame whose pair is judged
+  double min_matched = kLeastStereoShare;
+  double max_row_error = kMostRowOffset;  // pixels
+  double memory = 0.7;                    // of both, from frame to frame
 };
 
 // What speaks against the images of a frame themselves.
