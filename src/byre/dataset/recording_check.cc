@@ -1,7 +1,7 @@
 #include "byre/dataset/recording_check.h"
 
 #include "byre/features/extract.h"
-#include "byre/features/stereo.h"
+#include "byre/features/stereo_fit.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 

@@ -17,11 +17,6 @@ struct StereoOptions {
   bool refine = true;               // else whole octave pixels, for comparison
 };
 
-// What a pair leaves whose images fit together: such a share of the features is found in the right image, usually 0.4
-// and more, and the median of their rows is off by no more; worn calibrations leave up to 0.7.
-inline constexpr double kLeastStereoShare = 0.12;
-inline constexpr double kMostRowOffset = 0.8;  // pixels
-
 struct StereoMatch {
   float disparity = 0.0f;   // full-resolution pixels
   float sigma = 0.0f;       // full-resolution pixels

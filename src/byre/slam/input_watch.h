@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/features/features.h"
-#include "byre/features/stereo.h"
+#include "byre/features/stereo_fit.h"
 
 #include <optional>
 
