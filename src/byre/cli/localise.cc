@@ -104,7 +104,9 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
   LocaliseHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
   hooks.after_frame = [&](int done, const LocalisedFrame& frame) {
-    progress.update(done, watch.seconds(), frame.world_from_body ? "found" : to_string(frame.localisation.failure));
+    const bool is_found = frame.world_from_body.has_value();
+    progress.update(done, watch.seconds(), is_found ? "found" : to_string(frame.localisation.failure),
+                    is_found ? Tone::good : Tone::bad);
   };
   LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
                               : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);

@@ -3,6 +3,7 @@
 #include "byre/cli/formatted.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <ostream>
 
 #include <unistd.h>
@@ -20,6 +21,31 @@ std::string bar(int done, int total) {
   return std::string(kBarWidth, '.').replace(0, filled, filled, '#');
 }
 
+std::string_view colour_of(Tone tone) {
+  switch (tone) {
+    case Tone::plain:
+      return "";
+    case Tone::good:
+      return "\x1b[32m";
+    case Tone::doubtful:
+      return "\x1b[33m";
+    case Tone::bad:
+      return "\x1b[31m";
+  }
+  return "";
+}
+
+std::string coloured(std::string_view state, Tone tone) {
+  if (tone == Tone::plain) return std::string(state);
+  return std::string(colour_of(tone)) + std::string(state) + "\x1b[0m";
+}
+
+bool has_colours() {
+  const char* const no_color = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  return (no_color == nullptr || *no_color == '\0') && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
 std::string describe(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
   std::string text = formatted("%d of %d %s", done, total, unit.c_str());
   if (elapsed_s > 0.0) {
@@ -33,22 +59,24 @@ std::string describe(int done, int total, const std::string& unit, double elapse
 
 ProgressStyle progress_style(bool quiet) {
   if (quiet) return ProgressStyle::none;
-  return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
+  if (isatty(STDERR_FILENO) == 0) return ProgressStyle::lines;
+  return has_colours() ? ProgressStyle::coloured_bar : ProgressStyle::bar;
 }
 
 bool Progress::is_due(int done, double elapsed_s) const {
   if (style_ == ProgressStyle::none) return false;
   if (shown_done_ == 0 || done == total_) return true;
   const double since_shown_s = elapsed_s - shown_elapsed_s_;
-  if (style_ == ProgressStyle::bar) return since_shown_s >= kBarInterval_s;
+  if (style_ != ProgressStyle::lines) return since_shown_s >= kBarInterval_s;
   const auto share = [this](int frames) { return static_cast<std::int64_t>(kLineShares) * frames / total_; };
   return share(done) > share(shown_done_) || since_shown_s >= kLineInterval_s;
 }
 
-void Progress::update(int done, double elapsed_s, std::string_view state) {
+void Progress::update(int done, double elapsed_s, std::string_view state, Tone tone) {
   if (!is_due(done, elapsed_s)) return;
-  const std::string text = describe(done, total_, unit_, elapsed_s, state);
-  if (style_ == ProgressStyle::bar) {
+  const std::string shown_state = style_ == ProgressStyle::coloured_bar ? coloured(state, tone) : std::string(state);
+  const std::string text = describe(done, total_, unit_, elapsed_s, shown_state);
+  if (style_ != ProgressStyle::lines) {
     constexpr const char* kCutAtEdge = "\x1b[?7l";
     constexpr const char* kWrapAtEdge = "\x1b[?7h";
     constexpr const char* kClearToEnd = "\x1b[K";
@@ -61,7 +89,7 @@ void Progress::update(int done, double elapsed_s, std::string_view state) {
 }
 
 void Progress::close() {
-  if (style_ == ProgressStyle::bar && shown_done_ > 0) stream_ << std::endl;
+  if (style_ != ProgressStyle::lines && shown_done_ > 0) stream_ << std::endl;
   shown_done_ = 0;
 }
 

@@ -8,11 +8,15 @@
 
 namespace byre::cli {
 
-//   bar    one line, drawn again and again: for a terminal
-//   lines  a line every tenth of the work or ten seconds: for a log
-enum class ProgressStyle : std::uint8_t { none, bar, lines };
+//   bar           one line, drawn again and again: for a terminal
+//   coloured_bar  the same, with the state in a colour by how good it is
+//   lines         a line every tenth of the work or ten seconds: for a log
+enum class ProgressStyle : std::uint8_t { none, bar, coloured_bar, lines };
 
-// What suits the standard error stream.
+// How good a state is, where that can be said: on a terminal green, yellow and red.
+enum class Tone : std::uint8_t { plain, good, doubtful, bad };
+
+// What suits the standard error stream. Without colours where NO_COLOR is set (no-color.org) or the terminal has none.
 ProgressStyle progress_style(bool quiet);
 
 // Tells how far the frames, or other things, are, how fast they go, and for how long they still will.
@@ -23,7 +27,7 @@ class Progress {
       : stream_(stream), style_(style), total_(total), unit_(std::move(unit)) {}
 
   // After each one: how many are done, in how many seconds, and what state the last one left.
-  void update(int done, double elapsed_s, std::string_view state);
+  void update(int done, double elapsed_s, std::string_view state, Tone tone = Tone::plain);
 
   // Leaves the bar standing; call it before anything else is printed.
   void close();

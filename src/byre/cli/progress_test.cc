@@ -42,6 +42,21 @@ TEST(Progress, RedrawsTheBarInOneLine) {
       EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\x1b[?7h\n"));
 }
 
+std::string end_of_bar(ProgressStyle style, Tone tone) {
+  std::ostringstream stream;
+  Progress progress(stream, style, 1);
+  progress.update(1, 1.0, "tracking", tone);
+  return stream.str();
+}
+
+TEST(Progress, ColoursTheStateByHowGoodItIsWhereThereAreColours) {
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::good), HasSubstr(", \x1b[32mtracking\x1b[0m\x1b[K"));
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::doubtful), HasSubstr(", \x1b[33mtracking\x1b[0m"));
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::bad), HasSubstr(", \x1b[31mtracking\x1b[0m"));
+  EXPECT_EQ(end_of_bar(ProgressStyle::coloured_bar, Tone::plain), end_of_bar(ProgressStyle::bar, Tone::bad));
+  EXPECT_EQ(end_of_bar(ProgressStyle::lines, Tone::bad), "1 of 1 frames, 1.0 frames/s, 0:00 left, tracking\n");
+}
+
 TEST(Progress, IsSilentWhenToldSo) {
   EXPECT_EQ(shown(ProgressStyle::none, 100, 1.0), "");
 }

@@ -18,6 +18,20 @@ std::string state_after(const MappedFrame& frame, bool is_mission) {
   return state + formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
 }
 
+Tone tone_after(const MappedFrame& frame, bool is_mission) {
+  if (!frame.report) return Tone::bad;
+  if (!is_mission) return Tone::plain;
+  switch (frame.report->health.verdict) {
+    case Verdict::trusted:
+      return Tone::good;
+    case Verdict::degraded:
+      return Tone::doubtful;
+    case Verdict::untrusted:
+      return Tone::bad;
+  }
+  return Tone::plain;
+}
+
 }  // namespace
 
 MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
@@ -31,7 +45,8 @@ MapRun run_with_progress(Recording& recording, const MapRunOptions& options, con
   hooks.offer_map = more_hooks.offer_map;
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
-    progress.update(done, watch.seconds(), state_after(frame, options.offline != nullptr));
+    const bool is_mission = options.offline != nullptr;
+    progress.update(done, watch.seconds(), state_after(frame, is_mission), tone_after(frame, is_mission));
   };
   hooks.before_finishing_step = [&progress, &finishing](const char* step) {
     progress.close();
