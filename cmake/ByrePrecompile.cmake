@@ -1,12 +1,7 @@
-# Precompiled headers of the libraries that most files of the rooms include, and files compiled several at a time. They
-# make a build from scratch faster by half, but compiler caches can do little with them, and a file that lacks an
-# include compiles all the same: for servers that build anew each time, not for daily work. Commands have no precompiled
-# header: theirs would be so large that loading it takes longer. Names in unnamed namespaces must differ within a room.
-option(BYRE_PRECOMPILE "Precompile headers, compile files together: faster where no compiler cache is at hand" OFF)
-if(BYRE_PRECOMPILE)
-  set(CMAKE_UNITY_BUILD ON)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
-endif()
+# Precompiled headers of the libraries that most files of the rooms include. They make a build from scratch faster, but
+# compiler caches can do little with them, and a file that lacks an include compiles all the same: for servers that
+# build anew each time, not for daily work. Commands have none: theirs would be so large that loading it takes longer.
+option(BYRE_PRECOMPILE "Precompile headers: faster where no compiler cache is at hand" OFF)
 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
     <optional> <random> <string> <string_view> <utility> <vector> <Eigen/Dense>)

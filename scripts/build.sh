@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, configures a preset of CMakePresets.json and builds it.
 # Usage: build.sh [PRESET [TARGET...]]       release and everything unless given
-# With BYRE_PRECOMPILE=ON in the environment a build from scratch takes half the time, see cmake/ByrePrecompile.cmake.
+# With BYRE_PRECOMPILE=ON in the environment headers are precompiled, see cmake/ByrePrecompile.cmake.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
