@@ -1,6 +1,6 @@
 // What a person does with the viewer, done by a browser. Screenshots stay in the folder "screenshots".
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, rmSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
 import { eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
@@ -216,6 +216,7 @@ describe("Picking", () => {
   });
 
   test("a wrong place is saved only when somebody who was told how wrong wants it", async () => {
+    rmSync("wrong-plan.byre", { force: true });
     const plan = writePlan("room-plan");
     const page = await openMap({}, "--plan", plan.file, "-o", "wrong-plan.byre");
     const canvas = await page.locator("canvas.plan").boundingBox();
