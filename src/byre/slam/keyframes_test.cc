@@ -180,6 +180,7 @@ class ManyMeasurementsOfOnePoint : public ::testing::Test {
     std::mt19937_64 random(5);
     std::normal_distribution<double> noise;
     Keypoint keypoint;
+    keypoint.pixel = true_pixel.head<2>().cast<float>();
     keypoint.octave = 2;
     keypoint.disparity_sigma = 0.4f;
     const double sigma = reference_sigma(Features(rig.width, rig.height, {keypoint}, {{}}, {}), 0);
