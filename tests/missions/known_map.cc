@@ -60,18 +60,25 @@ class MapFrames {
   Extractor extractor_;
 };
 
-Map map_by_session(Recording& recording, const Imperfection& imperfection) {
+// A map, and what making it told of the calibration.
+struct MadeMap {
+  Map map;
+  std::optional<RefinedCalibration> refined{};
+};
+
+MadeMap map_by_session(Recording& recording, const Imperfection& imperfection) {
   MapFrames frames(recording, imperfection);
   Session session(frames.rig(), {}, make_inline_executor(), mission_vocabulary());
+  session.refine_calibration(told_calibration(recording.calibration(), imperfection), {});
   for (int i = 0; i < recording.size(); ++i) {
     if (const auto frame = frames.read(i)) session.process(*frame);
   }
   session.finish();
   session.finish_map({}, {[] { return false; }, [](const char*) {}});
-  return session.map().online();
+  return {session.map().online(), session.self_calibration()};
 }
 
-Map map_by_true_poses(Recording& recording, const Trajectory& truth, const Imperfection& imperfection) {
+MadeMap map_by_true_poses(Recording& recording, const Trajectory& truth, const Imperfection& imperfection) {
   MapFrames frames(recording, imperfection);
   std::vector<PosedFrame> posed;
   for (int i = 0; i < recording.size(); ++i) {
@@ -79,7 +86,7 @@ Map map_by_true_poses(Recording& recording, const Trajectory& truth, const Imper
     const auto world_from_body = frame ? pose_at(truth, frame->time, std::chrono::milliseconds(60)) : std::nullopt;
     if (world_from_body) posed.push_back({*frame, inverse(*world_from_body * frames.rig().body_from_camera)});
   }
-  return map_from_poses({frames.rig()}, posed, {});
+  return {map_from_poses({frames.rig()}, posed, {})};
 }
 
 fs::path cache_file(const MapRecipe& recipe) {
@@ -90,12 +97,14 @@ StoredMap make_map(const MapRecipe& recipe) {
   const fs::path folder = folder_of(recipe.recording);
   const auto recording = open_recording(folder, recipe.range);
   StoredMap stored;
-  stored.map = offline_copy(recipe.from_true_poses
-                                ? map_by_true_poses(*recording, truth_of(recipe.recording), recipe.imperfection)
-                                : map_by_session(*recording, recipe.imperfection));
+  const MadeMap made = recipe.from_true_poses
+                           ? map_by_true_poses(*recording, truth_of(recipe.recording), recipe.imperfection)
+                           : map_by_session(*recording, recipe.imperfection);
+  stored.map = offline_copy(made.map);
   stored.pose_source = recipe.from_true_poses ? PoseSource::given : PoseSource::slam;
   const Calibration told = told_calibration(recording->calibration(), recipe.imperfection);
-  stored.recordings = {{folder.filename().string(), told, recording->times().front(), recording->times().back()}};
+  stored.recordings = {
+      {folder.filename().string(), told, recording->times().front(), recording->times().back(), made.refined}};
   add_words(stored, mission_vocabulary());
   return stored;
 }
@@ -130,6 +139,11 @@ Similarity align_to_truth(const Map& map, const Trajectory& truth) {
   const auto error = absolute_trajectory_error(associate(keyframes, truth, {}), Scale::fixed);
   if (!error) throw InputError("map", "cannot be aligned to the truth of its recording");
   return error->truth_from_estimate;
+}
+
+KnownMap with(Map map, const KnownMap& known) {
+  return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary(), known.map->recordings()),
+          known.truth_from_map};
 }
 
 }  // namespace
@@ -168,7 +182,8 @@ const Vocabulary& mission_vocabulary() {
 KnownMap make_known_map(const MapRecipe& recipe) {
   StoredMap stored = load_or_make(recipe);
   const Similarity truth_from_map = align_to_truth(stored.map, truth_of(recipe.recording));
-  return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary()), truth_from_map};
+  return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary(), std::move(stored.recordings)),
+          truth_from_map};
 }
 
 KnownMap without_stretch(const KnownMap& known, Timestamp from, Timestamp to) {
@@ -188,7 +203,7 @@ KnownMap without_stretch(const KnownMap& known, Timestamp from, Timestamp to) {
   for (const KeyframeId id : keyframes) {
     if (is_in_stretch(id)) map.remove_keyframe(id);
   }
-  return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary()), known.truth_from_map};
+  return with(std::move(map), known);
 }
 
 KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed) {
@@ -198,7 +213,7 @@ KnownMap without_points(const KnownMap& known, double share, std::uint64_t seed)
   for (const PointId id : map.point_ids()) {
     if (any(random) < share) map.remove_point(id);
   }
-  return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary()), known.truth_from_map};
+  return with(std::move(map), known);
 }
 
 }  // namespace byre

@@ -10,14 +10,16 @@
 namespace byre {
 namespace {
 
+// By the refined calibration of the map where that was made with the one that is told, as "byre run" does it.
 std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Imperfection& imperfection,
                               const Trajectory& truth, std::shared_ptr<const OfflineMap> map) {
   limit_image_threads(1);
-  Extractor extractor(told_calibration(recording.calibration(), imperfection), {});
+  const Calibration told = told_calibration(recording.calibration(), imperfection);
+  const auto known = map ? known_calibration(map->recordings(), told) : std::nullopt;
+  Extractor extractor(known ? known->calibration : told, {});
   const Degradation cameras = imperfect_cameras(imperfection);
-  const bool is_plain = map == nullptr;
   Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
-  if (is_plain) session.refine_calibration(told_calibration(recording.calibration(), imperfection), {});
+  if (!known) session.refine_calibration(told, {});
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);

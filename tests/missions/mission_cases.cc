@@ -241,13 +241,13 @@ std::vector<Lie> lies() {
           {"focal_10_percent_short", as_recorded, Doubt::calibration, 0.9}};
 }
 
-// Without points of a map nothing tells of a wrong focal length at once.
 MissionCase without_map(MissionCase mission_case) {
   mission_case.name += "plain_";
   mission_case.map.is_absent = true;
   return mission_case;
 }
 
+// Without points of a map nothing tells of a wrong focal length at once.
 MissionCase told(MissionCase mission_case, const Lie& lie) {
   mission_case.name += std::string("lie_") + lie.name;
   mission_case.plan = lie.plan;
