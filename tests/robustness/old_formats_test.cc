@@ -32,5 +32,22 @@ TEST(OldFormats, SecondIsReadAndWrittenTheSame) {
   EXPECT_EQ(write_map(stored), read_file(kFormats / "format_2.byre"));
 }
 
+TEST(OldFormats, ThirdIsReadAndWrittenTheSame) {
+  const StoredMap stored = load_map(kFormats / "format_3.byre");
+  EXPECT_THAT(find_faults(stored), IsEmpty());
+  ASSERT_TRUE(stored.recordings.at(0).refined.has_value());
+  EXPECT_EQ(stored.recordings.at(0).refined->keyframes, 41);
+  EXPECT_EQ(stored.recordings.at(0).refined->shift, 0.25);
+  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_3.byre"));
+}
+
+TEST(OldFormats, FourthIsReadAndWrittenTheSame) {
+  const StoredMap stored = load_map(kFormats / "format_4.byre");
+  EXPECT_THAT(find_faults(stored), IsEmpty());
+  EXPECT_EQ(stored.recordings.at(0).calibration.readout_time, 0.0);
+  EXPECT_EQ(stored.recordings.at(0).present_calibration().readout_time, 0.021);
+  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_4.byre"));
+}
+
 }  // namespace
 }  // namespace byre

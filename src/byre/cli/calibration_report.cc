@@ -40,10 +40,8 @@ std::string left_as_given(const std::vector<Row>& rows) {
   return names;
 }
 
-}  // namespace
-
-std::string describe_calibration(const RefinedCalibration& refined) {
-  if (refined.keyframes == 0) return "as given, but for the length of the baseline";
+std::string describe_optics(const RefinedCalibration& refined) {
+  if (refined.keyframes == 0) return "as given, but for the length of the baseline or the shutter";
   if (refined.was_refused()) {
     return formatted("as given, though what %d keyframes saw is off it by %.2f px on the whole", refined.keyframes,
                      refined.shift);
@@ -52,6 +50,15 @@ std::string describe_calibration(const RefinedCalibration& refined) {
   const std::string open = left_as_given(rows_of(refined));
   return formatted("refined from %d keyframes, by %.2f px on the whole", refined.keyframes, refined.shift) +
          (open.empty() ? "" : "; left as given: " + open);
+}
+
+}  // namespace
+
+std::string describe_calibration(const RefinedCalibration& refined) {
+  constexpr double kMilliseconds = 1e3;
+  const double readout_time = refined.calibration.readout_time;
+  return describe_optics(refined) +
+         (readout_time == 0.0 ? "" : formatted("; rolling shutter, %.1f ms an image", kMilliseconds * readout_time));
 }
 
 std::string calibration_row(const std::optional<RefinedCalibration>& refined) {
@@ -93,7 +100,8 @@ nlohmann::ordered_json calibration_json(const RefinedCalibration& refined) {
                           {"sigma_after", row.sigma_after},
                           {"determined", row.is_determined()}});
   }
-  return {{"keyframes", refined.keyframes},
+  return {{"readout_time_s", refined.calibration.readout_time},
+          {"keyframes", refined.keyframes},
           {"observations", refined.observations},
           {"shift_px", refined.shift},
           {"refused", refined.was_refused()},

@@ -29,11 +29,14 @@ Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
 // Extracts, tracks and maps, and notes what each took.
 class FrameThread {
  public:
-  FrameThread(const Calibration& calibration, const MapRunOptions& options, std::optional<Map> before)
-      : extractor_(calibration, options.extract),
+  // known: by the offline map, so that only its readout time is refined.
+  FrameThread(const Calibration& given, const std::optional<RefinedCalibration>& known, const MapRunOptions& options,
+              std::optional<Map> before)
+      : extractor_(known ? known->calibration : given, options.extract),
         session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
                  options.vocabulary, options.offline) {
-    if (options.self_calibrate && !before) session_.refine_calibration(calibration, options.self_calibration);
+    if (options.self_calibrate) session_.refine_readout(known.value_or(RefinedCalibration{given}));
+    if (options.self_calibrate && !known && !before) session_.refine_calibration(given, options.self_calibration);
     if (before) session_.continue_map(std::move(*before));
   }
 
@@ -139,18 +142,12 @@ std::string_view name_of(OfflinePolicy policy) {
   return "";
 }
 
-// A calibration that the map has refined is as good as it gets.
-MapRunOptions refining(MapRunOptions options, bool is_to_refine) {
-  options.self_calibrate &= is_to_refine;
-  return options;
-}
-
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
   const Stopwatch watch;
   const Calibration given = options.calibration.value_or(recording.calibration());
   const auto known = options.offline ? known_calibration(options.offline->recordings(), given) : std::nullopt;
-  FrameThread thread(known ? known->calibration : given, refining(options, !known), std::move(before));
+  FrameThread thread(given, known, options, std::move(before));
   DecodeAhead decoder(recording);
   LiveClock clock;
   MapRun run;

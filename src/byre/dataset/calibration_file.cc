@@ -14,13 +14,17 @@ namespace {
 namespace fs = std::filesystem;
 
 Calibration one_camera(const Camera& camera, const CalibrationFields& fields) {
-  return {camera, std::nullopt, fields.has("T_BS") ? fields.pose("T_BS") : Pose{}};
+  return {.left = camera,
+          .right = std::nullopt,
+          .body_from_left = fields.has("T_BS") ? fields.pose("T_BS") : Pose{},
+          .readout_time = read_readout_time(fields, camera)};
 }
 
 Calibration kalibr_chain(const CalibrationFields& chain) {
   const CalibrationFields first = chain.group("cam0");
   Calibration calibration;
   calibration.left = read_camera_fields(first, "distortion_coeffs");
+  calibration.readout_time = read_readout_time(first, calibration.left);
   if (first.has("T_cam_imu")) calibration.body_from_left = inverse(first.pose("T_cam_imu"));
   if (!chain.has("cam1")) return calibration;
   const CalibrationFields second = chain.group("cam1");
@@ -102,6 +106,7 @@ std::string write_calibration(const Calibration& calibration) {
   yaml << YAML::BeginMap << YAML::Key << "cam0" << YAML::Value << YAML::BeginMap;
   write_camera(yaml, calibration.left);
   write_pose(yaml, "T_cam_imu", inverse(calibration.body_from_left));
+  if (calibration.readout_time != 0.0) yaml << YAML::Key << "readout_time" << YAML::Value << calibration.readout_time;
   yaml << YAML::EndMap;
   if (calibration.right) {
     yaml << YAML::Key << "cam1" << YAML::Value << YAML::BeginMap;

@@ -13,7 +13,9 @@ namespace byre {
 //   OpenCV, ROS        camera_matrix, distortion_coefficients, likewise with T_BS
 //   Kalibr camchain    cam0 and perhaps cam1, with T_cn_cnm1 (this camera from the one before) and perhaps T_cam_imu,
 //                      whose inverse is body from camera; cameras after the second are left out
-// Throws InputError naming the field for a model that is not supported, and for what is missing or makes no sense.
+// Each camera (the first of a chain) may tell its rolling shutter: readout_time, or line_delay as Kalibr has it;
+// seconds, of all rows and of one. Throws InputError naming the field for a model that is not supported, and for what
+// is missing or makes no sense.
 Calibration read_calibration(const std::filesystem::path& path);
 
 // The text of such a file, as Kalibr has it: read again, it gives the same calibration to the last digit but for

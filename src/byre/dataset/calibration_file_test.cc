@@ -154,6 +154,15 @@ TEST_F(CalibrationFile, OfEurocMayLackTheBody) {
   EXPECT_EQ(read(kSensor + body).body_from_left.translation.x(), 0.5);
 }
 
+TEST_F(CalibrationFile, TellsHowLongARollingShutterTakes) {
+  EXPECT_EQ(read(kSensor).readout_time, 0.0);
+  EXPECT_EQ(read(kSensor + "readout_time: 0.015\n").readout_time, 0.015);
+  EXPECT_NEAR(read(kKalibr, "cam_overlaps: [1]", "line_delay: 2.5e-5").readout_time, 480 * 2.5e-5, 1e-12);
+  EXPECT_EQ(read(kRos + "readout_time: -0.02\n").readout_time, -0.02);
+  EXPECT_THAT(error(kSensor + "readout_time: 15\n", "", ""), HasSubstr("camera.yaml: readout_time: is not a time"));
+  EXPECT_THAT(error(kSensor + "readout_time: nan\n", "", ""), HasSubstr("readout_time"));
+}
+
 TEST_F(CalibrationFile, NamesTheModelThatIsNotSupportedAndThoseThatAre) {
   for (const char* const model : {"omni", "eucm", "ds"}) {
     EXPECT_THAT(error(kKalibr, "camera_model: pinhole", std::string("camera_model: ") + model),
@@ -213,9 +222,11 @@ TEST_F(CalibrationFile, IsReadAsItWasWritten) {
       StereoPartner{{CameraModel::equidistant, 752, 480, 457.6, 456.1, 380.0, 255.2, {0.1, 0.02, -0.003, 4e-4, 0.0}},
                     {rotation_exp({0.01, -0.02, 0.003}), {-0.11, 0.0004, -0.0008}}};
   calibration.body_from_left = {rotation_exp({0.1, 1.2, -0.5}), {-0.02, -0.06, 0.01}};
+  calibration.readout_time = 0.0213;
   write("camera.yaml", write_calibration(calibration));
   const Calibration read = read_calibration(folder_ / "camera.yaml");
   EXPECT_EQ(read.left, calibration.left);
+  EXPECT_EQ(read.readout_time, calibration.readout_time);
   ASSERT_TRUE(read.right);
   EXPECT_EQ(read.right->camera, calibration.right->camera);
   EXPECT_THAT(read.right->right_from_left, PoseNear(calibration.right->right_from_left, 1e-12, 1e-12));

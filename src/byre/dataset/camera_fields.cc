@@ -1,8 +1,12 @@
 #include "byre/dataset/camera_fields.h"
 
 #include "byre/input/input_error.h"
+#include "byre/input/text_file.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -118,6 +122,18 @@ Camera read_opencv_camera(const CalibrationFields& fields) {
   read_camera_matrix(fields, camera);
   if (camera.model != CameraModel::pinhole) read_opencv_distortion(fields, camera);
   return camera;
+}
+
+double read_readout_time(const CalibrationFields& fields, const Camera& camera) {
+  constexpr double kLongest = 1.0;  // seconds
+  for (const auto& [field, unit] : {std::pair("readout_time", 1.0), std::pair("line_delay", 1.0 * camera.height)}) {
+    if (!fields.has(field)) continue;
+    const std::optional<double> number = parse_number(fields.word(field));
+    if (number && std::abs(*number * unit) <= kLongest) return *number * unit;
+    throw InputError(fields.place(field), "is not a time in which an image is read",
+                     "give seconds (of a row: line_delay; of all rows: readout_time)");
+  }
+  return 0.0;
 }
 
 }  // namespace byre

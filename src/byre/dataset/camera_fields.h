@@ -16,6 +16,10 @@ Camera read_camera_fields(const CalibrationFields& fields, const std::string& co
 // distortion_coefficients, an equidistant lens where distortion_model or fisheye_model says so. Throws likewise.
 Camera read_opencv_camera(const CalibrationFields& fields);
 
+// How long a rolling shutter takes to read an image, seconds: readout_time, or rows times line_delay as Kalibr has it;
+// zero where neither is told. Throws InputError, naming the field, for more than a second.
+double read_readout_time(const CalibrationFields& fields, const Camera& camera);
+
 // Throws InputError, naming the place, for focal lengths that are not positive or a principal point outside the image.
 void require_sense(const Camera& camera, const std::string& place);
 

@@ -47,6 +47,7 @@ PlacedCalibration read_sensors(const fs::path& mav, bool has_right) {
   PlacedCalibration calibration{{left.camera, std::nullopt, left.body_from_camera},
                                 left_file.string() + ": resolution",
                                 right_file.string() + ": resolution"};
+  calibration.cameras.readout_time = left.readout_time;
   if (has_right) calibration.cameras.right = read_partner(left, right_file);
   return calibration;
 }

@@ -8,7 +8,8 @@ namespace byre {
 
 struct EurocSensor {
   Camera camera;
-  Pose body_from_camera;  // T_BS
+  Pose body_from_camera;      // T_BS
+  double readout_time = 0.0;  // seconds, see Calibration
 };
 
 // Reads a camera's sensor.yaml. Throws InputError naming the field that is missing or makes no sense: a T_BS that is

@@ -118,6 +118,7 @@ struct Extractor::State {
   Described describe_all();
   void match_right(const cv::Mat& rectified, std::vector<Keypoint>& keypoints);
   void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
+  void time_rows(std::vector<Keypoint>& keypoints) const;
 };
 
 void Extractor::State::describe_octave(int octave, int quota, Described& described) {
@@ -170,6 +171,13 @@ void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint
   take_over(depth->read(image, keypoints, options.depth), keypoints);
 }
 
+void Extractor::State::time_rows(std::vector<Keypoint>& keypoints) const {
+  const auto height = static_cast<float>(calibration.left.height);
+  for (Keypoint& keypoint : keypoints) {
+    keypoint.row_time = (rectifier.source_row(keypoint.pixel) + 0.5f) / height - 0.5f;
+  }
+}
+
 std::string_view name_of(Refinement refinement) {
   switch (refinement) {
     case Refinement::none:
@@ -217,6 +225,7 @@ Extraction Extractor::extract(const ImageFrame& images) {
     state_->match_right(exposed_as_left(right, *frame.condition, *frame.right_condition), described.keypoints);
   }
   if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
+  state_->time_rows(described.keypoints);
   frame.features =
       std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
                                        std::move(described.descriptors), std::move(described.patches));

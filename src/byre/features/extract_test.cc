@@ -74,6 +74,15 @@ TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
   for (int i = 0; i < features.size(); ++i) EXPECT_NE(features.find_patch(i), nullptr);
 }
 
+TEST(Extractor, TellsWhenTheRowOfAKeypointWasRead) {
+  Extractor extractor(ideal_pair(), {});
+  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  const auto height = static_cast<float>(ideal_pair().left.height);
+  for (const Keypoint& keypoint : extraction.frame.features->keypoints()) {
+    EXPECT_NEAR(keypoint.row_time, (keypoint.pixel.y() + 0.5f) / height - 0.5f, 1e-6f);
+  }
+}
+
 TEST(Extractor, TellsTheConditionOfTheLeftImage) {
   ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});

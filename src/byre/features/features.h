@@ -33,6 +33,7 @@ struct Keypoint {
   float row_offset = 0.0f;        // where it was matched: the right row less the left one, zero if all is calibrated
   float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
   float response = 0.0f;          // corner strength, larger is better
+  float row_time = 0.0f;          // when its row was read, from the middle row on: -0.5 to 0.5 times the readout time
   std::uint8_t octave = 0;
 
   bool has_disparity() const { return disparity > 0.0f; }

@@ -36,4 +36,10 @@ Rectifier::Rectifier(const Calibration& calibration) {
   if (calibration.right) right_ = make_maps(calibration.right->camera, rectification.right_from_rectified, rig_);
 }
 
+float Rectifier::source_row(const Eigen::Vector2f& rectified) const {
+  if (left_.whole.empty()) return rectified.y();
+  const auto row = static_cast<int>(rectified.y()), column = static_cast<int>(rectified.x());
+  return left_.whole.at<cv::Vec2s>(row, column)[1];
+}
+
 }  // namespace byre

@@ -22,6 +22,10 @@ class Rectifier {
   cv::Mat left(const cv::Mat& image) const { return left_.apply(image); }
   cv::Mat right(const cv::Mat& image) const { return right_.apply(image); }  // precondition: there is a right camera
 
+  // The row of the left image, as it was taken, that a pixel of the rectified one comes from; to a pixel.
+  // Precondition: the pixel is in the image.
+  float source_row(const Eigen::Vector2f& rectified) const;
+
  private:
   struct Maps {
     cv::Mat whole;              // integer part of the source pixel

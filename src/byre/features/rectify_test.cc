@@ -187,6 +187,20 @@ TEST_P(RectifyDistorted, HasAnOriginalPixelForEachOfTheRig) {
   }
 }
 
+TEST_P(RectifyDistorted, TellsTheRowThatAPixelComesFrom) {
+  const Calibration calibration = GetParam().calibration;
+  const Rectifier rectifier(calibration);
+  const Rig& rig = rectifier.rig();
+  const Pose left_from_rectified = inverse(calibration.body_from_left) * rig.body_from_camera;
+  for (int v = 5; v < rig.height; v += 37) {
+    for (int u = 5; u < rig.width; u += 41) {
+      const auto source = calibration.left.project(left_from_rectified.rotation * rig.ray({u, v}));
+      ASSERT_TRUE(source);
+      EXPECT_NEAR(rectifier.source_row(Eigen::Vector2i(u, v).cast<float>()), source->y(), 1.01);
+    }
+  }
+}
+
 TEST_P(RectifyDistorted, KeepsTheSizeTheLeftCentreAndTheBaseline) {
   const Calibration calibration = GetParam().calibration;
   const Rig rig = Rectifier(calibration).rig();

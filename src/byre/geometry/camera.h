@@ -58,6 +58,9 @@ struct Calibration {
   std::optional<StereoPartner> right;
   Pose body_from_left;  // identity where the recording knows no body
   std::optional<DepthCamera> depth{};
+  // Seconds in which a rolling shutter reads the rows of an image, the first one first (negative: the last one first);
+  // a time stamp is the middle row's. Zero: all rows are exposed at once.
+  double readout_time = 0.0;
 
   bool tells_metres() const { return right.has_value() || depth.has_value(); }
 

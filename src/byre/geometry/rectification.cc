@@ -137,7 +137,14 @@ Rectification rectification_of(const Calibration& calibration) {
   }
   Rectification result;
   if (is_rectified(calibration)) {
-    result.rig = {left.width, left.height, left.fx, left.cx, left.cy, baseline, calibration.body_from_left};
+    result.rig = {left.width,
+                  left.height,
+                  left.fx,
+                  left.cx,
+                  left.cy,
+                  baseline,
+                  calibration.body_from_left,
+                  calibration.readout_time};
     result.is_identity = true;
     return result;
   }
@@ -152,6 +159,7 @@ Rectification rectification_of(const Calibration& calibration) {
   }
   result.rig = rig_of_field(field, left);
   result.rig.baseline = baseline;
+  result.rig.readout_time = calibration.readout_time;
   result.rig.body_from_camera = calibration.body_from_left * Pose{turned_left.conjugate(), Eigen::Vector3d::Zero()};
   result.left_from_rectified = turned_left.conjugate();
   result.right_from_rectified = turned_right.conjugate();

@@ -16,13 +16,14 @@ using StereoJacobian = Eigen::Matrix3d;
 // The ideal camera that features live in: rectified, without distortion, one focal length, rows aligned.
 // Camera frame: x right, y down, z forward, at the left camera.
 struct Rig {
-  int width = 0;          // pixels
-  int height = 0;         // pixels
-  double focal = 0.0;     // pixels
-  double cx = 0.0;        // pixels, the same in both images
-  double cy = 0.0;        // pixels
-  double baseline = 0.0;  // metres, zero for a monocular rig; with a depth camera that of an imagined pair
-  Pose body_from_camera;  // identity where the recording knows no body
+  int width = 0;              // pixels
+  int height = 0;             // pixels
+  double focal = 0.0;         // pixels
+  double cx = 0.0;            // pixels, the same in both images
+  double cy = 0.0;            // pixels
+  double baseline = 0.0;      // metres, zero for a monocular rig; with a depth camera that of an imagined pair
+  Pose body_from_camera;      // identity where the recording knows no body
+  double readout_time = 0.0;  // seconds, of the images it is made from, see Calibration
 
   bool is_stereo() const { return baseline > 0.0; }
 

@@ -6,7 +6,7 @@ namespace {
 // A map keeps nothing of a depth camera, and one camera may be the left one of a pair.
 bool is_of_these_cameras(const Calibration& known, const Calibration& given) {
   return known.left == given.left && known.body_from_left == given.body_from_left &&
-         (!given.right || known.right == given.right);
+         known.readout_time == given.readout_time && (!given.right || known.right == given.right);
 }
 
 }  // namespace

@@ -122,6 +122,9 @@ class Map {
   // What was seen through a rig, as another calibration of the same camera has it: features, sightings and poses of its
   // keyframes, and the rig itself. Points stay where they are.
   void recalibrate(int rig, const RectifiedChange& change);
+  // What a keyframe saw, found to lie a little elsewhere in the image; its sightings move along. Points stay where they
+  // are. Precondition: the keyframe's own features, moved.
+  void move_features(KeyframeId id, Features moved);
   int rig_of(KeyframeId id) const;  // index into rigs(), of a removed keyframe too. Precondition: was once given out
   // Where a removed keyframe lies relative to its parent, with lengths times the scale. Nothing for one still there.
   void scale_removed_keyframe(KeyframeId id, double scale);

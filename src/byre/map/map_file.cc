@@ -15,9 +15,10 @@ namespace {
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
 // Written is the oldest that holds what a map has, so that older programs read as many as can be.
-constexpr std::uint32_t kFormat = 3;             // the newest that is read, and written for refined calibrations
-constexpr std::uint32_t kFormatWithPlan = 2;     // written for a map with a plan
-constexpr std::uint32_t kFormatWithoutPlan = 1;  // written for all others
+constexpr std::uint32_t kFormat = 4;                 // the newest that is read, and written for rolling shutters
+constexpr std::uint32_t kFormatWithCalibration = 3;  // written for refined calibrations
+constexpr std::uint32_t kFormatWithPlan = 2;         // written for a map with a plan
+constexpr std::uint32_t kFormatWithoutPlan = 1;      // written for all others
 
 enum Section : std::size_t {
   kSummary,
@@ -30,26 +31,29 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
-  kPlan,                 // from format 2 on; empty in format 3 without a plan
-  kRefinedCalibrations,  // from format 3 on
+  kPlan,                 // from format 2 on; later ones have it empty without a plan
+  kRefinedCalibrations,  // from format 3 on; likewise where nothing was refined
+  kReadoutTimes,         // from format 4 on
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
-    "summary", "notes",  "provenance",   "rigs",  "keyframes", "features",
-    "patches", "points", "observations", "words", "plan",      "calibrations"};
+    "summary", "notes",        "provenance", "rigs", "keyframes",    "features", "patches",
+    "points",  "observations", "words",      "plan", "calibrations", "shutters"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
+// Each format has a section more than the one before.
 constexpr std::size_t section_count(std::uint32_t format) {
-  if (format == kFormatWithoutPlan) return kPlan;
-  return format == kFormatWithPlan ? kRefinedCalibrations : kSectionCount;
+  return kPlan + format - kFormatWithoutPlan;
 }
+static_assert(section_count(kFormatWithPlan) == kPlan + 1);
+static_assert(section_count(kFormatWithCalibration) == kRefinedCalibrations + 1);
+static_assert(section_count(kFormat) == kSectionCount);
 
 constexpr std::uint32_t format_of(std::size_t sections) {
-  if (sections == section_count(kFormatWithoutPlan)) return kFormatWithoutPlan;
-  return sections == section_count(kFormatWithPlan) ? kFormatWithPlan : kFormat;
+  return static_cast<std::uint32_t>(sections - kPlan) + kFormatWithoutPlan;
 }
 
 // With its own checksum.
@@ -87,11 +91,17 @@ SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {
   ends.push_back(writer.size());
   const bool is_refined = std::ranges::any_of(
       stored.recordings, [](const SourceRecording& recording) { return recording.refined.has_value(); });
-  if (!stored.plan && !is_refined) return ends;
+  const bool is_rolling = std::ranges::any_of(stored.recordings, [](const SourceRecording& recording) {
+    return recording.calibration.readout_time != 0.0 || recording.present_calibration().readout_time != 0.0;
+  });
+  if (!stored.plan && !is_refined && !is_rolling) return ends;
   if (stored.plan) write_plan(*stored.plan, writer);
   ends.push_back(writer.size());
-  if (!is_refined) return ends;
-  write_refined_calibrations(stored.recordings, writer);
+  if (!is_refined && !is_rolling) return ends;
+  if (is_refined) write_refined_calibrations(stored.recordings, writer);
+  ends.push_back(writer.size());
+  if (!is_rolling) return ends;
+  write_readout_times(stored.recordings, writer);
   ends.push_back(writer.size());
   return ends;
 }
@@ -198,9 +208,10 @@ class SectionOpener {
   }
 
  private:
-  // The plan alone may be, where other sections follow it.
+  // Sections that not every map has, where others follow them.
   bool is_left_empty(Section section) const {
-    return section == kPlan && table_.size() == kSectionCount && table_[section].size == 0;
+    return (section == kPlan || section == kRefinedCalibrations) && section + 1 < table_.size() &&
+           table_[section].size == 0;
   }
 
   Bytes bytes_;
@@ -239,6 +250,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   stored.map = Map(Origin::offline, std::move(parts));
   if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
   if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
+  if (open.has(kReadoutTimes)) read_readout_times(open(kReadoutTimes), stored.recordings);
 
   ByteReader summary = open(kSummary);
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");

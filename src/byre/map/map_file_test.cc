@@ -163,6 +163,30 @@ TEST(MapFile, KeepsRefinedCalibrationsWithAndWithoutAPlan) {
   }
 }
 
+TEST(MapFile, KeepsTheReadoutTimesOfRollingShutters) {
+  for (const bool is_refined : {false, true}) {
+    StoredMap stored = StoredMapScene().stored();
+    stored.recordings.front().calibration.readout_time = 0.015;
+    if (is_refined) {
+      stored = with_refined_calibration(std::move(stored));
+      stored.recordings.front().refined->calibration.readout_time = 0.021;
+    }
+    const MapBytes bytes = write_map(stored);
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, kFormatAt), 4u);
+    const SourceRecording read = read_map(bytes, "file").recordings.front();
+    EXPECT_EQ(read.calibration.readout_time, 0.015);
+    EXPECT_EQ(read.refined.has_value(), is_refined);
+    EXPECT_EQ(read.present_calibration().readout_time, is_refined ? 0.021 : 0.015);
+    EXPECT_EQ(write_map(read_map(bytes, "file")), bytes);
+  }
+}
+
+TEST(MapFile, RefusesAReadoutTimeThatIsNone) {
+  StoredMap stored = StoredMapScene().stored();
+  stored.recordings.front().calibration.readout_time = 5.0;
+  EXPECT_THAT(refusal_of(write_map(stored)), HasSubstr("has no proper readout time"));
+}
+
 TEST(MapFile, RefusesARefinedCalibrationThatIsNone) {
   StoredMap stored = with_refined_calibration(StoredMapScene().stored());
   stored.recordings.front().refined->calibration.left.fx = -1.0;
@@ -213,10 +237,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{4});
+  put_at(bytes, kFormatAt, std::uint32_t{5});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 4, this program knows formats up to 3 "
+            "barn.byre: header: has format 5, this program knows formats up to 4 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 

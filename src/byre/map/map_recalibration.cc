@@ -17,6 +17,16 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change) {
 
 }  // namespace
 
+void Map::move_features(KeyframeId id, Features moved) {
+  Keyframe* const keyframe = find_own_keyframe(id);
+  if (keyframe == nullptr) return;
+  const Features& before = *keyframe->frame.features;
+  for (int i = 0; i < before.size(); ++i) {
+    keyframe->sightings[static_cast<std::size_t>(i)].pixel += moved.keypoint(i).pixel - before.keypoint(i).pixel;
+  }
+  keyframe->frame.features = std::make_shared<const Features>(std::move(moved));
+}
+
 int Map::rig_of(KeyframeId id) const {
   return slot(id).keyframe ? slot(id).keyframe->rig : slot(id).removed->rig;
 }

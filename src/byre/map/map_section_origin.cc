@@ -196,6 +196,23 @@ void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& 
   reader.require_end();
 }
 
+void write_readout_times(const std::vector<SourceRecording>& recordings, ByteWriter& writer) {
+  for (const SourceRecording& recording : recordings) {
+    writer.write(recording.calibration.readout_time);
+    writer.write(recording.present_calibration().readout_time);
+  }
+}
+
+void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordings) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    recordings[i].calibration.readout_time = reader.read<double>();
+    const auto refined = reader.read<double>();
+    if (recordings[i].refined) recordings[i].refined->calibration.readout_time = refined;
+    require_no_fault(reader, fault_in(recordings[i]), "recording", i);
+  }
+  reader.require_end();
+}
+
 void write_rigs(const std::vector<Rig>& rigs, ByteWriter& writer) {
   writer.write(static_cast<std::uint32_t>(rigs.size()));
   for (const Rig& rig : rigs) {

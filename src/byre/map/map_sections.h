@@ -73,6 +73,11 @@ void write_refined_calibrations(const std::vector<SourceRecording>& recordings, 
 // Fills in those of the recordings.
 void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& recordings);
 
+// Of rolling shutters, as given and as refined.
+void write_readout_times(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
+// Fills in those of the recordings and of their refined calibrations.
+void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordings);
+
 void write_plan(const PlanRegistration& registration, ByteWriter& writer);
 PlanRegistration read_plan(ByteReader reader);
 

@@ -55,6 +55,8 @@ std::string_view fault_in(const Camera& camera) {
 std::string_view fault_in(const Calibration& calibration) {
   if (const auto fault = fault_in(calibration.left); !fault.empty()) return fault;
   if (const auto fault = fault_in(calibration.body_from_left); !fault.empty()) return fault;
+  constexpr double kLongestReadout = 1.0;  // seconds; false for what is no number
+  if (!(std::abs(calibration.readout_time) <= kLongestReadout)) return "has no proper readout time";
   return calibration.right ? fault_in(*calibration.right) : "";
 }
 

@@ -30,7 +30,8 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       global_(offline ? make_inline_executor() : std::move(lanes.global), options.global),
       hindsight_(options.hindsight),
       input_watch_(options.input),
-      focal_check_(options.focal) {
+      focal_check_(options.focal),
+      shutter_(rig.readout_time) {
   if (vocabulary) places_.emplace(std::move(*vocabulary));
   if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
   if (!offline) return;
@@ -58,14 +59,31 @@ void Session::refine_calibration(const Calibration& given, const SelfCalibration
   }
 }
 
+void Session::refine_readout(const RefinedCalibration& present) {
+  assert(anchored_.empty());
+  rolling_calibration_ = present;
+  shutter_.refine(options_.readout);
+}
+
 std::optional<RefinedCalibration> Session::self_calibration() const {
-  if (calibrator_) return calibrator_->result();
-  return mission_calibrator_ ? mission_calibrator_->result() : std::nullopt;
+  std::optional<RefinedCalibration> refined;
+  if (calibrator_) refined = calibrator_->result();
+  if (mission_calibrator_) refined = mission_calibrator_->result();
+  if (!rolling_calibration_ || shutter_.readout_time() == rolling_calibration_->calibration.readout_time)
+    return refined;
+  if (!refined) refined = rolling_calibration_;
+  refined->calibration.readout_time = shutter_.readout_time();
+  return refined;
 }
 
 Frame Session::corrected(const Frame& rectified) const {
   if (calibrator_) return calibrator_->corrected(rectified);
   return mission_calibrator_ ? mission_calibrator_->corrected(rectified) : rectified;
+}
+
+// Until the next pose is known the camera is taken to move as it did.
+CameraMotion Session::motion() const {
+  return {has_pose_ ? velocity_ : Vector6(Vector6::Zero()), scene_depth_};
 }
 
 FrameReport Session::process(const Frame& rectified) {
@@ -75,7 +93,7 @@ FrameReport Session::process(const Frame& rectified) {
   const Stopwatch mapping_before;
   const auto finished = executor_->collect();
   take_over_results(finished, report);
-  const Frame frame = corrected(rectified);
+  const Frame frame = shutter_.corrected(corrected(rectified), rig_, motion());
   input_ = input_watch_.look_at(frame);
   start_job();
   const double seconds_before = mapping_before.seconds();
@@ -114,7 +132,9 @@ FrameReport Session::process(const Frame& rectified) {
 void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
   if (finished) take_over(*finished);
   global_.collect();
-  if (take_over_calibration() || switch_camera()) report.events.push_back(SessionEvent::recalibrated);
+  const bool is_shutter_better = take_over_readout();
+  if (take_over_calibration() || switch_camera() || is_shutter_better)
+    report.events.push_back(SessionEvent::recalibrated);
   if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
   if (search_) {
     if (const auto found = search_->collect()) consider_place(*found, report);
@@ -166,6 +186,16 @@ bool Session::take_over_calibration() {
   calibrator_->note_attempt(online_.keyframe_count());
   global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig_), calibrator_->options());
   return false;
+}
+
+// Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
+bool Session::take_over_readout() {
+  if (!shutter_.has_change() || !executor_->idle() || !global_.idle()) return false;
+  shutter_.take_over(rig_, online_);
+  local_points_of_.reset();
+  loop_.reset();
+  if (!mission_ && online_.keyframe_count() > 1) global_.close_loops(online_, loops_);
+  return true;
 }
 
 // The rectified camera turns, as it is made of the real ones in another way.
@@ -291,6 +321,7 @@ void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
   add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
   index_place(id);
+  shutter_.note_keyframe(id);
   last_keyframe_ = id;
   online_reference_ = id;
   local_points_of_.reset();

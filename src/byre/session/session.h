@@ -11,6 +11,7 @@
 #include "byre/session/place_search.h"
 #include "byre/session/segments.h"
 #include "byre/session/session_event.h"
+#include "byre/session/shutter.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/focal_check.h"
 #include "byre/slam/health.h"
@@ -52,6 +53,7 @@ struct SessionOptions {
   HindsightOptions hindsight;
   InputWatchOptions input;
   FocalCheckOptions focal;
+  ReadoutOptions readout;
   bool map_online = true;          // false: track on the offline map alone
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
 };
@@ -115,6 +117,9 @@ class Session {
   // first frame.
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
+  // Likewise for how long a rolling shutter takes to read an image. present: of which all else is kept.
+  void refine_readout(const RefinedCalibration& present);
+
   // What is known of the calibration by now; empty until it was refined.
   std::optional<RefinedCalibration> self_calibration() const;
 
@@ -176,6 +181,8 @@ class Session {
   bool take_over_calibration();
   bool switch_camera();
   Frame corrected(const Frame& rectified) const;
+  CameraMotion motion() const;
+  bool take_over_readout();
   bool correct_online();
   void consider_place(const FoundPlace& found, FrameReport& report);
   bool is_refuted_by(const FoundPlace& found, const Agreement& agreement) const;
@@ -276,7 +283,10 @@ class Session {
   InputWatch input_watch_;
   InputEvidence input_;  // of the last frame
   FocalCheck focal_check_;
-  bool is_focal_asked_ = false;         // in the present frame
+  Shutter shutter_;
+  std::optional<RefinedCalibration> rolling_calibration_;  // as it was, where its readout time is refined
+  double scene_depth_ = 1.0;                               // median of the points in the last frame
+  bool is_focal_asked_ = false;                            // in the present frame
   Vector6 velocity_ = Vector6::Zero();  // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
 };
 

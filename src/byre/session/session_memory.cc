@@ -58,6 +58,8 @@ void Session::remember(const Frame& frame, const HybridTrack& track, bool withou
   }
   velocity_ = without_prediction || is_first ? Vector6::Zero() : velocity_to(frame.time, camera_pose(smooth));
   offset_from_online_ = offset;
+  if (const double depth = median_depth(track.tracked, map()); depth > 0.0) scene_depth_ = depth;
+  if (is_pose_proven() && !without_prediction) shutter_.note(frame, rig_, track.tracked, map(), velocity_);
   if (without_prediction) begin_confirmation(frame, track.tracked);
   last_inliers_ = static_cast<int>(track.tracked.features.size());
   const KeyframeId reference =

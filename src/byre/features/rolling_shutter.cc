@@ -1,0 +1,28 @@
+#include "byre/features/rolling_shutter.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+Keypoint seen_at_once(Keypoint keypoint, const Rig& rig, const CameraMotion& motion, double readout_time) {
+  const double depth = keypoint.has_disparity() ? rig.focal * rig.baseline / keypoint.disparity : motion.depth;
+  const Pose middle_from_row = exp_pose(motion.velocity * (-readout_time * keypoint.row_time));
+  const Eigen::Vector3d point = middle_from_row * Eigen::Vector3d(depth * rig.ray(keypoint.pixel.cast<double>()));
+  if (point.z() <= 0.0) return keypoint;
+  const StereoPixel pixel = rig.project(point);
+  const Eigen::Vector2f last(static_cast<float>(rig.width - 1), static_cast<float>(rig.height - 1));
+  keypoint.pixel = pixel.head<2>().cast<float>().cwiseMax(0.0f).cwiseMin(last);
+  if (keypoint.has_disparity()) keypoint.disparity = static_cast<float>(pixel.z());
+  return keypoint;
+}
+
+}  // namespace
+
+Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time) {
+  std::vector<Keypoint> keypoints = features.keypoints();
+  for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
+  return features.moved(std::move(keypoints));
+}
+
+}  // namespace byre

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "byre/features/features.h"
+
+namespace byre {
+
+// How a camera moved while it took an image, and how far away the scene is.
+struct CameraMotion {
+  Vector6 velocity = Vector6::Zero();  // per second: exp_pose(velocity * dt) * camera_from_world
+  double depth = 1.0;                  // of corners that tell none themselves; in the same lengths
+};
+
+// A rolling shutter reads row after row, so that each corner is where the camera was at its row's time: the corners as
+// all of them would be at the time of the middle row. readout_time in seconds, see Calibration.
+Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time);
+
+}  // namespace byre

@@ -1,0 +1,81 @@
+// Sessions with a camera that reads its rows one after the other, which nobody has told them.
+
+#include "byre/geometry/alignment.h"
+#include "byre/session/session_scene.h"
+#include "byre/slam/rolling_scene.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kReadoutTime = 0.02;  // seconds
+
+SimulatedMission visit(std::uint64_t noise_seed) {
+  SimulationOptions options;
+  options.noise_seed = noise_seed;
+  options.pixel_sigma = 0.2;
+  options.disparity_sigma = 0.1;
+  return simulate_mission(simulated_rig(), figure_eight_trajectory(300, 20.0, 4.0, 1.0), options);
+}
+
+RefinedCalibration given() {
+  RefinedCalibration calibration;
+  calibration.calibration.left = {CameraModel::pinhole, 752, 480, 430.0, 430.0, 375.5, 239.5, {}};
+  return calibration;
+}
+
+struct Outcome {
+  double error = 0.0;  // metres, root mean square over the second half
+  double readout_time = 0.0;
+};
+
+// On the map of a visit by another camera; or plain SLAM, laid over the truth as well as it goes.
+Outcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
+  static const std::shared_ptr<const OfflineMap> offline = offline_map_of(visit(1));
+  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary(), has_map ? offline : nullptr);
+  if (is_refined) session.refine_readout(given());
+  std::vector<Eigen::Vector3d> estimated, truth;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    const FrameReport report = session.process(mission.frames[i]);
+    if (!report.map_from_body || 2 * i < mission.frames.size()) continue;
+    estimated.push_back(report.map_from_body->translation);
+    truth.push_back(mission.truth[i].world_from_body.translation);
+  }
+  Outcome outcome;
+  if (const auto calibration = session.self_calibration()) outcome.readout_time = calibration->calibration.readout_time;
+  const Similarity truth_from_map = has_map ? Similarity{} : align(estimated, truth, Scale::fixed).value();
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    outcome.error += (truth_from_map * estimated[i] - truth[i]).squaredNorm();
+  outcome.error = std::sqrt(outcome.error / static_cast<double>(truth.size()));
+  return outcome;
+}
+
+TEST(SessionShutter, FindsOutInAMissionHowLongTheRowsTake) {
+  const SimulatedMission mission = rolling(visit(2), kReadoutTime);
+  const Outcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
+  EXPECT_NEAR(refined.readout_time, kReadoutTime, 1e-3);
+  EXPECT_LT(refined.error, 0.5 * as_given.error);
+}
+
+// The map takes up part of it at first.
+TEST(SessionShutter, FindsMostOfItOutWithoutAMapToo) {
+  const SimulatedMission mission = rolling(visit(2), kReadoutTime);
+  const Outcome refined = outcome_of(mission, false, true), as_given = outcome_of(mission, false, false);
+  EXPECT_GT(refined.readout_time, 0.5 * kReadoutTime);
+  EXPECT_LT(refined.readout_time, 1.1 * kReadoutTime);
+  EXPECT_LT(refined.error, as_given.error);
+}
+
+TEST(SessionShutter, IsNoneWhereAllRowsAreSeenAtOnce) {
+  for (const bool has_map : {true, false}) {
+    const Outcome refined = outcome_of(visit(2), has_map, true), as_given = outcome_of(visit(2), has_map, false);
+    EXPECT_EQ(refined.readout_time, 0.0);
+    EXPECT_EQ(refined.error, as_given.error);
+  }
+}
+
+}  // namespace
+}  // namespace byre

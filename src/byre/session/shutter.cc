@@ -1,0 +1,32 @@
+#include "byre/session/shutter.h"
+
+#include <memory>
+#include <utility>
+
+namespace byre {
+
+Frame Shutter::corrected(const Frame& frame, const Rig& rig, const CameraMotion& motion) {
+  motion_ = motion;
+  if (!is_rolling() || motion.velocity.isZero(0.0)) return frame;
+  Frame result = frame;
+  result.features = std::make_shared<const Features>(seen_at_once(*frame.features, rig, motion, readout_time_));
+  return result;
+}
+
+void Shutter::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
+                   const Vector6& velocity) {
+  if (!estimator_ || has_change()) return;
+  const auto change = estimator_->note(readout_evidence(frame, rig, tracked, map, velocity));
+  if (change) change_ = *change;
+}
+
+void Shutter::take_over(const Rig& rig, Map& online) {
+  for (const auto& [id, motion] : motions_) {
+    const Keyframe* const keyframe = online.find_keyframe(id);
+    if (keyframe == nullptr) continue;
+    online.move_features(id, seen_at_once(*keyframe->frame.features, rig, motion, change_));
+  }
+  readout_time_ += std::exchange(change_, 0.0);
+}
+
+}  // namespace byre

@@ -1,0 +1,135 @@
+#include "byre/slam/readout_estimate.h"
+
+#include "byre/optimise/huber.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+namespace {
+
+constexpr double kHuberWidth = 2.0;       // sigmas
+constexpr double kSystematicSigma = 0.2;  // pixels, of what neither noise nor the shutter explains
+
+using Row = Eigen::Matrix<double, 2, 3>;
+
+// One point in a frame, pixels: what was measured less what pose and point say, and how both answer.
+struct Answer {
+  Eigen::Vector2d residual;
+  Eigen::Matrix<double, 2, 6> by_pose;
+  Eigen::Vector2d by_readout;
+  Eigen::Matrix2d weight;
+};
+
+// Precondition: the point lies before the camera.
+Answer answer_of(const TrackedFeature& feature, double row_time, const MapPoint& point, const Pose& camera_from_world,
+                 const Rig& rig, const Vector6& velocity) {
+  const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
+  const Row by_camera = rig.projection_jacobian(point_in_camera).topRows<2>();
+  const Row by_world = by_camera * camera_from_world.rotation.toRotationMatrix();
+  Eigen::Matrix2d covariance = by_world * point.covariance * by_world.transpose();
+  covariance.diagonal().array() += feature.pixel_sigma * feature.pixel_sigma + kSystematicSigma * kSystematicSigma;
+  Answer answer;
+  answer.residual = feature.pixel.cast<double>() - rig.project(point_in_camera).head<2>();
+  answer.by_pose << by_camera, -by_camera * skew(point_in_camera);
+  answer.by_readout = row_time * answer.by_pose * velocity;
+  const Eigen::Matrix2d information = covariance.inverse();
+  answer.weight = huber_weight(answer.residual.dot(information * answer.residual), kHuberWidth) * information;
+  return answer;
+}
+
+// Normal equations of a frame's pose and of the readout time.
+class FrameEquations {
+ public:
+  void add(const Answer& answer) {
+    pose_pose_.noalias() += answer.by_pose.transpose() * answer.weight * answer.by_pose;
+    pose_readout_.noalias() += answer.by_pose.transpose() * answer.weight * answer.by_readout;
+    pose_residual_.noalias() += answer.by_pose.transpose() * answer.weight * answer.residual;
+    readout_.information += answer.by_readout.dot(answer.weight * answer.by_readout);
+    readout_.right_side += answer.by_readout.dot(answer.weight * answer.residual);
+    ++readout_.points;
+  }
+
+  // Nothing where the points do not determine the pose.
+  ReadoutEvidence without_pose() const {
+    const Eigen::LDLT<Matrix6> factor(pose_pose_);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return {};
+    const Vector6 pose_by_readout = factor.solve(pose_readout_);
+    const ReadoutEvidence left{readout_.information - pose_readout_.dot(pose_by_readout),
+                               readout_.right_side - pose_residual_.dot(pose_by_readout), readout_.points};
+    return left.information > 0.0 && std::isfinite(left.right_side) ? left : ReadoutEvidence{};
+  }
+
+ private:
+  Matrix6 pose_pose_ = Matrix6::Zero();
+  Vector6 pose_readout_ = Vector6::Zero();
+  Vector6 pose_residual_ = Vector6::Zero();
+  ReadoutEvidence readout_;
+};
+
+}  // namespace
+
+ReadoutEvidence& ReadoutEvidence::operator+=(const ReadoutEvidence& other) {
+  information += other.information;
+  right_side += other.right_side;
+  points += other.points;
+  return *this;
+}
+
+ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
+                                 const Vector6& velocity) {
+  FrameEquations equations;
+  for (const std::vector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
+    for (const TrackedFeature& feature : *features) {
+      const MapPoint* const point = map.find_point(feature.point);
+      if (point == nullptr || (tracked.camera_from_world * point->position_in_world).z() <= 0.0) continue;
+      const double row_time = frame.features->keypoint(feature.feature).row_time;
+      equations.add(answer_of(feature, row_time, *point, tracked.camera_from_world, rig, velocity));
+    }
+  }
+  return equations.without_pose();
+}
+
+void ReadoutEstimator::Blocks::add(const ReadoutEvidence& block) {
+  ++count;
+  sum += block;
+  right_side_squared += block.right_side * block.right_side;
+  information_squared += block.information * block.information;
+  product += block.right_side * block.information;
+}
+
+// What noise would make of it at least.
+double ReadoutEstimator::Blocks::sigma() const {
+  const double scatter = right_side_squared - 2.0 * change() * product + change() * change() * information_squared;
+  return std::sqrt(std::max(scatter, sum.information)) / sum.information;
+}
+
+double ReadoutEstimator::Blocks::effect() const {
+  return std::abs(change()) * std::sqrt(sum.information / std::max(1, sum.points));
+}
+
+bool ReadoutEstimator::is_sure() const {
+  if (blocks_.count < options_.min_blocks || blocks_.sum.information <= 0.0) return false;
+  const double size = std::abs(blocks_.change());
+  const bool is_first = readout_time_ == 0.0;
+  return size > (is_first ? options_.min_first : options_.min_further) &&
+         (!is_first || blocks_.effect() > options_.min_effect) && size > options_.min_sigmas * blocks_.sigma() &&
+         std::abs(readout_time_ + blocks_.change()) <= options_.max_readout;
+}
+
+std::optional<double> ReadoutEstimator::note(const ReadoutEvidence& evidence) {
+  block_ += evidence;
+  if (++frames_in_block_ < options_.frames_of_block) return std::nullopt;
+  blocks_.add(block_);
+  block_ = {};
+  frames_in_block_ = 0;
+  if (!is_sure()) return std::nullopt;
+  const double before = readout_time_, now = before + blocks_.change();
+  readout_time_ = std::abs(now) < options_.least ? 0.0 : now;
+  blocks_ = {};
+  return readout_time_ - before;
+}
+
+}  // namespace byre

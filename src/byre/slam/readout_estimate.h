@@ -1,0 +1,75 @@
+#pragma once
+
+#include "byre/slam/tracking.h"
+
+#include <optional>
+
+namespace byre {
+
+// What the points of a frame say of how much longer its rows take to be read than is thought: the normal equation of
+// that one number, with the frame's pose eliminated.
+struct ReadoutEvidence {
+  double information = 0.0;  // 1 / s^2
+  double right_side = 0.0;   // 1 / s
+  int points = 0;            // that were asked
+
+  ReadoutEvidence& operator+=(const ReadoutEvidence& other);
+};
+
+// velocity: of the camera, as CameraMotion has it. The frame's corners are where the readout time that is thought has
+// them. Outliers of the pose are asked too: where that time is wrong, it is they who know.
+ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
+                                 const Vector6& velocity);
+
+struct ReadoutOptions {
+  int frames_of_block = 8;  // that err alike
+  int min_blocks = 4;       // that are asked at least
+  // Of the first change, seconds and sigmas of what is measured: what a calibration that errs looks like, to a robot
+  // that only drives ahead or in the first seconds, is less.
+  double min_first = 0.006;
+  double min_effect = 0.2;
+  double min_further = 0.001;  // seconds, of changes after the first
+  double min_sigmas = 5.0;     // of a change
+  double least = 0.002;        // seconds: of a shorter time nothing is seen
+  double max_readout = 0.1;    // seconds
+};
+
+// Finds out how long a rolling shutter takes to read an image, from frame to frame. What errs otherwise than in
+// proportion to the camera's motion, such as a calibration, averages out as the camera turns hither and thither: how
+// sure the sum is comes from how blocks of frames differ. A map that was made by a wrong time takes up part of what it
+// does, so that the right one is come to in several changes.
+class ReadoutEstimator {
+ public:
+  ReadoutEstimator(double readout_time, const ReadoutOptions& options)
+      : options_(options), readout_time_(readout_time) {}
+
+  double readout_time() const { return readout_time_; }  // seconds
+
+  // Returns by how many seconds the readout time changes, where it does; then what was noted counts no longer.
+  std::optional<double> note(const ReadoutEvidence& evidence);
+
+ private:
+  // Sums over blocks.
+  struct Blocks {
+    int count = 0;
+    ReadoutEvidence sum;
+    double right_side_squared = 0.0;
+    double information_squared = 0.0;
+    double product = 0.0;
+
+    void add(const ReadoutEvidence& block);
+    double change() const { return sum.right_side / sum.information; }  // seconds
+    double sigma() const;                                               // of it, seconds
+    double effect() const;  // on what is measured, but for what the pose takes up; sigmas, root mean square
+  };
+
+  bool is_sure() const;
+
+  ReadoutOptions options_;  // constant after construction
+  double readout_time_;
+  ReadoutEvidence block_;  // so far
+  int frames_in_block_ = 0;
+  Blocks blocks_;
+};
+
+}  // namespace byre

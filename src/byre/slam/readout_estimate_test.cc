@@ -1,0 +1,97 @@
+#include "byre/slam/readout_estimate.h"
+
+#include "byre/slam/rolling_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kInformation = 1e6;  // of a frame: it knows a readout time to a millisecond
+constexpr int kPoints = 300;          // of a frame: 20 ms move each by more than a sigma
+
+// Frames that all say so many seconds; the last change of the readout time.
+std::optional<double> told(ReadoutEstimator& estimator, double change, int frames) {
+  std::optional<double> last;
+  for (int i = 0; i < frames; ++i) {
+    if (const auto changed = estimator.note({kInformation, kInformation * change, kPoints})) last = changed;
+  }
+  return last;
+}
+
+TEST(ReadoutEstimator, ComesToWhatFramesSay) {
+  ReadoutEstimator estimator(0.0, {});
+  const auto change = told(estimator, 0.02, 32);
+  ASSERT_TRUE(change);
+  EXPECT_NEAR(*change, 0.02, 1e-9);
+  EXPECT_NEAR(estimator.readout_time(), 0.02, 1e-9);
+}
+
+TEST(ReadoutEstimator, WaitsForEnoughFrames) {
+  ReadoutEstimator estimator(0.0, {});
+  EXPECT_FALSE(told(estimator, 0.02, 31));
+}
+
+TEST(ReadoutEstimator, TakesLittleForAnErrorOfTheCalibration) {
+  ReadoutEstimator estimator(0.0, {});
+  EXPECT_FALSE(told(estimator, 0.004, 400));
+  EXPECT_EQ(estimator.readout_time(), 0.0);
+}
+
+TEST(ReadoutEstimator, BelievesNothingThatHardlyShows) {
+  ReadoutEstimator estimator(0.0, {});
+  constexpr int kManyPoints = 30000;
+  for (int i = 0; i < 400; ++i) EXPECT_FALSE(estimator.note({kInformation, kInformation * 0.02, kManyPoints})) << i;
+}
+
+TEST(ReadoutEstimator, RefinesWhatItHasFound) {
+  ReadoutEstimator estimator(0.02, {});
+  EXPECT_FALSE(told(estimator, 0.0005, 400));
+  ASSERT_TRUE(told(estimator, 0.004, 64 + 400));
+  EXPECT_GT(estimator.readout_time(), 0.021);
+}
+
+TEST(ReadoutEstimator, GivesUpWhatComesToNothing) {
+  ReadoutEstimator estimator(0.008, {});
+  EXPECT_NEAR(told(estimator, -0.0075, 32).value_or(0.0), -0.008, 1e-12);
+  EXPECT_EQ(estimator.readout_time(), 0.0);
+}
+
+TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
+  ReadoutEstimator estimator(0.0, {});
+  for (int i = 0; i < 400; ++i) {
+    const double change = i / 8 % 2 == 0 ? 0.1 : -0.08;  // 0.01 on the whole, as an error that motion does not cause
+    EXPECT_FALSE(estimator.note({kInformation, kInformation * change, kPoints})) << i;
+  }
+}
+
+TEST(ReadoutEstimator, BelievesNoCameraToBeThatSlow) {
+  ReadoutEstimator estimator(0.0, {});
+  EXPECT_FALSE(told(estimator, 0.2, 400));
+}
+
+// What the frames of a mission say of a camera that takes that long, while none is thought of: by true points and
+// poses.
+double change_told_by(const SimulatedMission& mission) {
+  const Map map = true_map(mission, 4, Origin::online);
+  const MapView view{nullptr, map};
+  ReadoutEvidence sum;
+  for (std::size_t i = 1; i + 1 < mission.frames.size(); ++i) {
+    const auto tracked =
+        track(mission.frames[i], true_camera_from_world(mission, i), mission.rig, view, map.point_ids(), {});
+    if (tracked) sum += readout_evidence(mission.frames[i], mission.rig, *tracked, view, true_velocity(mission, i));
+  }
+  return sum.right_side / sum.information;
+}
+
+TEST(ReadoutEvidence, TellsTheReadoutTime) {
+  SimulationOptions options;
+  options.pixel_sigma = 0.2;
+  const SimulatedMission mission =
+      simulate_mission(simulated_rig(), figure_eight_trajectory(80, 20.0, 4.0, 0.5), options);
+  EXPECT_NEAR(change_told_by(rolling(mission, 0.0)), 0.0, 5e-4);
+  EXPECT_NEAR(change_told_by(rolling(mission, 0.005)), 0.005, 1e-3);
+}
+
+}  // namespace
+}  // namespace byre
