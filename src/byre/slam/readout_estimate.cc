@@ -80,6 +80,8 @@ ReadoutEvidence& ReadoutEvidence::operator+=(const ReadoutEvidence& other) {
 
 ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                                  const Vector6& velocity) {
+  constexpr double kMinTurn = 0.3;  // radians a second: what errs looks the same in each frame to who drives ahead
+  if (velocity.tail<3>().norm() < kMinTurn) return {};
   FrameEquations equations;
   for (const std::vector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
     for (const TrackedFeature& feature : *features) {
@@ -120,6 +122,7 @@ bool ReadoutEstimator::is_sure() const {
 }
 
 std::optional<double> ReadoutEstimator::note(const ReadoutEvidence& evidence) {
+  if (evidence.information <= 0.0) return std::nullopt;
   block_ += evidence;
   if (++frames_in_block_ < options_.frames_of_block) return std::nullopt;
   blocks_.add(block_);

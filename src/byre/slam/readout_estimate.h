@@ -17,7 +17,9 @@ struct ReadoutEvidence {
 };
 
 // velocity: of the camera, as CameraMotion has it. The frame's corners are where the readout time that is thought has
-// them. Outliers of the pose are asked too: where that time is wrong, it is they who know.
+// them. Outliers of the pose are asked too: where that time is wrong, it is they who know. Nothing where the camera
+// hardly turns: to who drives ahead a calibration that errs looks the same in each frame, and much like a rolling
+// shutter.
 ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                                  const Vector6& velocity);
 

@@ -93,5 +93,21 @@ TEST(ReadoutEvidence, TellsTheReadoutTime) {
   EXPECT_NEAR(change_told_by(rolling(mission, 0.005)), 0.005, 1e-3);
 }
 
+TEST(ReadoutEvidence, IsNoneOfACameraThatDoesNotTurn) {
+  const SimulatedMission mission =
+      rolling(simulate_mission(simulated_rig(), figure_eight_trajectory(20, 20.0, 4.0, 0.1), {}), 0.005);
+  const Map map = true_map(mission, 4, Origin::online);
+  const MapView view{nullptr, map};
+  constexpr std::size_t kFrame = 10;
+  const auto tracked =
+      track(mission.frames[kFrame], true_camera_from_world(mission, kFrame), mission.rig, view, map.point_ids(), {});
+  ASSERT_TRUE(tracked);
+  Vector6 velocity = Vector6::Zero();
+  velocity[2] = -1.0;
+  EXPECT_EQ(readout_evidence(mission.frames[kFrame], mission.rig, *tracked, view, velocity).information, 0.0);
+  velocity[4] = 0.5;
+  EXPECT_GT(readout_evidence(mission.frames[kFrame], mission.rig, *tracked, view, velocity).information, 0.0);
+}
+
 }  // namespace
 }  // namespace byre
