@@ -31,8 +31,11 @@ struct Poses {
 
 // As the program does it: on a map that knows the camera, only the shutter is refined further.
 void refine(Session& session, const Calibration& given, const std::optional<RefinedCalibration>& known) {
-  session.refine_readout(known.value_or(RefinedCalibration{given}));
-  if (!known) session.refine_calibration(given, {});
+  if (known) {
+    session.refine_readout(*known);
+  } else {
+    session.refine_calibration(given, {});
+  }
 }
 
 Poses follow(Session& session, Recording& recording, Extractor& extractor) {

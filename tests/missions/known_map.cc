@@ -69,9 +69,7 @@ struct MadeMap {
 MadeMap map_by_session(Recording& recording, const Imperfection& imperfection) {
   MapFrames frames(recording, imperfection);
   Session session(frames.rig(), {}, make_inline_executor(), mission_vocabulary());
-  const Calibration told = told_calibration(recording.calibration(), imperfection);
-  session.refine_readout(RefinedCalibration{told});
-  session.refine_calibration(told, {});
+  session.refine_calibration(told_calibration(recording.calibration(), imperfection), {});
   for (int i = 0; i < recording.size(); ++i) {
     if (const auto frame = frames.read(i)) session.process(*frame);
   }

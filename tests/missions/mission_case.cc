@@ -19,8 +19,11 @@ std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, con
   Extractor extractor(known ? known->calibration : told, {});
   const Degradation cameras = imperfect_cameras(imperfection);
   Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
-  session.refine_readout(known.value_or(RefinedCalibration{told}));
-  if (!known) session.refine_calibration(told, {});
+  if (known) {
+    session.refine_readout(*known);
+  } else {
+    session.refine_calibration(told, {});
+  }
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);

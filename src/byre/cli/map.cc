@@ -107,7 +107,7 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   protocol.options.pace = options.pace;
   protocol.options.extract.refinement = options.refinement;
   protocol.options.self_calibrate = !options.no_self_calibration;
-  protocol.options.calibration = record.about.recordings.back().present_calibration();
+  protocol.options.known = record.about.recordings.back().refined;
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
   if (options.extended) protocol.extended = options.extended->string();

@@ -29,14 +29,19 @@ Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
 // Extracts, tracks and maps, and notes what each took.
 class FrameThread {
  public:
-  // known: by the offline map, so that only its readout time is refined.
+  // known: of the cameras by now. Only the readout time is refined then, as with cameras that a map before lies by.
   FrameThread(const Calibration& given, const std::optional<RefinedCalibration>& known, const MapRunOptions& options,
               std::optional<Map> before)
       : extractor_(known ? known->calibration : given, options.extract),
         session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
                  options.vocabulary, options.offline) {
-    if (options.self_calibrate) session_.refine_readout(known.value_or(RefinedCalibration{given}));
-    if (options.self_calibrate && !known && !before) session_.refine_calibration(given, options.self_calibration);
+    if (options.self_calibrate) {
+      if (known || before) {
+        session_.refine_readout(known.value_or(RefinedCalibration{given}));
+      } else {
+        session_.refine_calibration(given, options.self_calibration);
+      }
+    }
     if (before) session_.continue_map(std::move(*before));
   }
 
@@ -145,8 +150,9 @@ std::string_view name_of(OfflinePolicy policy) {
 MapRun run_map(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
   const Stopwatch watch;
-  const Calibration given = options.calibration.value_or(recording.calibration());
-  const auto known = options.offline ? known_calibration(options.offline->recordings(), given) : std::nullopt;
+  const Calibration given = recording.calibration();
+  auto known = options.known;
+  if (!known && options.offline) known = known_calibration(options.offline->recordings(), given);
   FrameThread thread(given, known, options, std::move(before));
   DecodeAhead decoder(recording);
   LiveClock clock;

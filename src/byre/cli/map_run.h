@@ -37,8 +37,9 @@ struct MapRunOptions {
   Pace pace = Pace::paced;
   ExtractOptions extract;
   SessionOptions session;
-  std::optional<Calibration> calibration;  // of the cameras; empty: as the recording has it
-  bool self_calibrate = true;              // refine the calibration given from what is mapped
+  bool self_calibrate = true;               // refine the calibration given from what is mapped
+  std::optional<RefinedCalibration> known;  // what the cameras are known to be by now, of which the readout time alone
+                                            // is refined; empty: what the offline map knows, if anything
   SelfCalibrationOptions self_calibration;
   FinishOptions finish;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished

@@ -34,7 +34,9 @@ PlacedCalibration without_depth(PlacedCalibration calibration) {
 PlacedCalibration right_alone(const PlacedCalibration& calibration) {
   const Calibration& pair = calibration.cameras;
   const Pose body_from_right = pair.body_from_left * inverse(pair.right->right_from_left);
-  return {{pair.right->camera, std::nullopt, body_from_right}, calibration.right_size, ""};
+  PlacedCalibration alone{{pair.right->camera, std::nullopt, body_from_right}, calibration.right_size, ""};
+  alone.cameras.readout_time = pair.readout_time;
+  return alone;
 }
 
 bool has_right_image(const FrameFiles& frame) {

@@ -100,6 +100,14 @@ TEST_F(OneOfAPair, MayBeTheRightAloneWithItsOwnPlaceInTheBody) {
   EXPECT_FALSE(recording->read(0)->right);
 }
 
+TEST_F(OneOfAPair, KeepsTheReadoutTimeThatItWasTold) {
+  for (const CameraChoice camera : {CameraChoice::left, CameraChoice::right}) {
+    const OpenOptions options{
+        camera, calibration(camera_yaml("cam0", "  readout_time: 0.015\n") + kPair.substr(kPair.find("cam1")))};
+    EXPECT_EQ(open(options)->calibration().readout_time, 0.015);
+  }
+}
+
 TEST_F(OneOfAPair, CountsFramesTheSameWhicheverIsTaken) {
   EXPECT_THAT(open(options(CameraChoice::right), {.first = 2})->times(), ElementsAre(milliseconds(300)));
   EXPECT_THAT(open_error(options(CameraChoice::right), {.first = 1, .last = 2}),

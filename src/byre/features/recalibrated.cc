@@ -1,13 +1,14 @@
 #include "byre/features/recalibrated.h"
 
+#include "byre/features/image_bounds.h"
+
 namespace byre {
 namespace {
 
 Keypoint recalibrated(Keypoint keypoint, const RectifiedChange& change) {
   const RectifiedChange::Corner corner =
       change({{keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}, keypoint.row_offset});
-  keypoint.pixel = corner.pixel.head<2>().cast<float>().cwiseMax(0.0f).cwiseMin(
-      Eigen::Vector2f(static_cast<float>(change.rig().width - 1), static_cast<float>(change.rig().height - 1)));
+  keypoint.pixel = nearest_in_image(corner.pixel.head<2>(), change.rig());
   if (!keypoint.has_disparity()) return keypoint;
   keypoint.row_offset = static_cast<float>(corner.row_offset);
   keypoint.disparity = static_cast<float>(corner.pixel.z());

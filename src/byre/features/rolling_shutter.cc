@@ -1,5 +1,7 @@
 #include "byre/features/rolling_shutter.h"
 
+#include "byre/features/image_bounds.h"
+
 #include <utility>
 
 namespace byre {
@@ -11,8 +13,7 @@ Keypoint seen_at_once(Keypoint keypoint, const Rig& rig, const CameraMotion& mot
   const Eigen::Vector3d point = middle_from_row * Eigen::Vector3d(depth * rig.ray(keypoint.pixel.cast<double>()));
   if (point.z() <= 0.0) return keypoint;
   const StereoPixel pixel = rig.project(point);
-  const Eigen::Vector2f last(static_cast<float>(rig.width - 1), static_cast<float>(rig.height - 1));
-  keypoint.pixel = pixel.head<2>().cast<float>().cwiseMax(0.0f).cwiseMin(last);
+  keypoint.pixel = nearest_in_image(pixel.head<2>(), rig);
   if (keypoint.has_disparity()) keypoint.disparity = static_cast<float>(pixel.z());
   return keypoint;
 }

@@ -25,8 +25,13 @@ class Calibrator {
   // The frame as the present calibration has it; itself while that is the one given.
   Frame corrected(const Frame& frame) const;
 
-  // Whether a map of so many keyframes has grown enough since the last time for another look.
-  bool is_due(int keyframes) const { return keyframes >= (last_keyframes_ ? 2 * *last_keyframes_ : 10); }
+  // Whether a map of so many keyframes has grown enough since the last time for another look. The first ones are close
+  // together, as all that was trusted before a calibration is found to be wrong was trusted wrongly.
+  bool is_due(int keyframes) const {
+    constexpr int kFirst = 7, kStep = 3, kCloseUntil = 28;
+    if (!last_keyframes_) return keyframes >= kFirst;
+    return keyframes >= (*last_keyframes_ < kCloseUntil ? *last_keyframes_ + kStep : 2 * *last_keyframes_);
+  }
   // The same at the end, when there is no other time. A look that the end cut short has no result.
   bool is_worth_a_last_look(int keyframes) const {
     return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;

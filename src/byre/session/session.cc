@@ -57,11 +57,12 @@ void Session::refine_calibration(const Calibration& given, const SelfCalibration
   } else {
     calibrator_.emplace(given, options);
   }
+  refine_readout(RefinedCalibration{given});
 }
 
-void Session::refine_readout(const RefinedCalibration& present) {
+void Session::refine_readout(const RefinedCalibration& known) {
   assert(anchored_.empty());
-  rolling_calibration_ = present;
+  rolling_calibration_ = known;
   shutter_.refine(options_.readout);
 }
 

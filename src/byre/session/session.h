@@ -113,12 +113,12 @@ class Session {
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
   void continue_map(Map online);
 
-  // The calibration by which the frames are rectified may err, and is refined from what is seen. Call it before the
-  // first frame.
+  // The calibration by which the frames are rectified may err, and is refined from what is seen, the readout time of a
+  // rolling shutter with it. Call it before the first frame.
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Likewise for how long a rolling shutter takes to read an image. present: of which all else is kept.
-  void refine_readout(const RefinedCalibration& present);
+  // Refines the readout time alone, and keeps all else as it is known to be. Call it before the first frame.
+  void refine_readout(const RefinedCalibration& known);
 
   // What is known of the calibration by now; empty until it was refined.
   std::optional<RefinedCalibration> self_calibration() const;
@@ -227,6 +227,8 @@ class Session {
   bool is_in_present_frame(KeyframeId online) const { return segments_.frame(online) == segments_.frame(); }
   bool is_pose_confirmed() const { return confirmations_left_ == 0; }
   bool is_pose_proven() const { return proofs_left_ == 0; }
+  // Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
+  bool is_calibration_open() const { return calibrator_ && !calibrator_->result(); }
   std::uint32_t next_keyframe_number() const { return last_keyframe_ ? last_keyframe_->number + 1 : 0; }
   Pose camera_from_world(KeyframeId id) const;
   Pose last_camera_from_world() const;

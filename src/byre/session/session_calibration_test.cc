@@ -124,5 +124,29 @@ INSTANTIATE_TEST_SUITE_P(
                       CalibrationError{.lens = 2.0}, CalibrationError{.disparity = 0.3},
                       CalibrationError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
 
+// As the simulated rig has it.
+Calibration calibration_of(const Rig& rig) {
+  Calibration calibration;
+  calibration.left = {CameraModel::pinhole, rig.width, rig.height, rig.focal, rig.focal, rig.cx, rig.cy, {}};
+  Pose right_from_left;
+  right_from_left.translation.x() = -rig.baseline;
+  calibration.right = {calibration.left, right_from_left};
+  return calibration;
+}
+
+TEST(MappingWithACalibration, IsTrustedOnceThatHasBeenLookedAt) {
+  const SimulatedMission mission = visit(2);
+  Session session(mission.rig, {}, Lanes(make_inline_executor()));
+  session.refine_calibration(calibration_of(mission.rig), {});
+  bool was_looked_at = false;
+  for (const Frame& frame : mission.frames) {
+    const FrameReport report = session.process(frame);
+    was_looked_at = was_looked_at || report.has(SessionEvent::recalibrated);
+    EXPECT_EQ(report.health.verdict == Verdict::trusted, was_looked_at) << to_seconds(report.time) << " s";
+    if (!was_looked_at) EXPECT_EQ(report.health.doubt, Doubt::unconfirmed);
+  }
+  EXPECT_TRUE(was_looked_at);
+}
+
 }  // namespace
 }  // namespace byre

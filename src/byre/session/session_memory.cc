@@ -246,7 +246,8 @@ Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {
   Health health;
   health.image = frame.condition;
-  HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed() && is_pose_proven()};
+  HealthEvidence evidence{has_pose_, is_registered(),
+                          is_pose_confirmed() && is_pose_proven() && !is_calibration_open()};
   evidence.maps_disagree = located.track && located.track->maps_disagree && !located.track->offline_stands;
   evidence.image_fault = image_fault(frame);
   evidence.input = input_;

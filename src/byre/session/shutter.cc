@@ -1,7 +1,6 @@
 #include "byre/session/shutter.h"
 
 #include <memory>
-#include <utility>
 
 namespace byre {
 
@@ -16,17 +15,17 @@ Frame Shutter::corrected(const Frame& frame, const Rig& rig, const CameraMotion&
 void Shutter::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                    const Vector6& velocity) {
   if (!estimator_ || has_change()) return;
-  const auto change = estimator_->note(readout_evidence(frame, rig, tracked, map, velocity));
-  if (change) change_ = *change;
+  estimator_->note(readout_evidence(frame, rig, tracked, map, velocity));
 }
 
 void Shutter::take_over(const Rig& rig, Map& online) {
+  const double change = estimator_->readout_time() - readout_time_;
   for (const auto& [id, motion] : motions_) {
     const Keyframe* const keyframe = online.find_keyframe(id);
     if (keyframe == nullptr) continue;
-    online.move_features(id, seen_at_once(*keyframe->frame.features, rig, motion, change_));
+    online.move_features(id, seen_at_once(*keyframe->frame.features, rig, motion, change));
   }
-  readout_time_ += std::exchange(change_, 0.0);
+  readout_time_ = estimator_->readout_time();
 }
 
 }  // namespace byre

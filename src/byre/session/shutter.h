@@ -15,7 +15,7 @@ class Shutter {
  public:
   explicit Shutter(double readout_time) : readout_time_(readout_time) {}
 
-  double readout_time() const { return readout_time_; }  // seconds, as it is known by now
+  double readout_time() const { return readout_time_; }  // seconds, by which corners are corrected
   bool is_rolling() const { return readout_time_ != 0.0; }
 
   // From now on the readout time is refined from what is seen.
@@ -32,13 +32,12 @@ class Shutter {
             const Vector6& velocity);
 
   // Whether there is a better readout time; take_over has all keyframes that were noted seen by it.
-  bool has_change() const { return change_ != 0.0; }
+  bool has_change() const { return estimator_ && estimator_->readout_time() != readout_time_; }
   void take_over(const Rig& rig, Map& online);
 
  private:
-  double readout_time_;                         // seconds
-  std::optional<ReadoutEstimator> estimator_;   // where it is refined
-  double change_ = 0.0;                         // seconds, not taken over yet
+  double readout_time_;                         // seconds, that the corners lie by
+  std::optional<ReadoutEstimator> estimator_;   // where it is refined; ahead of it until that is taken over
   CameraMotion motion_;                         // while the last frame was taken
   std::map<KeyframeId, CameraMotion> motions_;  // while keyframes were
 };

@@ -83,7 +83,7 @@ struct HealthOptions {
 struct HealthEvidence {
   bool pose_found = false;
   bool registered = true;      // the pose is in the offline map's frame
-  bool confirmed = true;       // over several frames, since it was found
+  bool confirmed = true;       // over several frames, since it was found; the calibration by a first look at it
   bool maps_disagree = false;  // beyond what the uncertainties of both explain
   ImageFault image_fault = ImageFault::none;
   InputEvidence input{};

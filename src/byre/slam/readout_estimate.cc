@@ -121,18 +121,17 @@ bool ReadoutEstimator::is_sure() const {
          std::abs(readout_time_ + blocks_.change()) <= options_.max_readout;
 }
 
-std::optional<double> ReadoutEstimator::note(const ReadoutEvidence& evidence) {
-  if (evidence.information <= 0.0) return std::nullopt;
+void ReadoutEstimator::note(const ReadoutEvidence& evidence) {
+  if (evidence.information <= 0.0) return;
   block_ += evidence;
-  if (++frames_in_block_ < options_.frames_of_block) return std::nullopt;
+  if (++frames_in_block_ < options_.frames_of_block) return;
   blocks_.add(block_);
   block_ = {};
   frames_in_block_ = 0;
-  if (!is_sure()) return std::nullopt;
-  const double before = readout_time_, now = before + blocks_.change();
-  readout_time_ = std::abs(now) < options_.least ? 0.0 : now;
+  if (!is_sure()) return;
+  const double changed = readout_time_ + blocks_.change();
+  readout_time_ = std::abs(changed) < options_.least ? 0.0 : changed;
   blocks_ = {};
-  return readout_time_ - before;
 }
 
 }  // namespace byre

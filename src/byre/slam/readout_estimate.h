@@ -2,8 +2,6 @@
 
 #include "byre/slam/tracking.h"
 
-#include <optional>
-
 namespace byre {
 
 // What the points of a frame say of how much longer its rows take to be read than is thought: the normal equation of
@@ -47,8 +45,8 @@ class ReadoutEstimator {
 
   double readout_time() const { return readout_time_; }  // seconds
 
-  // Returns by how many seconds the readout time changes, where it does; then what was noted counts no longer.
-  std::optional<double> note(const ReadoutEvidence& evidence);
+  // The readout time changes where enough was noted; what led to it counts no longer then.
+  void note(const ReadoutEvidence& evidence);
 
  private:
   // Sums over blocks.
