@@ -1,36 +1,18 @@
 # What `cmake --install` lays down: the library, its headers, and the package that find_package(byre) reads.
 include(CMakePackageConfigHelpers)
 
-# The headers of all rooms but those that name a foreign library other than Eigen, or a header that does: these are the
-# rooms' own affair, and whoever uses byre needs nothing but Eigen to compile. Nor the scenes that tests are built on.
-function(byre_public_headers result)
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/*.h)
-  list(FILTER headers EXCLUDE REGEX "/src/byre/cli/|_scene\\.h$")
-  set(internal "<(ceres|embree3|opencv2|yaml-cpp|nlohmann|gtest|gmock)/")
-  set(count_before 0)
-  list(LENGTH headers count)
-  while(NOT count EQUAL count_before) # until no header is left that includes an internal one
-    set(count_before ${count})
-    foreach(header IN LISTS headers)
-      file(STRINGS ${header} found REGEX "^#include (${internal})")
-      if(found)
-        list(REMOVE_ITEM headers ${header})
-        file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR}/src ${header})
-        string(APPEND internal "|\"${name}\"")
-      endif()
-    endforeach()
-    list(LENGTH headers count)
-  endwhile()
-  set(${result} ${headers} PARENT_SCOPE)
-endfunction()
-
+# Its headers are those of include/byre, which name the standard library and Eigen alone; those of the rooms stay home.
 function(byre_install_library)
-  byre_public_headers(headers)
-  target_sources(byre PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/src FILES ${headers})
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
+  target_sources(byre_component_core PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include
+                 FILES ${headers})
 
   set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/byre)
-  install(TARGETS byre EXPORT byreTargets FILE_SET HEADERS)
-  install(EXPORT byreTargets NAMESPACE byre:: DESTINATION ${package_dir})
+  get_property(components GLOBAL PROPERTY BYRE_COMPONENTS)
+  foreach(component IN LISTS components)
+    install(TARGETS byre_component_${component} EXPORT byre_${component} FILE_SET HEADERS)
+    install(EXPORT byre_${component} NAMESPACE byre:: FILE byre_${component}.cmake DESTINATION ${package_dir})
+  endforeach()
   configure_package_config_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/byreConfig.cmake.in
                                 ${CMAKE_CURRENT_BINARY_DIR}/byreConfig.cmake INSTALL_DESTINATION ${package_dir})
   write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/byreConfigVersion.cmake COMPATIBILITY SameMinorVersion)

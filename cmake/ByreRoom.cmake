@@ -13,7 +13,8 @@ if(BYRE_SANITIZE)
 endif()
 # Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.
 target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
-target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/include)
+target_compile_definitions(byre_flags INTERFACE BYRE_VERSION="${PROJECT_VERSION}")
 
 # Every room's test program, so that the unit tests can be built without the programs and examples.
 if(BYRE_BUILD_TESTS)
@@ -23,7 +24,7 @@ endif()
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_XXHASH} ${BYRE_EMBREE} $<BUILD_INTERFACE:Boost::headers>)
 
-# Adds src/byre/<room>: its objects to the library byre, and its tests as byre_<room>_tests.
+# Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests.
 function(byre_add_room room)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/${room}/*.cc)
   set(tests ${sources})
@@ -36,7 +37,6 @@ function(byre_add_room room)
   target_link_libraries(byre_${room} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES})
   set_target_properties(byre_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   byre_precompile(room byre_${room})
-  target_sources(byre PRIVATE $<TARGET_OBJECTS:byre_${room}>)
 
   get_property(rooms_below GLOBAL PROPERTY BYRE_ROOMS_ADDED)
   set_property(GLOBAL APPEND PROPERTY BYRE_ROOMS_ADDED ${room})
@@ -54,9 +54,30 @@ function(byre_add_room room)
   endif()
 endfunction()
 
-# What the library asks of its consumers: C++20, Eigen and the same alignment; see ByreInstall.cmake for its headers.
+# A part of the library that can be linked alone, byre::<component>: the objects of its rooms, the components it needs
+# and the libraries it is linked with. Consumers need C++20, Eigen and the same alignment; see ByreInstall.cmake for the
+# headers.
+function(byre_add_component component)
+  cmake_parse_arguments(PARSE_ARGV 1 part "" "" "ROOMS;NEEDS;LINKS")
+  set(library byre_component_${component})
+  add_library(${library})
+  add_library(byre::${component} ALIAS ${library})
+  set_target_properties(${library} PROPERTIES OUTPUT_NAME byre_${component} EXPORT_NAME ${component})
+  foreach(room IN LISTS part_ROOMS)
+    target_sources(${library} PRIVATE $<TARGET_OBJECTS:byre_${room}>)
+  endforeach()
+  list(TRANSFORM part_NEEDS PREPEND byre_component_)
+  target_compile_features(${library} PUBLIC cxx_std_20)
+  target_compile_definitions(${library} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  target_link_libraries(${library} PUBLIC Eigen3::Eigen ${part_NEEDS} PRIVATE ${part_LINKS} $<BUILD_INTERFACE:byre_flags>)
+  set_property(GLOBAL APPEND PROPERTY BYRE_COMPONENTS ${component})
+endfunction()
+
+# All components as one, byre::byre.
 function(byre_finish_library)
-  target_compile_features(byre PUBLIC cxx_std_20)
-  target_compile_definitions(byre PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
-  target_link_libraries(byre PUBLIC Eigen3::Eigen PRIVATE ${BYRE_ROOM_LIBRARIES} $<BUILD_INTERFACE:byre_flags>)
+  add_library(byre INTERFACE)
+  add_library(byre::byre ALIAS byre)
+  get_property(components GLOBAL PROPERTY BYRE_COMPONENTS)
+  list(TRANSFORM components PREPEND byre_component_)
+  target_link_libraries(byre INTERFACE ${components})
 endfunction()

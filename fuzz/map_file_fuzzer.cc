@@ -1,6 +1,6 @@
 // Reads whatever bytes it is given as a map file: it must be refused, or be a sound map that is written back the same.
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/stored_map_scene.h"
 

@@ -21,18 +21,33 @@ FLOORS = [
     {"place", "simulation"},
     {"slam"},
     {"session"},
+    {"system"},
+    {"playback"},
     {"viewer"},
     {"cli"},
 ]
+# Headers of include/byre, by the room that each belongs to.
+PUBLIC = {
+    "input_error.h": "input",
+    "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "rig.h": "geometry",
+    "trajectory.h": "geometry", "two_view_failure.h": "geometry",
+    "features.h": "features", "image.h": "features", "image_condition.h": "features",
+    "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
+    "recording.h": "dataset",
+    "health.h": "slam", "state.h": "slam",
+    "frame_report.h": "session", "session_event.h": "session",
+    "byre.h": "system", "slam.h": "system",
+}
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 EVERY_ROOM = frozenset(FLOOR)
 
 # Headers that only some rooms may include. Tests are free to.
 KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "session", "simulation", "viewer", "cli"},
+        "session", "simulation", "playback", "viewer", "cli"},
     r"mutex|shared_mutex": {"session", "viewer"},
-    r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "viewer", "cli"},
+    r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
+                            "viewer", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},
@@ -114,6 +129,8 @@ def fence_fault(room: str, header: str) -> str | None:
 def include_fault(room: str, header: str, is_test: bool) -> str | None:
     if found := re.match(r"byre/(\w+)/", header):
         return room_fault(room, found[1])
+    if found := re.fullmatch(r"byre/(\w+\.h)", header):
+        return room_fault(room, PUBLIC[found[1]]) if found[1] in PUBLIC else f"'{header}' belongs to no room: see PUBLIC"
     return None if is_test else fence_fault(room, header)
 
 
@@ -138,6 +155,24 @@ def source_files(source: pathlib.Path) -> list[pathlib.Path]:
     return sorted(path for path in source.rglob("*") if path.suffix in {".h", ".cc"} and path.is_file())
 
 
+# A public header may name others of its kind, the standard library and Eigen.
+def public_faults(path: pathlib.Path) -> Iterator[Fault]:
+    for fault in file_faults(path, PUBLIC[path.name]):
+        yield fault
+    for number, line in enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1):
+        found = re.match(r'\s*#\s*include\s*([<"][^>"]+)[>"]', line)
+        if found and not re.fullmatch(r'"byre/\w+\.h|<\w+|<Eigen/\w+', found[1]):
+            yield Fault(path, number, f"a public header must not include {found[1][1:]}")
+
+
+def all_public_faults(folder: pathlib.Path) -> Iterator[Fault]:
+    for path in source_files(folder):
+        if path.name in PUBLIC:
+            yield from public_faults(path)
+        else:
+            yield Fault(path, 1, "belongs to no room: see PUBLIC")
+
+
 def faults(source: pathlib.Path) -> Iterator[Fault]:
     for path in source_files(source):
         room = path.relative_to(source).parts[0]
@@ -159,7 +194,9 @@ def main(arguments: list[str]) -> int:
     if not files:
         print(f"{source}: no .h or .cc file in it", file=sys.stderr)
         return 2
-    found = list(faults(source))
+    public = source.parent.parent / "include" / "byre"
+    found = list(faults(source)) + list(all_public_faults(public))
+    files += source_files(public)
     for fault in found:
         print(fault)
     print(f"{len(files)} files, {len(found)} faults" if found else f"floors hold in {len(files)} files")

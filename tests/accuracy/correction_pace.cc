@@ -3,10 +3,10 @@
 // Usage: byre_correction_pace RECORDING
 // Prints each correction with the frames that came meanwhile, and the slowest of them. Exit code 2: wrong usage.
 
-#include "byre/dataset/recording.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/place/vocabulary.h"
+#include "byre/recording.h"
 #include "byre/session/session.h"
 
 #include <algorithm>

@@ -6,11 +6,11 @@
 
 #include "mapped_recording.h"
 
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/online_copy.h"
+#include "byre/trajectory_file.h"
 
 #include <cstdio>
 #include <cstdlib>

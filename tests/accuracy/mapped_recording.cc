@@ -1,10 +1,10 @@
 #include "mapped_recording.h"
 
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
+#include "byre/trajectory_file.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
-#include "byre/evaluation/trajectory_error.h"
 #include "byre/place/vocabulary.h"
+#include "byre/recording.h"
 #include "byre/session/session.h"
+#include "byre/trajectory_error.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,24 +1,57 @@
 #!/usr/bin/env bash
-# Installs a built byre into a new folder and builds and runs a project that finds it there.
+# Installs a built byre into a new folder, builds a project that finds it there and the examples, and runs them.
 # Usage: run_install_test.sh BUILD_DIR
 set -euo pipefail
 
 build_dir=${1:?usage: run_install_test.sh BUILD_DIR}
-consumer_source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+prefix=$work/prefix
 
-cmake --install "$build_dir" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
-cmake -S "$consumer_source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix"
-cmake --build "$work/build"
+fail() { echo "run_install_test.sh: $1" >&2; exit 1; }
 
-said=$("$work/build/consumer")
+build() { # FOLDER NAME
+  cmake -S "$1" -B "$work/$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix"
+  cmake --build "$work/$2"
+}
+
+cmake --install "$build_dir" --prefix "$prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
+
+build "$source_dir/tests/install" consumer
+said=$("$work/consumer/consumer")
 echo "$said"
-[[ $said == "moved by 1.000 2.000 3.000" ]]
+[[ $said == "initialising, no image" ]] || fail "the consumer of byre::core was told something else"
+libraries=$(ldd "$work/consumer/consumer")
+! grep -E "yaml|embree|imgcodecs|videoio|boost" <<<"$libraries" || fail "byre::core is linked with what it has no use for"
 
 # The installed program uses what was installed with it.
-if [[ -x $work/prefix/bin/byre ]]; then
-  shown=$("$work/prefix/bin/byre" vocabulary show)
-  echo "$shown"
-  [[ $shown == "vocabulary   $work/prefix/share/byre/default.vocabulary"* ]]
-fi
+byre=$prefix/bin/byre
+[[ -x $byre ]] || { echo "no program was built: the examples are not run"; exit 0; }
+shown=$("$byre" vocabulary show)
+echo "$shown"
+[[ $shown == "vocabulary   $prefix/share/byre/default.vocabulary"* ]]
+
+build "$source_dir/examples" examples
+cd "$work"
+"$build_dir/tests/recordings/render_room" room --frames 60 --rate 10 --laps 0.4 2>/dev/null
+
+examples/02_map_a_recording room room.byre room.txt
+"$byre" map room --trajectory program.txt --quiet >/dev/null
+cmp room.txt program.txt || fail "02_map_a_recording and the program give different poses"
+
+examples/03_mission_on_a_map room room.byre | tee mission.log
+grep -q "localised" mission.log || fail "03_mission_on_a_map did not find itself in its map"
+trusted=$(sed -n 's/^\([0-9]*\) of 60 frames trusted$/\1/p' mission.log)
+((trusted >= 50)) || fail "only $trusted of 60 frames are trusted on the map of the same recording"
+
+examples/01_live_stereo room | tail -n 3 | tee live.log
+grep -qE "^[0-9]+ frames, [0-9]+ missed, [0-9]+ keyframes$" live.log || fail "01_live_stereo did not come to its end"
+grep -q "tracking" live.log || fail "01_live_stereo does not know where it is"
+
+examples/04_own_features | tee features.log
+grep -qE "^400 of 400 frames have a pose; the worst is off by [0-9]\.[0-9] mm$" features.log ||
+  fail "04_own_features is further off than a centimetre"
+
+! examples/03_mission_on_a_map room no-such.byre 2>refused.log || fail "a map that is not there was taken"
+grep -q "no-such.byre" refused.log || fail "the message does not name the map that is not there"

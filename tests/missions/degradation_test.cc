@@ -1,7 +1,7 @@
 #include "degradation.h"
 
-#include "byre/features/image_condition.h"
 #include "byre/features/test_images.h"
+#include "byre/image_condition.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "degradation.h"
 
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
 #include "byre/simulation/camera_imperfection.h"
 
 #include <cstdint>

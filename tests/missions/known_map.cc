@@ -4,7 +4,7 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
 #include "byre/session/session.h"

@@ -2,8 +2,8 @@
 
 #include "imperfection.h"
 
-#include "byre/dataset/recording.h"
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
+#include "byre/recording.h"
 #include "byre/slam/offline_map.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "degradation.h"
 
-#include "byre/geometry/trajectory.h"
+#include "byre/trajectory.h"
 
 #include <functional>
 #include <optional>

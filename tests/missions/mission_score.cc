@@ -1,6 +1,6 @@
 #include "mission_score.h"
 
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <cmath>

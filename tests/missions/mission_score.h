@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/session/session.h"
 
 #include <optional>

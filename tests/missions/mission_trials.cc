@@ -8,8 +8,8 @@
 
 #include "mission_case.h"
 
-#include "byre/dataset/recording.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
 
 #include <algorithm>
 #include <charconv>

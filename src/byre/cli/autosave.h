@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/cli/stopwatch.h"
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
+#include "byre/session/stopwatch.h"
 
 #include <functional>
 #include <future>

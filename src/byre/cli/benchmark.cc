@@ -8,10 +8,10 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/pace_option.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

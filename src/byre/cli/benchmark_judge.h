@@ -2,7 +2,7 @@
 
 #include "byre/cli/benchmark_measures.h"
 #include "byre/cli/map_frame_error.h"
-#include "byre/cli/map_run.h"
+#include "byre/playback/map_run.h"
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "byre/cli/benchmark_measures.h"
 
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <array>

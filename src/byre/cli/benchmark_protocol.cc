@@ -4,7 +4,7 @@
 #include "byre/cli/frame_range_options.h"
 #include "byre/cli/open_options.h"
 #include "byre/input/data_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/cli/benchmark_measures.h"
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "byre/cli/benchmark_protocol.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <fstream>
 

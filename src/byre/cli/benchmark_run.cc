@@ -3,11 +3,12 @@
 #include "byre/cli/benchmark_memory.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/output_file.h"
-#include "byre/cli/resources.h"
-#include "byre/cli/scaled_recording.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
+#include "byre/system/resources.h"
+#include "byre/system/stored_map.h"
 
 #include <algorithm>
 #include <cctype>
@@ -104,7 +105,7 @@ struct TimedRun {
   CostMeasures cost;
 };
 
-TimedRun run_and_time(Recording& recording, const MapRunOptions& options, const MapRunHooks& hooks) {
+TimedRun run_and_time(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resources_used_so_far().cpu_seconds;
   TimedRun timed;
@@ -173,7 +174,7 @@ class BenchmarkRunner {
     ArmResult result;
     result.arm = arm;
     for (int i = 0; i < protocol_.runs; ++i) {
-      MapRunOptions run_options = options_for(arm, i);
+      EngineOptions run_options = options_for(arm, i);
       if (map != nullptr) run_options.offline = load_offline_map(map->file, vocabulary_);
       hooks_.before_run(what + formatted(", run %d of %d", i + 1, protocol_.runs), recording.size());
       const TimedRun timed = run_and_time(recording, run_options, run_hooks());
@@ -232,8 +233,8 @@ class BenchmarkRunner {
     result_.maps.push_back(std::move(made));
   }
 
-  MapRunOptions options_for(Arm arm, int run) const {
-    MapRunOptions run_options;
+  EngineOptions options_for(Arm arm, int run) const {
+    EngineOptions run_options;
     run_options.pace = options_.pace;
     run_options.vocabulary = vocabulary_;
     run_options.session.map_online = arm != Arm::localise_only;

@@ -2,8 +2,8 @@
 
 #include "byre/cli/benchmark_judge.h"
 #include "byre/cli/benchmark_protocol.h"
-#include "byre/cli/map_run.h"
 #include "byre/place/vocabulary.h"
+#include "byre/playback/map_run.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "byre/cli/benchmark_run.h"
 
-#include "byre/cli/rendered_fixture.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <fstream>
 

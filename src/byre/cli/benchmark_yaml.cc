@@ -1,9 +1,9 @@
 #include "byre/cli/benchmark_yaml.h"
 
 #include "byre/cli/formatted.h"
-#include "byre/input/input_error.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cmath>

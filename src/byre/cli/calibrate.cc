@@ -7,12 +7,12 @@
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/run_with_progress.h"
-#include "byre/cli/scaled_recording.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/warnings.h"
 #include "byre/dataset/calibration_file.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/system/stored_map.h"
 
 #include <iostream>
 #include <memory>
@@ -65,7 +65,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   const auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, false);
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
-  MapRunOptions run_options;
+  EngineOptions run_options;
   run_options.vocabulary = open_vocabulary(std::nullopt);
   limit_image_threads(1);
   const InterruptCatcher interrupt({options.output});

@@ -1,7 +1,7 @@
 // "byre check" as a user runs it.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/cli/map_from_poses_run.h"
-#include "byre/cli/rendered_fixture.h"
 #include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
 
 namespace byre::cli {
 

@@ -6,7 +6,7 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <memory>
 #include <ostream>

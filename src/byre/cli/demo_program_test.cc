@@ -1,8 +1,8 @@
 // "byre demo" as a user runs it, on a few small images.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
+#include "byre/trajectory_file.h"
 
 #include <gmock/gmock.h>
 

@@ -8,10 +8,11 @@
 #include "byre/cli/register_run.h"
 #include "byre/cli/run_with_progress.h"
 #include "byre/cli/simulate_run.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/features/image_threads.h"
+#include "byre/playback/source_recording.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
 
 #include <algorithm>
 #include <iostream>
@@ -128,8 +129,8 @@ class DemoRunner {
     findings_.rendering_s += rendering.preparing_s + rendering.rendering_s;
   }
 
-  MapRunOptions run_options(Arm arm) const {
-    MapRunOptions run_options;
+  EngineOptions run_options(Arm arm) const {
+    EngineOptions run_options;
     run_options.vocabulary = vocabulary_;
     run_options.session.map_online = arm != Arm::localise_only;
     if (arm != Arm::no_map) run_options.offline = load_offline_map(map_file(), vocabulary_);

@@ -1,9 +1,9 @@
 // A recording by a depth camera as a user maps it, and missions with one camera and with two on that map.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
 
 #include <cmath>
 #include <iomanip>

@@ -4,10 +4,10 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/mission_input.h"
 #include "byre/cli/output_file.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/system/stored_map.h"
 #include "byre/viewer/camera_picture.h"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 #include "byre/cli/draw_mission.h"
 
 #include "byre/cli/formatted.h"
-#include "byre/cli/map_run.h"
 #include "byre/cli/run_with_progress.h"
-#include "byre/cli/stored_map.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/map_words.h"
+#include "byre/playback/map_run.h"
+#include "byre/system/stored_map.h"
 #include "byre/viewer/frame_view.h"
 #include "byre/viewer/run_video.h"
 
@@ -105,8 +105,8 @@ FrameRange needed_range(const DrawOptions& options) {
   return range;
 }
 
-MapRunOptions run_options(const DrawOptions& options, StoredMap stored) {
-  MapRunOptions run;
+EngineOptions run_options(const DrawOptions& options, StoredMap stored) {
+  EngineOptions run;
   run.vocabulary = open_vocabulary(options.vocabulary);
   add_words(stored, *run.vocabulary);
   run.offline = std::make_shared<const OfflineMap>(std::move(stored.map), *run.vocabulary);

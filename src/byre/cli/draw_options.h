@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 #include "byre/viewer/plan_picture.h"
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/program_fixture.h"
 #include "byre/cli/register_fixture.h"
-#include "byre/cli/rendered_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <string>
 #include <utility>

@@ -7,9 +7,9 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/trajectory_output.h"
-#include "byre/dataset/recording.h"
-#include "byre/evaluation/trajectory_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
+#include "byre/trajectory_file.h"
 
 #include <filesystem>
 #include <map>

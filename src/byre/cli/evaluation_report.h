@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/evaluation/segment_error.h"
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 
 #include <optional>
 #include <string>

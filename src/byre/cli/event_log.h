@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
+#include "byre/playback/map_run.h"
 
 #include <iosfwd>
 #include <optional>

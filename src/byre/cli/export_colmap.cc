@@ -3,7 +3,7 @@
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/open_options.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <memory>
 #include <optional>

@@ -2,8 +2,8 @@
 
 #include "byre/dataset/colmap_camera.h"
 #include "byre/dataset/frame_selection.h"
-#include "byre/dataset/recording.h"
 #include "byre/dataset/recording_index.h"
+#include "byre/recording.h"
 
 #include <utility>
 #include <vector>

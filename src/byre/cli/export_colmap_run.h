@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/dataset/colmap_model.h"
-#include "byre/dataset/recording.h"
 #include "byre/map/map_file.h"
+#include "byre/recording.h"
 
 #include <filesystem>
 #include <map>

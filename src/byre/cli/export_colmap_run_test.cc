@@ -3,7 +3,7 @@
 #include "byre/cli/colmap_fixture.h"
 #include "byre/dataset/colmap_camera.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include "byre/cli/commands.h"
 #include "byre/cli/program_fixture.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 
 #include <optional>
 #include <string_view>

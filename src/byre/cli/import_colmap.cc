@@ -7,11 +7,11 @@
 #include "byre/cli/open_options.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/warnings.h"
-#include "byre/dataset/recording.h"
 #include "byre/features/image_threads.h"
+#include "byre/recording.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

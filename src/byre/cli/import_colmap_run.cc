@@ -3,9 +3,9 @@
 #include "byre/cli/formatted.h"
 #include "byre/dataset/colmap_camera.h"
 #include "byre/dataset/image_file.h"
-#include "byre/evaluation/trajectory_error.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <map>

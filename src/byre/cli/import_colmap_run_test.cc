@@ -3,7 +3,7 @@
 #include "byre/cli/colmap_fixture.h"
 #include "byre/cli/export_colmap_run.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "byre/cli/inspect_statistics.h"
 
-#include "byre/cli/stored_map.h"
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/system/stored_map.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // What is left of a run that is interrupted or killed, or that cannot write.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -8,15 +8,15 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/pose_frame.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
 #include "byre/dataset/calibration_file.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/map_words.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
 
 #include <algorithm>
 #include <iostream>

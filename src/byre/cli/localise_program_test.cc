@@ -2,10 +2,10 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
 
 #include <cmath>
 

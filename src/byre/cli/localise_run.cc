@@ -1,11 +1,11 @@
 #include "byre/cli/localise_run.h"
 
-#include "byre/cli/decode_ahead.h"
 #include "byre/cli/formatted.h"
-#include "byre/cli/stopwatch.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_fit.h"
 #include "byre/dataset/image_names.h"
+#include "byre/playback/decode_ahead.h"
+#include "byre/session/stopwatch.h"
 
 #include <utility>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
 #include "byre/features/extract.h"
 #include "byre/map/map_file.h"
 #include "byre/place/place_index.h"
+#include "byre/recording.h"
 #include "byre/slam/localisation.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/interrupt.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <exception>
 #include <filesystem>

@@ -9,13 +9,14 @@
 #include "byre/cli/output_options.h"
 #include "byre/cli/posed_map.h"
 #include "byre/cli/run_with_progress.h"
-#include "byre/cli/scaled_recording.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_output.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/map/map_file.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
 #include "byre/slam/online_copy.h"
+#include "byre/system/stored_map.h"
 
 #include <algorithm>
 #include <iostream>
@@ -42,7 +43,7 @@ void save(Map offline, const std::optional<RefinedCalibration>& calibration, con
   save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
 }
 
-MapRun run_and_autosave(Recording& recording, const MapRunOptions& run_options, const MapOptions& options,
+MapRun run_and_autosave(Recording& recording, const EngineOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
                     [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/evaluation/trajectory_error.h"
 #include "byre/map/map.h"
+#include "byre/trajectory_error.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 #include "byre/cli/map_from_poses_run.h"
 
-#include "byre/cli/decode_ahead.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_file.h"
+#include "byre/playback/decode_ahead.h"
 
 namespace byre::cli {
 

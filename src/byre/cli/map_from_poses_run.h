@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
 #include "byre/features/extract.h"
+#include "byre/recording.h"
 #include "byre/slam/map_from_poses.h"
 
 #include <functional>

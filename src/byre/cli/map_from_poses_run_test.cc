@@ -1,8 +1,8 @@
 #include "byre/cli/map_from_poses_run.h"
 
-#include "byre/cli/rendered_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <gmock/gmock.h>
 

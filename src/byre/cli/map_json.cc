@@ -1,9 +1,10 @@
 #include "byre/cli/calibration_report.h"
+#include "byre/cli/finish_report.h"
 #include "byre/cli/map_report.h"
 #include "byre/cli/map_statistics.h"
 #include "byre/cli/register_report.h"
 #include "byre/cli/report_json.h"
-#include "byre/cli/stored_map.h"
+#include "byre/system/stored_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 // What decides how much is computed; all else is as the version has it.
-Json options_json(const MapRunOptions& options) {
+Json options_json(const EngineOptions& options) {
   return {{"max_features", options.extract.max_features},
           {"fast_threshold", options.extract.fast_threshold},
           {"min_fast_threshold", options.extract.min_fast_threshold},
@@ -159,7 +160,7 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"counts", counts_json(run)},
                {"extension", extension_json(run, protocol)},
                {"calibration", run.calibration ? calibration_json(*run.calibration) : Json()},
-               {"finishing", run.finishing ? to_json(*run.finishing) : Json()},
+               {"finishing", run.finishing ? cli::to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},
                {"mapping_jobs", jobs_json(run.job_seconds)}};

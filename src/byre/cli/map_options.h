@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
-#include "byre/evaluation/trajectory_file.h"
+#include "byre/playback/map_run.h"
+#include "byre/trajectory_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,10 +1,11 @@
 #include "byre/cli/map_report.h"
 
 #include "byre/cli/calibration_report.h"
+#include "byre/cli/finish_report.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/map_statistics.h"
-#include "byre/cli/stored_map.h"
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/system/stored_map.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <stdexcept>

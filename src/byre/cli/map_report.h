@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
 #include "byre/cli/mission_report.h"
-#include "byre/cli/resources.h"
+#include "byre/playback/map_run.h"
+#include "byre/system/resources.h"
 
 #include <optional>
 #include <string>
@@ -17,7 +17,7 @@ struct MapProtocol {
   CameraChoice camera = CameraChoice::stereo;
   FrameRange range;
   int frames_in_range = 0;
-  MapRunOptions options;
+  EngineOptions options;
   std::string extended;                  // the map that was gone on with; empty for none
   std::vector<std::string> recordings;   // of the whole map
   std::string offline;                   // the map of a mission; empty for none

@@ -1,6 +1,6 @@
 #include "byre/cli/map_statistics.h"
 
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <numeric>

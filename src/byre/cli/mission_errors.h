@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/cli/map_frame_error.h"
-#include "byre/cli/map_run.h"
+#include "byre/playback/map_run.h"
 
 #include <optional>
 #include <vector>

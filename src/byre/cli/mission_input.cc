@@ -1,7 +1,7 @@
 #include "byre/cli/mission_input.h"
 
-#include "byre/input/input_error.h"
 #include "byre/input/regular_file.h"
+#include "byre/input_error.h"
 
 #include <array>
 #include <fstream>

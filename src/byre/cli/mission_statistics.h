@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/playback/map_run.h"
+#include "byre/trajectory_error.h"
 
 #include <optional>
 #include <utility>

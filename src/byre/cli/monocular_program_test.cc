@@ -1,9 +1,9 @@
 // Recordings of one camera as a user maps them, and missions by one camera on a map that two have made.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #include "byre/cli/output_file.h"
 
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/input/binary_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/trajectory_file.h"
 
 #include <span>
 #include <system_error>

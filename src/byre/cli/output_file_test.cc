@@ -1,6 +1,6 @@
 #include "byre/cli/output_file.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <fstream>
 #include <iterator>

@@ -1,6 +1,6 @@
 #include "byre/cli/pose_frame.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
 #include "byre/map/plan_registration.h"
+#include "byre/playback/map_run.h"
 
 #include <cstdint>
 #include <filesystem>

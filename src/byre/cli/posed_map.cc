@@ -4,11 +4,12 @@
 #include "byre/cli/interrupt.h"
 #include "byre/cli/map_from_poses_run.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
+#include "byre/playback/source_recording.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

@@ -5,9 +5,9 @@
 #include "byre/cli/formatted.h"
 #include "byre/cli/interrupt.h"
 #include "byre/cli/output_file.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/cli/stored_map.h"
+#include "byre/session/stopwatch.h"
 #include "byre/slam/online_copy.h"
+#include "byre/system/stored_map.h"
 
 #include <memory>
 #include <ostream>
@@ -50,7 +50,7 @@ Finishing finish(Map& online, const Vocabulary& vocabulary, const FinishHooks& h
 std::string to_text(const RefineOptions& options, const Finishing& finishing) {
   const MapQuality& after = finishing.report.after;
   std::string text = "map          " + options.map.string() +
-                     formatted(": %d keyframes, %d points\n", after.keyframes, after.points) + to_text(finishing);
+                     formatted(": %d keyframes, %d points\n", after.keyframes, after.points) + cli::to_text(finishing);
   return text + "written      " + options.written().string() + "\n";
 }
 
@@ -59,7 +59,7 @@ std::string to_json(const RefineOptions& options, const Finishing& finishing) {
                                  {"version", BYRE_VERSION},
                                  {"map", options.map.string()},
                                  {"written", options.written().string()}};
-  json["finishing"] = to_json(finishing);
+  json["finishing"] = cli::to_json(finishing);
   constexpr int kIndent = 2;
   return json.dump(kIndent) + "\n";
 }

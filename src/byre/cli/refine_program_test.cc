@@ -2,9 +2,9 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
 #include "byre/map/map_file.h"
 #include "byre/map/stored_map_scene.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/register_report.h"
 #include "byre/cli/register_run.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <cmath>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "byre/cli/register_picks.h"
 
 #include "byre/input/csv_table.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 #include "byre/map/driving_plane.h"
 
 #include <algorithm>

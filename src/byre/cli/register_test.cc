@@ -1,6 +1,6 @@
 #include "byre/cli/register_fixture.h"
 #include "byre/cli/register_report.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
 
 #include <cmath>

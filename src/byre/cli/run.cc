@@ -8,14 +8,15 @@
 #include "byre/cli/output_options.h"
 #include "byre/cli/run_options.h"
 #include "byre/cli/run_with_progress.h"
-#include "byre/cli/scaled_recording.h"
-#include "byre/cli/stored_map.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/trajectory_output.h"
 #include "byre/cli/view_run.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
+#include "byre/system/stored_map.h"
 
 #include <cerrno>
 #include <cstring>
@@ -122,7 +123,7 @@ MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunO
   return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
 }
 
-Mission judge(const MapRun& run, const MapRunOptions& options, const std::optional<Truth>& truth,
+Mission judge(const MapRun& run, const EngineOptions& options, const std::optional<Truth>& truth,
               const ScaledRecording& recording) {
   Mission mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);

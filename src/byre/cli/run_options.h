@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/cli/map_run.h"
 #include "byre/cli/pose_frame.h"
 #include "byre/cli/view_options.h"
-#include "byre/evaluation/trajectory_file.h"
+#include "byre/playback/map_run.h"
+#include "byre/trajectory_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,13 +1,13 @@
 // "byre run" as a user runs it: exit codes, what it says on which stream, and the files it leaves.
 
+#include "byre/alignment.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
-#include "byre/evaluation/trajectory_file.h"
-#include "byre/geometry/alignment.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/scaled_copy.h"
+#include "byre/simulation/rendered_fixture.h"
 #include "byre/slam/state.h"
+#include "byre/trajectory_file.h"
 
 #include <sstream>
 #include <string>

@@ -3,7 +3,7 @@
 #include "byre/cli/finish_hooks.h"
 #include "byre/cli/formatted.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
+#include "byre/session/stopwatch.h"
 
 #include <iostream>
 #include <utility>
@@ -34,7 +34,7 @@ Tone tone_after(const MappedFrame& frame, bool is_mission) {
 
 }  // namespace
 
-MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
+MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
                          const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
   Progress progress(std::cerr, progress_style(quiet), recording.size());
   const Stopwatch watch;

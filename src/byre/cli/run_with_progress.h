@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/cli/interrupt.h"
-#include "byre/cli/map_run.h"
+#include "byre/playback/map_run.h"
 
 #include <optional>
 
@@ -9,7 +9,7 @@ namespace byre::cli {
 
 // run_map, stopped by Ctrl-C, that tells on the standard error stream how far it is unless quiet. Of the hooks,
 // after_frame, look and offer_map are called too unless empty; the others are set here.
-MapRun run_with_progress(Recording& recording, const MapRunOptions& options, const MapRunHooks& more_hooks,
+MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
                          const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before = {});
 
 }  // namespace byre::cli

@@ -1,7 +1,7 @@
 #include "byre/cli/scale_run.h"
 
 #include "byre/cli/formatted.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "byre/cli/scale_run.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/simulation/simulated_mission.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 // "byre simulate" as a user runs it.
 
 #include "byre/cli/program_fixture.h"
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include "byre/cli/simulate_run.h"
 
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/session/stopwatch.h"
 
 #include <iostream>
 

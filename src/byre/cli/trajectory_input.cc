@@ -1,8 +1,8 @@
 #include "byre/cli/trajectory_input.h"
 
-#include "byre/dataset/recording.h"
-#include "byre/evaluation/trajectory_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
+#include "byre/trajectory_file.h"
 
 namespace byre::cli {
 

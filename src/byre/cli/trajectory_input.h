@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/trajectory.h"
+#include "byre/trajectory.h"
 
 #include <filesystem>
 #include <optional>

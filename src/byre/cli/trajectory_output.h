@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/evaluation/trajectory_file.h"
+#include "byre/trajectory_file.h"
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 #include "byre/cli/program_fixture.h"
-#include "byre/cli/rendered_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <cstdint>
 #include <iterator>

@@ -2,8 +2,8 @@
 
 #include "byre/cli/formatted.h"
 #include "byre/cli/pose_frame.h"
-#include "byre/cli/stopwatch.h"
 #include "byre/map/driving_plane.h"
+#include "byre/session/stopwatch.h"
 
 #include <algorithm>
 #include <chrono>

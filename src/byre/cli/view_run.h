@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/cli/interrupt.h"
-#include "byre/cli/map_run.h"
 #include "byre/cli/view_options.h"
+#include "byre/playback/map_run.h"
 #include "byre/viewer/web_run.h"
 
 #include <filesystem>

@@ -6,10 +6,10 @@
 #include "byre/cli/number_check.h"
 #include "byre/cli/output_file.h"
 #include "byre/cli/progress.h"
-#include "byre/cli/stopwatch.h"
 #include "byre/cli/vocabulary_images.h"
 #include "byre/cli/warnings.h"
 #include "byre/features/image_threads.h"
+#include "byre/session/stopwatch.h"
 
 #include <iostream>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "byre/dataset/calibration_fields.h"
 
-#include "byre/input/input_error.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <cmath>
 #include <fstream>

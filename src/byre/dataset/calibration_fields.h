@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "byre/dataset/calibration_file.h"
 
 #include "byre/dataset/camera_fields.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <limits>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "byre/dataset/camera_fields.h"
 
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cmath>

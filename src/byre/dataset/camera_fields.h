@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/calibration.h"
 #include "byre/dataset/calibration_fields.h"
-#include "byre/geometry/camera.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/calibration.h"
 #include "byre/dataset/colmap_model.h"
-#include "byre/geometry/camera.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "byre/dataset/colmap_model.h"
 
 #include "byre/dataset/colmap_files.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cmath>

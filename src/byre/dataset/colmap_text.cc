@@ -1,8 +1,8 @@
 #include "byre/dataset/colmap_camera.h"
 #include "byre/dataset/colmap_files.h"
 #include "byre/input/binary_file.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <charconv>

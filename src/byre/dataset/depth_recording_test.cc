@@ -1,8 +1,8 @@
 // Recordings of one camera with a depth camera, in TUM's format.
 
-#include "byre/dataset/recording.h"
 #include "byre/dataset/test_folder.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/recording.h"
 
 #include <gmock/gmock.h>
 

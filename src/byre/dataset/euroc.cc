@@ -2,8 +2,8 @@
 #include "byre/dataset/euroc_sensor.h"
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/timed_files.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 namespace byre {
 namespace {

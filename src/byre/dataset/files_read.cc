@@ -2,8 +2,8 @@
 
 #include "byre/dataset/floor_plan.h"
 #include "byre/dataset/image_names.h"
-#include "byre/dataset/recording.h"
 #include "byre/input/text_file.h"
+#include "byre/recording.h"
 
 #include <algorithm>
 #include <exception>

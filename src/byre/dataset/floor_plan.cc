@@ -2,9 +2,9 @@
 
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_size.h"
-#include "byre/input/input_error.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>

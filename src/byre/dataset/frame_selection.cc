@@ -1,6 +1,6 @@
 #include "byre/dataset/frame_selection.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <utility>

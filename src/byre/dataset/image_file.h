@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/features/image.h"
+#include "byre/image.h"
 
 #include <filesystem>
 #include <optional>

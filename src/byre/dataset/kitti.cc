@@ -1,7 +1,7 @@
 #include "byre/dataset/recording_index.h"
-#include "byre/evaluation/trajectory_file.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
+#include "byre/trajectory_file.h"
 
 #include <array>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 
 #include "byre/dataset/calibration_file.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/video.h"
-#include "byre/evaluation/trajectory_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/trajectory_file.h"
 
 #include <cassert>
 #include <utility>

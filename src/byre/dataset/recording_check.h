@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
-#include "byre/features/image_condition.h"
+#include "byre/image_condition.h"
+#include "byre/recording.h"
 
 #include <array>
 #include <functional>

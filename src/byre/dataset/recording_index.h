@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/dataset/recording.h"
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
+#include "byre/image.h"
+#include "byre/recording.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "byre/dataset/recording.h"
+#include "byre/recording.h"
 
 #include "byre/dataset/test_folder.h"
 

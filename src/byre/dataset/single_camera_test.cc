@@ -1,8 +1,8 @@
 // Recordings of one camera: one of a pair, TUM RGB-D folders, folders of images, videos.
 
-#include "byre/dataset/recording.h"
 #include "byre/dataset/test_folder.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/recording.h"
 
 #include <gmock/gmock.h>
 #include <opencv2/videoio.hpp>

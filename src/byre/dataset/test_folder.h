@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/features/image.h"
-#include "byre/input/input_error.h"
+#include "byre/image.h"
+#include "byre/input_error.h"
 
 #include <filesystem>
 #include <fstream>

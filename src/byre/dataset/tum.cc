@@ -1,7 +1,7 @@
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/timed_files.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 

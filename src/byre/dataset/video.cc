@@ -2,7 +2,7 @@
 
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_names.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>

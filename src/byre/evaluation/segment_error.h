@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "byre/evaluation/trajectory_error.h"
+#include "byre/trajectory_error.h"
 #include "byre/geometry/degrees.h"
 
 #include <cmath>

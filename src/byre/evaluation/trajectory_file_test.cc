@@ -1,6 +1,6 @@
-#include "byre/evaluation/trajectory_file.h"
+#include "byre/trajectory_file.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <cstdlib>
 #include <fstream>

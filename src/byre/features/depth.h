@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/features/features.h"
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
-#include "byre/geometry/rig.h"
+#include "byre/calibration.h"
+#include "byre/features.h"
+#include "byre/image.h"
+#include "byre/rig.h"
 
 #include <optional>
 #include <vector>

@@ -2,12 +2,12 @@
 
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
-#include "byre/features/image_condition.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
+#include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <chrono>
 #include <cmath>

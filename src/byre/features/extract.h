@@ -1,9 +1,9 @@
 #pragma once
 
+#include "byre/calibration.h"
+#include "byre/features.h"
 #include "byre/features/depth.h"
-#include "byre/features/features.h"
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
+#include "byre/image.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "byre/features/extract.h"
 
 #include "byre/features/test_images.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "byre/features/features.h"
+#include "byre/features.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "byre/features/image_condition.h"
+#include "byre/image_condition.h"
 
 #include <algorithm>
 #include <array>

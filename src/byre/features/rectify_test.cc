@@ -2,7 +2,7 @@
 
 #include "byre/features/test_images.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <cmath>
 #include <numbers>

@@ -3,8 +3,8 @@
 // Synthetic images for tests: textures without end that can be looked up between pixels, so that any shift or warp of
 // an image is known exactly.
 
-#include "byre/features/features.h"
-#include "byre/features/image.h"
+#include "byre/features.h"
+#include "byre/image.h"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/rig.h"
 #include "byre/geometry/robust.h"
+#include "byre/rig.h"
 
 #include <optional>
 #include <span>

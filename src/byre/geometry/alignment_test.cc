@@ -1,4 +1,4 @@
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

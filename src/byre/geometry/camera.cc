@@ -1,4 +1,4 @@
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
 
 #include <algorithm>
 #include <cmath>

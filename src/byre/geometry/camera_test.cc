@@ -1,4 +1,4 @@
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

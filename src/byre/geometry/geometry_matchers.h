@@ -2,7 +2,7 @@
 
 // Matchers for tests: they say by how much and in what a pose or a point is off.
 
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 
 #include <gmock/gmock.h>
 

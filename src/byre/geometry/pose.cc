@@ -1,4 +1,4 @@
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

@@ -1,6 +1,6 @@
 #include "byre/geometry/rectification.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
-#include "byre/geometry/rig.h"
+#include "byre/calibration.h"
+#include "byre/rig.h"
 
 namespace byre {
 

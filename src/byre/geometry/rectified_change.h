@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
 #include "byre/geometry/pixel_grid.h"
 #include "byre/geometry/rectification.h"
 

@@ -1,4 +1,4 @@
-#include "byre/geometry/rig.h"
+#include "byre/rig.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

@@ -1,4 +1,4 @@
-#include "byre/geometry/trajectory.h"
+#include "byre/trajectory.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,28 +1,13 @@
 #pragma once
 
 #include "byre/geometry/two_view_models.h"
+#include "byre/two_view_failure.h"
 
-#include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace byre {
-
-// Why two views do not tell how the camera moved; ordered by how far the attempt came.
-enum class TwoViewFailure : std::uint8_t {
-  none,
-  too_few_matches,   // between the views
-  no_common_motion,  // too few of them agree on any motion
-  rotation_only,     // a turn on the spot explains them as well
-  small_parallax,    // the camera has hardly moved
-  planar_ambiguity,  // two motions explain the matches alike, as a plane allows
-  too_few_points,    // with a depth that is known
-  uncertain          // they leave the direction of the motion open by more than is useful
-};
-
-std::string_view to_string(TwoViewFailure failure);
 
 struct TwoViewOptions {
   int min_matches = 100;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/pose.h"
 #include "byre/geometry/two_view_match.h"
+#include "byre/pose.h"
 
 #include <cstdint>
 #include <span>

@@ -2,8 +2,8 @@
 
 // Two views of made-up points with known motion, for the tests of what tells the motion from them.
 
-#include "byre/geometry/rig.h"
 #include "byre/geometry/two_view_match.h"
+#include "byre/rig.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "byre/input/data_file.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <string>
 #include <system_error>

@@ -1,6 +1,6 @@
 #include "byre/input/text_file.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 #include "byre/map/map_file.h"
 
 #include "byre/input/binary_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_sections.h"
 
 #include <algorithm>

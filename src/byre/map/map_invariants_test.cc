@@ -1,7 +1,7 @@
 // Every invariant of a stored map, broken once: find_faults names it, and no file with it is read. And every way to
 // break the bytes of a section that no map can be made of.
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/map_file.h"
 #include "byre/map/stored_map_scene.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/pose.h"
 #include "byre/input/byte_stream.h"
+#include "byre/pose.h"
 
 #include <string>
 #include <string_view>

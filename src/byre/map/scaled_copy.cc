@@ -1,6 +1,6 @@
 #include "byre/map/scaled_copy.h"
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 
 #include <cassert>
 #include <cmath>

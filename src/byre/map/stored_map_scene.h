@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/map_file.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/geometry/calibration_sensitivity.h"
-#include "byre/geometry/rig.h"
+#include "byre/rig.h"
 
 #include <functional>
 #include <optional>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "byre/geometry/calibration_sensitivity.h"
-#include "byre/geometry/pose.h"
 #include "byre/optimise/bundle_adjustment.h"
 #include "byre/optimise/reprojection.h"
+#include "byre/pose.h"
 
 #include <ceres/sized_cost_function.h>
 

@@ -2,7 +2,7 @@
 
 // Synthetic truth for the tests of this room.
 
-#include "byre/geometry/rig.h"
+#include "byre/rig.h"
 
 #include <random>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/rig.h"
+#include "byre/rig.h"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
 #include "byre/optimise/rotation_manifold.h"
 
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 
 namespace byre {
 

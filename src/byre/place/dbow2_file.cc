@@ -1,7 +1,7 @@
 #include "byre/place/dbow2_file.h"
 
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "byre/place/dbow2_file.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 
 #include <filesystem>

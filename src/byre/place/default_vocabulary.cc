@@ -1,5 +1,5 @@
 #include "byre/input/data_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 
 #include <cstdlib>

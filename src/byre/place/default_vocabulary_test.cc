@@ -1,4 +1,4 @@
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 
 #include <cstdlib>

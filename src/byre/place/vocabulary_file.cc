@@ -1,7 +1,7 @@
 #include "byre/place/vocabulary_file.h"
 
 #include "byre/input/byte_stream.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cassert>

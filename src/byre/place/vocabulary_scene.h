@@ -2,7 +2,7 @@
 
 // Descriptors that fall into known clusters, for the tests of this room.
 
-#include "byre/features/features.h"
+#include "byre/features.h"
 
 #include <random>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "byre/place/vocabulary_training.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/place/k_majority.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/features/features.h"
+#include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/session/executor.h"
 #include "byre/slam/self_calibration.h"

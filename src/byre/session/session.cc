@@ -1,20 +1,15 @@
 #include "byre/session/session.h"
 
+#include "byre/session/stopwatch.h"
+
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <utility>
 
 namespace byre {
 namespace {
 
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
 
 bool has_disparities(const Frame& frame) {
   return std::ranges::any_of(frame.features->keypoints(), &Keypoint::has_disparity);
@@ -87,9 +82,10 @@ CameraMotion Session::motion() const {
   return {has_pose_ ? velocity_ : Vector6(Vector6::Zero()), scene_depth_};
 }
 
-FrameReport Session::process(const Frame& rectified) {
+FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& last_from_body) {
   FrameReport report;
   report.time = rectified.time;
+  told_motion_ = told_motion_ && last_from_body ? std::optional(*told_motion_ * *last_from_body) : std::nullopt;
   if (!first_frame_) first_frame_ = rectified.time;
   const Stopwatch mapping_before;
   const auto finished = executor_->collect();
@@ -123,6 +119,7 @@ FrameReport Session::process(const Frame& rectified) {
     lose_pose(image_fault(frame), report);
   }
   conclude(frame, located, report);
+  if (has_pose_) told_motion_ = Pose{};
   if (const auto overdue = hindsight_.take_overdue()) settle(*overdue);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
@@ -144,6 +141,8 @@ void Session::take_over_results(const std::optional<FinishedJob>& finished, Fram
   if (!has_pose_) return;
   const Pose body_now = body_pose(last_camera_from_world());
   odometry_.absorb(last_body_, body_now);
+  const Pose correction = body_now * inverse(last_body_);
+  if (is_registered() && log_pose(correction).norm() > kLeastCorrection) report.correction = correction;
   last_body_ = body_now;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "byre/features/features.h"
+#include "byre/features.h"
+#include "byre/frame_report.h"
 #include "byre/map/map_view.h"
 #include "byre/session/calibrator.h"
 #include "byre/session/executor.h"
@@ -10,7 +11,6 @@
 #include "byre/session/odometry.h"
 #include "byre/session/place_search.h"
 #include "byre/session/segments.h"
-#include "byre/session/session_event.h"
 #include "byre/session/shutter.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/focal_check.h"
@@ -26,7 +26,6 @@
 #include "byre/slam/state.h"
 #include "byre/slam/tracking.h"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -74,32 +73,6 @@ struct Lanes {
   std::unique_ptr<Executor> calibration;  // of a mission's cameras
 };
 
-// What the caller learns about one frame.
-struct FrameReport {
-  Timestamp time{};
-  State state = State::initialising;
-  // In the frame of the offline map, or in that of the session's own map where there is no offline one. Corrected
-  // whenever more is known, so it may jump. Empty while it is not known.
-  std::optional<Pose> map_from_body;
-  Matrix6 covariance = Matrix6::Zero();  // of delta in map_from_body * exp_pose(delta), relative to the map's origin
-  // Smooth: moves with what was seen from one frame to the next, and never jumps; its frame is the body's at the start.
-  std::optional<Pose> odometry_from_body;
-  Matrix6 odometry_covariance = Matrix6::Zero();  // of delta in odometry_from_body * exp_pose(delta)
-  Health health;
-  int features = 0;
-  int expected_points = 0;  // map points in the frustum
-  int matches = 0;
-  int inliers = 0;
-  bool keyframe_added = false;
-  TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
-  std::vector<SessionEvent> events;                     // what happened in this frame, in order
-  double track_seconds = 0.0;                           // wall time on the calling thread
-  double map_seconds = 0.0;                             // of it for mapping: windows, deltas, new points, inline jobs
-  std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
-
-  bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }
-};
-
 // The one stateful object: give it frames in order of time. Call every method from one thread; only the executor has
 // another.
 class Session {
@@ -123,7 +96,8 @@ class Session {
   // What is known of the calibration by now; empty until it was refined.
   std::optional<RefinedCalibration> self_calibration() const;
 
-  FrameReport process(const Frame& rectified);
+  // last_from_body: how the body has moved since the last frame, where that is known.
+  FrameReport process(const Frame& rectified, const std::optional<Pose>& last_from_body = {});
 
   // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
   void hurry() { global_.hurry(); }
@@ -290,6 +264,7 @@ class Session {
   double scene_depth_ = 1.0;                               // median of the points in the last frame
   bool is_focal_asked_ = false;                            // in the present frame
   Vector6 velocity_ = Vector6::Zero();  // of the camera, per second: exp_pose(velocity * dt) * last_camera_from_world
+  std::optional<Pose> told_motion_ = Pose{};  // of the body since the last frame with a pose; empty: not known
 };
 
 }  // namespace byre

@@ -1,7 +1,7 @@
 // Missions in a world that has not changed, by a camera whose calibration errs: a smooth field of errors in the image,
 // the same in every frame, which no number of points averages out.
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/session/session_scene.h"
 #include "byre/slam/place_scene.h"
 

@@ -1,4 +1,4 @@
-#include "byre/session/session_event.h"
+#include "byre/session_event.h"
 
 namespace byre {
 

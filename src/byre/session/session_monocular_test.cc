@@ -1,7 +1,7 @@
 // One camera: a map from its motion alone, and missions on a map that a stereo camera has made.
 
-#include "byre/evaluation/trajectory_error.h"
 #include "byre/session/session_scene.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Sessions with a camera that reads its rows one after the other, which nobody has told them.
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/session/session_scene.h"
 #include "byre/slam/rolling_scene.h"
 

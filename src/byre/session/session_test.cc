@@ -2,10 +2,10 @@
 
 #include "byre/session/session.h"
 
-#include "byre/evaluation/trajectory_error.h"
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/mission_scene.h"
+#include "byre/trajectory_error.h"
 
 #include <functional>
 #include <stdexcept>

@@ -42,6 +42,7 @@ Pose Session::last_camera_from_world() const {
 }
 
 Pose Session::predict(Timestamp time) const {
+  if (told_motion_) return camera_pose(body_pose(last_camera_from_world()) * *told_motion_);
   const double elapsed = to_seconds(time - anchored_.back().time);
   return exp_pose(velocity_ * elapsed) * last_camera_from_world();
 }
@@ -102,7 +103,7 @@ std::optional<HybridTrack> Session::find_pose(const Frame& frame) {
     online_reference_ = newest;
   }
   const std::vector<PointId>& online = local_online_points();
-  const Pose predicted = has_pose_ ? predict(frame.time) : last_camera_from_world();
+  const Pose predicted = has_pose_ || told_motion_ ? predict(frame.time) : last_camera_from_world();
   auto best = track_from(frame, predicted, online);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;

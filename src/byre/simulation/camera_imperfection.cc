@@ -1,6 +1,6 @@
 #include "byre/simulation/camera_imperfection.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>

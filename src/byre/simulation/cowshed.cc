@@ -1,6 +1,6 @@
 #include "byre/simulation/cowshed.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/simulation/cowshed_parts.h"
 
 namespace byre {

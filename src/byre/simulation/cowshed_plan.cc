@@ -1,6 +1,6 @@
 #include "byre/simulation/cowshed_plan.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/features/image.h"
+#include "byre/image.h"
 #include "byre/simulation/cowshed.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "byre/simulation/cowshed_recording.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/simulation/calibration_error.h"
 #include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/seeded_draws.h"

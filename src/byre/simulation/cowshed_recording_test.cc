@@ -1,11 +1,11 @@
 #include "byre/simulation/cowshed_recording.h"
 
 #include "byre/dataset/calibration_file.h"
-#include "byre/dataset/recording.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
 #include "byre/input/text_file.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
+#include "byre/trajectory_file.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "byre/simulation/euroc_writer.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
-#include "byre/geometry/trajectory.h"
+#include "byre/calibration.h"
+#include "byre/image.h"
+#include "byre/trajectory.h"
 
 #include <filesystem>
 #include <vector>

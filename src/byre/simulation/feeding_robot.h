@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
-#include "byre/geometry/trajectory.h"
+#include "byre/calibration.h"
+#include "byre/trajectory.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
+#include "byre/image.h"
 #include "byre/simulation/lens_blur.h"
 
 #include <cstdint>

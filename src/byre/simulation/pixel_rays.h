@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/camera.h"
+#include "byre/calibration.h"
 
 #include <optional>
 #include <vector>

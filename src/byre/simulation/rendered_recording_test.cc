@@ -1,9 +1,9 @@
-#include "byre/dataset/recording.h"
-#include "byre/evaluation/trajectory_file.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_trajectory.h"
+#include "byre/trajectory_file.h"
 
 #include <fstream>
 #include <string>

@@ -1,6 +1,6 @@
 #include "byre/simulation/rendered_room.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/simulation/surface_texture.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/features/image.h"
-#include "byre/geometry/camera.h"
-#include "byre/geometry/trajectory.h"
+#include "byre/calibration.h"
+#include "byre/image.h"
 #include "byre/simulation/pixel_rays.h"
+#include "byre/trajectory.h"
 
 #include <cstdint>
 #include <filesystem>

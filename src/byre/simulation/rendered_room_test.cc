@@ -1,7 +1,7 @@
 #include "byre/simulation/rendered_room.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/simulation/simulated_trajectory.h"
 
 #include <algorithm>

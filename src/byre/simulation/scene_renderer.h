@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/pose.h"
+#include "byre/pose.h"
 #include "byre/simulation/barn_pictures.h"
 #include "byre/simulation/lit_mesh.h"
 #include "byre/simulation/pixel_rays.h"

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/features/features.h"
-#include "byre/geometry/rig.h"
+#include "byre/features.h"
 #include "byre/map/map.h"
+#include "byre/rig.h"
 #include "byre/simulation/simulated_trajectory.h"
 
 #include <cstdint>

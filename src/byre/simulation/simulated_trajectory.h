@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/geometry/rig.h"
-#include "byre/geometry/trajectory.h"
+#include "byre/rig.h"
+#include "byre/trajectory.h"
 
 namespace byre {
 

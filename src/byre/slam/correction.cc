@@ -1,4 +1,4 @@
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/geometry/median.h"
 #include "byre/slam/global_mapping.h"
 

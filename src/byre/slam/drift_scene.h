@@ -2,7 +2,7 @@
 
 // Maps that have drifted on the way round, as if nothing had been recognised on coming back.
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/slam/place_scene.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "byre/slam/finishing.h"
 
-#include "byre/evaluation/trajectory_error.h"
 #include "byre/slam/mapping_steps.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <map>

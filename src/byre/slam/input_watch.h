@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/features/features.h"
+#include "byre/features.h"
 #include "byre/features/stereo_fit.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/geometry/alignment.h"
+#include "byre/alignment.h"
 #include "byre/map/map.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/localisation.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/features/features.h"
-#include "byre/geometry/rig.h"
+#include "byre/features.h"
+#include "byre/rig.h"
 
 namespace byre {
 

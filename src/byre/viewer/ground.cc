@@ -1,7 +1,7 @@
 #include "byre/viewer/ground.h"
 
 #include "byre/dataset/image_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/driving_plane.h"
 
 #include <cassert>

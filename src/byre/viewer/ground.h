@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/dataset/floor_plan.h"
-#include "byre/features/image.h"
+#include "byre/image.h"
 #include "byre/map/map_file.h"
 
 #include <memory>

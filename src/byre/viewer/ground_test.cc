@@ -1,7 +1,7 @@
 #include "byre/viewer/ground.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <cmath>
 #include <numbers>

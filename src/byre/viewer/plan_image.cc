@@ -1,6 +1,6 @@
 #include "byre/viewer/plan_image.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "byre/viewer/plan_picks.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/plan_places.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "byre/viewer/plan_picks.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/map/stored_map_scene.h"
 
 #include <gmock/gmock.h>

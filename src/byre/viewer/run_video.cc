@@ -1,6 +1,6 @@
 #include "byre/viewer/run_video.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <cassert>

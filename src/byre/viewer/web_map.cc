@@ -1,7 +1,7 @@
 #include "byre/viewer/web_map.h"
 
 #include "byre/input/binary_file.h"
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/viewer/plan_image.h"
 #include "byre/viewer/plan_picks.h"
 #include "byre/viewer/scene.h"

@@ -1,6 +1,6 @@
 #include "byre/viewer/web_server.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/viewer/web_access.h"
 #include "byre/viewer/web_address.h"
 

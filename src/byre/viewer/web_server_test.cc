@@ -1,6 +1,6 @@
 #include "byre/viewer/web_server.h"
 
-#include "byre/input/input_error.h"
+#include "byre/input_error.h"
 #include "byre/viewer/web_client_scene.h"
 
 #include <array>

@@ -1,0 +1,18 @@
+#pragma once
+
+// All of byre's library. A robot's own program needs byre/slam.h; see docs/library.md.
+
+#include "byre/alignment.h"
+#include "byre/calibration.h"
+#include "byre/features.h"
+#include "byre/frame_report.h"
+#include "byre/health.h"
+#include "byre/image.h"
+#include "byre/input_error.h"
+#include "byre/pose.h"
+#include "byre/recording.h"
+#include "byre/rig.h"
+#include "byre/slam.h"
+#include "byre/trajectory.h"
+#include "byre/trajectory_error.h"
+#include "byre/trajectory_file.h"

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "byre/image_condition.h"
+#include "byre/rig.h"
+#include "byre/trajectory.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace byre {
+
+using Descriptor = std::array<std::uint64_t, 4>;  // 256-bit rotated BRIEF, bit i of byte j as cv::ORB packs them
+
+// The scale pyramid: octave o is smaller than the image by kOctaveScale^o.
+inline constexpr int kOctaves = 8;
+inline constexpr double kOctaveScale = 1.2;
+inline constexpr std::array<float, kOctaves> kScaleOfOctave = {1.0f,    1.2f,     1.44f,     1.728f,
+                                                               2.0736f, 2.48832f, 2.985984f, 3.5831808f};
+
+// A detected corner, in the left rectified image.
+struct Keypoint {
+  Eigen::Vector2f pixel;          // full-resolution pixels; centre of its patch to sub-pixel precision
+  float disparity = -1.0f;        // pixels, negative when not matched in the right image
+  float disparity_sigma = -1.0f;  // pixels
+  float row_offset = 0.0f;        // where it was matched: the right row less the left one, zero if all is calibrated
+  float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
+  float response = 0.0f;          // corner strength, larger is better
+  float row_time = 0.0f;          // when its row was read, from the middle row on: -0.5 to 0.5 times the readout time
+  std::uint8_t octave = 0;
+
+  bool has_disparity() const { return disparity > 0.0f; }
+};
+
+// The grey values around a keypoint in its own octave, kept so that matches can be refined to sub-pixel later,
+// long after the image is gone.
+struct Patch {
+  static constexpr int kSize = 16;                   // octave pixels
+  std::array<std::uint8_t, kSize * kSize> pixels{};  // row-major
+  Eigen::Vector2f centre;                            // where the keypoint lies in it, octave pixels, near (8, 8)
+};
+
+// Keypoints, their descriptors and patches, one each; sorted by grid cell, so that an area is a few short ranges.
+class Features {
+ public:
+  Features() = default;
+  // patches may be empty (simulated features): then matches keep the precision of the keypoints.
+  // Reorders all three by grid cell. Precondition: equal sizes; keypoints lie in the image.
+  Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
+           std::vector<Patch> patches);
+  // With patches of some keypoints only: patch_of_keypoint is an index into patches, or -1. Sized like keypoints.
+  Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
+           std::vector<Patch> patches, std::vector<int> patch_of_keypoint);
+
+  // The order that features have: that of the constructor, indices into keypoints in any other.
+  static std::vector<int> order_of(int width, int height, const std::vector<Keypoint>& keypoints);
+
+  // The same corners in the same order, each a little elsewhere in the image. Precondition: as many as there are.
+  Features moved(std::vector<Keypoint> keypoints) const;
+
+  int size() const { return static_cast<int>(keypoints_.size()); }
+  const std::vector<Keypoint>& keypoints() const { return keypoints_; }
+  const std::vector<Descriptor>& descriptors() const { return descriptors_; }
+  const Keypoint& keypoint(int i) const { return keypoints_[static_cast<std::size_t>(i)]; }
+  const Descriptor& descriptor(int i) const { return descriptors_[static_cast<std::size_t>(i)]; }
+  // nullptr where none was kept: a patch takes several times the memory of all the rest.
+  const Patch* find_patch(int i) const {
+    const int patch = patch_of_keypoint_.empty() ? -1 : patch_of_keypoint_[static_cast<std::size_t>(i)];
+    return patch < 0 ? nullptr : &(*patches_)[static_cast<std::size_t>(patch)];
+  }
+
+  // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
+  // [min_octave, max_octave], in ascending order of rows of cells.
+  template <typename Visitor>
+  void visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave, Visitor visit) const;
+
+ private:
+  int cell_size_ = 0;  // pixels
+  int columns_ = 0;
+  int rows_ = 0;
+  float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
+  std::vector<Keypoint> keypoints_;
+  std::vector<Descriptor> descriptors_;
+  std::shared_ptr<const std::vector<Patch>> patches_;  // shared with copies that were moved
+  std::vector<int> patch_of_keypoint_;
+  std::vector<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
+};
+
+// What the rest of byre sees of one (stereo) image: never pixels, never changed once made.
+struct Frame {
+  Timestamp time{};
+  std::shared_ptr<const Features> features;
+  std::optional<ImageCondition> condition = {};        // of the left image; empty for simulated frames
+  std::optional<ImageCondition> right_condition = {};  // of the right one, where there is one
+  std::uint64_t content = 0;                           // checksum of the left image's pixels; 0 for simulated frames
+};
+
+template <typename Visitor>
+void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave,
+                          Visitor visit) const {
+  const auto cell = [this](float coordinate, int count) {
+    constexpr float kFar = 1e6f;  // beyond any image, yet an int; what is no number counts as zero
+    return std::min(static_cast<int>(std::min(std::max(0.0f, coordinate), kFar)) / cell_size_, count - 1);
+  };
+  if (columns_ == 0) return;
+  const float reach = radius + slack_;
+  const int first_column = cell(pixel.x() - reach, columns_);
+  const int last_column = cell(pixel.x() + reach, columns_);
+  const int last_row = cell(pixel.y() + reach, rows_);
+  for (int row = cell(pixel.y() - reach, rows_); row <= last_row; ++row) {
+    const int begin = cell_begin_[static_cast<std::size_t>(row * columns_ + first_column)];
+    const int end = cell_begin_[static_cast<std::size_t>(row * columns_ + last_column + 1)];
+    for (int i = begin; i < end; ++i) {
+      const Keypoint& candidate = keypoint(i);
+      if (candidate.octave < min_octave || candidate.octave > max_octave) continue;
+      if (std::abs(candidate.pixel.x() - pixel.x()) > radius) continue;
+      if (std::abs(candidate.pixel.y() - pixel.y()) > radius) continue;
+      visit(i);
+    }
+  }
+}
+
+}  // namespace byre

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "byre/image_condition.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace byre {
+
+// How far the pose in the map's frame may be relied on.
+//   trusted    steer by it
+//   degraded   likely right, but held by less than it should be: go slowly
+//   untrusted  do not steer by it
+enum class Verdict : std::uint8_t { trusted, degraded, untrusted };
+
+std::string_view to_string(Verdict verdict);
+
+// Why a pose is not trusted, or what speaks against it most.
+enum class Doubt : std::uint8_t {
+  none,
+  no_pose,             // tracking and relocalisation fail
+  blinded,             // the image is dark, overexposed, flat or blurred
+  not_registered,      // tracked on an online map whose place in the offline map is not known
+  unconfirmed,         // found in the map, but not over enough frames yet
+  off_the_map,         // outside the mapped area for so far that drift may have become large
+  few_points,          // too few points hold the pose
+  few_offline_points,  // inside the mapped area, but the pose is held by online points
+  clustered,           // the points lie in a small part of the image
+  uncertain,           // they leave the pose open by more than is useful
+  maps_disagree,       // offline and online points give different poses
+  frozen,              // the camera gives the same image again
+  right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
+  cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
+  calibration          // points of the map fit the images by another focal length
+};
+
+std::string_view to_string(Doubt doubt);
+
+// How far the pose from offline points alone lies from that of online points alone.
+struct Agreement {
+  double translation = 0.0;  // metres
+  double rotation = 0.0;     // radians
+};
+
+// What one frame tells of how well the robot knows where it is. Counts are of points.
+struct Health {
+  Verdict verdict = Verdict::untrusted;
+  Doubt doubt = Doubt::no_pose;
+  int offline_expected = 0;  // in the frustum, not suspended
+  int offline_matches = 0;   // of those
+  int offline_inliers = 0;   // of those
+  int online_inliers = 0;
+  int suspended = 0;                    // offline points left out for this mission: they are not where the map has them
+  double inlier_share = 0.0;            // of all matches
+  double spread = 0.0;                  // of the inliers, share of the image's diagonal where they spread least
+  std::optional<Agreement> agreement;   // where both kinds of points give a pose
+  double position_sigma = 0.0;          // metres, the root of the trace of the covariance
+  double rotation_sigma = 0.0;          // radians
+  double distance_since_offline = 0.0;  // metres travelled since offline points last held the pose
+  double seconds_since_offline = 0.0;
+  double focal_error = 0.0;             // share by which the focal length seems too long, by the offline map
+  std::optional<ImageCondition> image;  // empty for simulated frames
+};
+
+}  // namespace byre

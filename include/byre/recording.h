@@ -1,0 +1,87 @@
+#pragma once
+
+#include "byre/calibration.h"
+#include "byre/image.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+//   euroc   mav0/cam0, and mav0/cam1 for stereo
+//   kitti   a sequence of KITTI odometry: calib.txt, times.txt, image_0, and image_1 for stereo
+//   tum     rgb.txt of a TUM RGB-D folder, and depth.txt for depth
+//   images  image files in a folder, or for stereo in its folders left and right
+//   video   a video file
+enum class RecordingFormat : std::uint8_t { euroc, kitti, tum, images, video };
+
+std::string_view to_string(RecordingFormat format);
+
+// Which of a recording's cameras to use: both of a pair, one of them alone, or the left one with the depth camera.
+enum class CameraChoice : std::uint8_t { stereo, left, right, rgbd };
+
+std::string_view to_string(CameraChoice choice);
+
+// Which frames of a recording to read. Both limits apply.
+struct FrameRange {
+  std::optional<double> start_s{};  // seconds from the first frame of the recording
+  std::optional<double> end_s{};    // exclusive
+  int first = 0;                    // frame index, inclusive
+  std::optional<int> last{};        // exclusive
+  int stride = 1;                   // every n-th frame of those
+};
+
+// What a recording does not say of itself, or is to be taken otherwise.
+struct OpenOptions {
+  std::optional<CameraChoice> camera{};                // else both where there are two, with depth where there is depth
+  std::optional<std::filesystem::path> calibration{};  // a file read_calibration knows, in place of the recording's own
+  std::optional<double> frame_rate_hz{};               // of images and videos, in place of what they say
+};
+
+// A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
+// right camera alone, left image and left calibration are that camera's.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+
+  virtual const Calibration& calibration() const = 0;
+  // Time stamps of the frames in range, strictly increasing. A left image without a right partner is in it.
+  virtual const std::vector<Timestamp>& times() const = 0;
+  // The i-th frame, decoded. Empty, with a warning added, when the left image cannot be read or is of another size than
+  // calibrated; without a right image, with a warning added, when that one is absent, unreadable or of another size;
+  // likewise without a depth image, but no warning where none was taken.
+  // May be called from any thread, but from one at a time.
+  virtual std::optional<ImageFrame> read(int index) = 0;
+  virtual const std::vector<std::string>& warnings() const = 0;  // those of opening it first
+
+  int size() const { return static_cast<int>(times().size()); }
+};
+
+// Tells the format by what the folder or file holds; throws InputError saying what was looked for when it is none.
+RecordingFormat guess_format(const std::filesystem::path& path);
+
+// A file that holds a video, by its extension.
+bool is_video_file(const std::filesystem::path& path);
+
+// A recording in any of the formats. Images and videos need a calibration: that of the options, or one that
+// find_calibration finds in the folder (of a video: beside it). They have the times that their file names say, else
+// those of a steady frame rate, 30 Hz with a warning where nothing says which. Of a recording of one camera with the
+// calibration of a pair, the choice of camera says which of the two that was. Throws InputError, naming the file and
+// what is wrong with it: missing files, a calibration that does not parse, makes no sense or is of another image size,
+// a camera that is not there, time stamps out of order, no frame in range.
+std::unique_ptr<Recording> open_recording(const std::filesystem::path& path, const FrameRange& range,
+                                          const OpenOptions& options = {});
+
+// The cameras that a recording opened so gives.
+CameraChoice camera_of(const Recording& recording, const OpenOptions& options);
+
+// The ground truth that came with the recording, where there is one: inside an EuRoC folder, beside the sequences of
+// KITTI (../../poses/00.txt for sequences/00), groundtruth.txt in a folder of images.
+std::optional<std::filesystem::path> find_ground_truth(const std::filesystem::path& path);
+
+}  // namespace byre

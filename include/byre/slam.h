@@ -1,0 +1,95 @@
+#pragma once
+
+#include "byre/alignment.h"
+#include "byre/calibration.h"
+#include "byre/features.h"
+#include "byre/frame_report.h"
+#include "byre/image.h"
+#include "byre/input_error.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Where mapping is worked out beside tracking.
+//   live        on threads of their own, taken over when it is ready: for robots
+//   repeatable  on threads of their own, taken over after a fixed number of frames: the same images give the same poses
+//   none        in process(), which then takes as long as mapping does
+enum class Workers : std::uint8_t { live, repeatable, none };
+
+struct SlamOptions {
+  Workers workers = Workers::live;
+  bool refine_calibration = true;      // from what is seen
+  bool map_online = true;              // of a mission: false tracks on the kept map alone
+  double max_pair_difference = 0.005;  // seconds between left and right image
+  double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
+  int max_features = 1000;             // a frame
+  // In how many threads OpenCV works on an image, in the whole process: tracking and mapping fill two cores as it is.
+  // Zero leaves that as it is.
+  int image_threads = 1;
+  std::string recording = "live";                     // what the frames are called in a kept map
+  std::string site;                                   // where it was made, noted in a kept map unless empty
+  std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
+};
+
+// One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.
+// Making one throws InputError: a calibration that cannot be rectified, a map or a vocabulary that cannot be loaded.
+// Later, whatever is wrong with a frame is told in its report.
+class Slam {
+ public:
+  // Maps what is seen. Without right and depth camera lengths have no unit, and poses are those of the camera.
+  static Slam mapping(const Calibration& calibration, const SlamOptions& options = {});
+
+  // Goes on with a kept map: finds itself in it first, and what it maps becomes part of it.
+  static Slam extending(const Calibration& calibration, const std::filesystem::path& map,
+                        const SlamOptions& options = {});
+
+  // A mission on a kept map, which stays as it is: poses are in its frame, with verdicts.
+  static Slam on_map(const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options = {});
+
+  Slam(Slam&&) noexcept;
+  Slam& operator=(Slam&&) noexcept;
+  ~Slam();
+
+  // Tracks the next frame. The images are borrowed for the time of the call.
+  // last_from_body: how the body has moved since the frame handed over before, by wheels or a gyroscope. Where it is
+  // known it takes the place of the guess that the body moves on as it did.
+  FrameReport process(const CameraImages& images, const std::optional<Pose>& last_from_body = {});
+
+  // The same with features of one's own, in pixels of rig().
+  FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {});
+
+  // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes unless
+  // should_stop says to make an end. Frames that come later are dropped.
+  void finish(const std::function<bool()>& should_stop = {});
+
+  // Keeps what was mapped, with or without finish() before: the whole map, or of a mission what was mapped beside the
+  // map it is on. Replaces the file as a whole. Throws InputError when it cannot be written, or nothing was mapped yet.
+  void save(const std::filesystem::path& path) const;
+
+  // Every frame that had a pose, as the map has it now.
+  Trajectory trajectory() const;
+
+  // Where a pose in the map lies on the floor plan that the map is registered on; empty when it is on none.
+  std::optional<Pose> plan_from_body(const Pose& map_from_body) const;
+
+  const Rig& rig() const;              // the ideal camera that features are given in
+  Calibration calibration() const;     // as it is known by now
+  bool is_metric() const;              // whether lengths are metres
+  int keyframes() const;               // of what was mapped
+  int points() const;                  // likewise
+  int frames() const;                  // handed over
+  int frames(InputFault fault) const;  // of those, the ones with that fault
+
+ private:
+  struct Parts;
+  explicit Slam(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace byre

@@ -1,0 +1,98 @@
+#include "byre/features/image_view.h"
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::ElementsAre;
+
+template <typename Number>
+ImageView view(const std::vector<Number>& data, int width, int height, PixelFormat format, std::size_t stride = 0) {
+  return {data.data(), width, height, stride, format};
+}
+
+std::vector<std::uint8_t> grey(const ImageView& view) {
+  Image image;
+  copy_grey(view, image);
+  EXPECT_EQ(image.width, view.width);
+  EXPECT_EQ(image.height, view.height);
+  return image.pixels;
+}
+
+std::vector<std::uint16_t> depths(const ImageView& view, double units_per_metre) {
+  DepthImage image;
+  copy_depth(view, units_per_metre, image);
+  return image.units;
+}
+
+TEST(ImageView, GivesGreyValuesAsTheyAre) {
+  const std::vector<std::uint8_t> pixels = {1, 2, 3, 4, 5, 6};
+  EXPECT_THAT(grey(view(pixels, 3, 2, PixelFormat::grey8)), ElementsAre(1, 2, 3, 4, 5, 6));
+}
+
+TEST(ImageView, LeavesOutWhatPadsARow) {
+  const std::vector<std::uint8_t> pixels = {1, 2, 99, 99, 3, 4, 99, 99};
+  EXPECT_THAT(grey(view(pixels, 2, 2, PixelFormat::grey8, 4)), ElementsAre(1, 2, 3, 4));
+}
+
+TEST(ImageView, ScalesSixteenBitsToTheirRange) {
+  const std::vector<std::uint16_t> pixels = {0, 4095, 2048};
+  ImageView twelve = view(pixels, 3, 1, PixelFormat::grey16);
+  twelve.bits = 12;
+  EXPECT_THAT(grey(twelve), ElementsAre(0, 255, 128));
+  const std::vector<std::uint16_t> all = {0, 65535, 257};
+  EXPECT_THAT(grey(view(all, 3, 1, PixelFormat::grey16)), ElementsAre(0, 255, 1));
+}
+
+TEST(ImageView, WeighsColoursAsTheEyeDoes) {
+  const std::vector<std::uint8_t> red_and_blue = {255, 0, 0, 0, 0, 255};
+  EXPECT_THAT(grey(view(red_and_blue, 2, 1, PixelFormat::rgb8)), ElementsAre(76, 29));
+  EXPECT_THAT(grey(view(red_and_blue, 2, 1, PixelFormat::bgr8)), ElementsAre(29, 76));
+}
+
+TEST(ImageView, TakesTheBrightnessOfYuv) {
+  const std::vector<std::uint8_t> yuyv = {10, 128, 20, 128};
+  EXPECT_THAT(grey(view(yuyv, 2, 1, PixelFormat::yuyv)), ElementsAre(10, 20));
+  const std::vector<std::uint8_t> nv12 = {10, 20, 30, 40, 128, 128};
+  EXPECT_THAT(grey(view(nv12, 2, 2, PixelFormat::nv12)), ElementsAre(10, 20, 30, 40));
+}
+
+TEST(ImageView, GivesDepthsInTheUnitsOfTheCamera) {
+  const std::vector<std::uint16_t> millimetres = {0, 1500};
+  EXPECT_THAT(depths(view(millimetres, 2, 1, PixelFormat::depth16), 1000.0), ElementsAre(0, 1500));
+  const std::vector<float> metres = {1.5f, 0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 1e9f};
+  EXPECT_THAT(depths(view(metres, 5, 1, PixelFormat::depth_metres), 1000.0), ElementsAre(1500, 0, 0, 0, 0));
+}
+
+TEST(ImageView, KnowsRowsThatAreTooShortAndSizesThatTheFormatHasNot) {
+  const std::vector<std::uint8_t> bytes(100);
+  EXPECT_TRUE(is_sound(view(bytes, 4, 2, PixelFormat::rgb8, 12)));
+  EXPECT_FALSE(is_sound(view(bytes, 4, 2, PixelFormat::rgb8, 11)));
+  EXPECT_FALSE(is_sound(view(bytes, 0, 2, PixelFormat::grey8)));
+  EXPECT_FALSE(is_sound(view(bytes, 3, 2, PixelFormat::yuyv)));
+  EXPECT_FALSE(is_sound(view(bytes, 4, 3, PixelFormat::nv12)));
+  ImageView bits = view(bytes, 2, 2, PixelFormat::grey16);
+  bits.bits = 17;
+  EXPECT_FALSE(is_sound(bits));
+}
+
+TEST(ImageView, ShowsARecordedFrame) {
+  ImageFrame frame;
+  frame.time = Timestamp(7);
+  frame.left = {2, 1, {1, 2}};
+  frame.right = Image{2, 1, {3, 4}};
+  frame.depth = DepthImage{2, 1, {5, 6}};
+  const CameraImages images = view_of(frame);
+  EXPECT_EQ(images.left.time, frame.time);
+  EXPECT_THAT(grey(images.left), ElementsAre(1, 2));
+  EXPECT_THAT(grey(images.right.value()), ElementsAre(3, 4));
+  EXPECT_THAT(depths(images.depth.value(), 1.0), ElementsAre(5, 6));
+}
+
+}  // namespace
+}  // namespace byre

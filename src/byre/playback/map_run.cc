@@ -1,0 +1,88 @@
+#include "byre/playback/map_run.h"
+
+#include "byre/input_error.h"
+#include "byre/playback/decode_ahead.h"
+#include "byre/playback/live_clock.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/logged_executor.h"
+#include "byre/system/resources.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+bool has_pose(const MappedFrame& frame) {
+  return frame.report && frame.report->map_from_body;
+}
+
+MappedFrame mapped(Engine& engine, const DecodedFrame& decoded) {
+  MappedFrame frame;
+  frame.time = decoded.time;
+  if (decoded.images) {
+    Engine::Processed processed = engine.process(*decoded.images);
+    frame.has_right = decoded.images->right.has_value();
+    frame.has_depth = decoded.images->depth.has_value();
+    frame.report = std::move(processed.report);
+    frame.seconds = processed.seconds;
+  }
+  frame.seconds.decode = decoded.seconds;
+  frame.keyframes = engine.online().keyframe_count();
+  frame.points = engine.online().point_count();
+  frame.memory_mb = resident_memory_mb();
+  return frame;
+}
+
+void take_over_result(const Engine& engine, MapRun& run) {
+  run.final = engine.session().final_trajectory();
+  run.map = engine.kept_map();
+  run.calibration = engine.calibration();
+  if (run.finishing) run.finishing->faults = find_faults(run.map);
+  run.job_seconds = engine.log().job_seconds;
+  for (const MappedFrame& frame : run.frames) {
+    if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
+    if (frame.report && frame.report->odometry_from_body) {
+      run.odometry.push_back({frame.time, *frame.report->odometry_from_body});
+    }
+  }
+}
+
+}  // namespace
+
+MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
+               std::optional<Map> before) {
+  const Stopwatch watch;
+  Engine engine(recording.calibration(), options, std::move(before));
+  DecodeAhead decoder(recording);
+  LiveClock clock;
+  MapRun run;
+  bool is_begun = false;
+  while (std::optional<DecodedFrame> decoded = decoder.next()) {
+    if (options.pace == Pace::live) {
+      const double late = clock.wait_until_due(decoded->time, hooks.should_stop);
+      if (late > 0.0) run.lateness.push_back(late);
+    }
+    if (hooks.should_stop()) break;
+    run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
+    run.frames.push_back(mapped(engine, *decoded));
+    hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
+    if (hooks.look && decoded->images) hooks.look({*decoded->images, run.frames.back(), engine.session()});
+    is_begun = is_begun || has_pose(run.frames.back());
+    if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.session().self_calibration());
+  }
+  if (hooks.should_stop()) engine.hurry();
+  engine.finish();
+  const FinishHooks finish_hooks{hooks.should_stop, hooks.before_finishing_step};
+  if (is_begun && !hooks.should_stop()) {
+    if (options.offline) {
+      run.mission_finishing_seconds = engine.finish_mission(options.finish, finish_hooks);
+    } else if (options.vocabulary) {
+      run.finishing = engine.finish_map(options.finish, finish_hooks);
+    }
+  }
+  take_over_result(engine, run);
+  run.wall_seconds = watch.seconds();
+  return run;
+}
+
+}  // namespace byre

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "byre/recording.h"
+#include "byre/system/engine.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+struct MappedFrame {
+  Timestamp time{};
+  bool has_right = false;
+  bool has_depth = false;
+  std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
+  StageSeconds seconds;
+  int keyframes = 0;       // of the map after it
+  int points = 0;          // of the map after it
+  double memory_mb = 0.0;  // resident, of the whole program
+};
+
+struct MapRun {
+  std::vector<MappedFrame> frames;                // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                              // poses as published when their frames came
+  Trajectory final;                               // as recomputed after the last frame
+  Trajectory odometry;                            // the smooth poses as published, in a frame of their own
+  Map map{Origin::offline};                       // as it is kept; of the keyframes made, others were found redundant
+  std::optional<RefinedCalibration> calibration;  // by which the map lies, where it was refined
+  std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
+  std::optional<double> mission_finishing_seconds;  // of a mission, of adjusting its online map as a whole
+  std::vector<double> job_seconds;                  // wall time of each mapping job
+  std::vector<std::string> warnings;                // of the recording
+  std::vector<double> lateness;  // live: seconds by which frames were fed too late, of those that were
+  double wall_seconds = 0.0;     // of it all
+};
+
+// What can be seen of a run right after a frame: valid for the time of the call.
+struct RunView {
+  const ImageFrame& images;
+  const MappedFrame& frame;
+  const Session& session;
+};
+
+struct MapRunHooks {
+  std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
+  std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
+  std::function<void(const RunView& view)> look;  // unless empty, after each frame that could be read; not in its time
+  std::function<void(const Map& online, const std::optional<RefinedCalibration>& calibration)>
+      offer_map;  // unless empty, after each frame from the first with a pose on
+  std::function<void(const char* step)> before_finishing_step;
+};
+
+// Maps a recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
+// are left out. Goes on with the map before, an online copy, if there is one: it needs the vocabulary's words, and
+// options a vocabulary. Throws InputError when the calibration cannot be rectified.
+MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
+               std::optional<Map> before = {});
+
+}  // namespace byre

@@ -1,0 +1,178 @@
+#include "byre/playback/map_run.h"
+
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/slam.h"
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::Each;
+using testing::Gt;
+using testing::SizeIs;
+
+MapRun run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
+  const auto recording = open_recording(rendered.folder(), {});
+  EngineOptions options;
+  options.vocabulary = Vocabulary::load(default_vocabulary_path());
+  options.pace = pace;
+  int frames_done = 0;
+  MapRunHooks hooks;
+  hooks.should_stop = [&] { return frames_done == stop_after; };
+  hooks.after_frame = [&frames_done](int done, const MappedFrame&) { frames_done = done; };
+  return run_map(*recording, options, hooks);
+}
+
+double error_m(const Trajectory& estimate, const Trajectory& truth) {
+  const auto error = absolute_trajectory_error(associate(estimate, truth, {}), Scale::fixed);
+  return error ? error->translation.rmse : -1.0;
+}
+
+std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const StampedPose& sample : trajectory) positions.push_back(sample.world_from_body.translation);
+  return positions;
+}
+
+TEST(RunMap, FollowsARecordingInEveryPace) {
+  const RenderedFixture& rendered = RenderedFixture::shared();
+  for (const Pace pace : {Pace::same_thread, Pace::paced, Pace::live}) {
+    SCOPED_TRACE(name_of(pace));
+    const MapRun mapped = run(rendered, pace);
+    EXPECT_THAT(mapped.frames, SizeIs(rendered.truth().size()));
+    EXPECT_THAT(mapped.causal, SizeIs(rendered.truth().size()));
+    EXPECT_THAT(mapped.final, SizeIs(rendered.truth().size()));
+    EXPECT_LT(error_m(mapped.causal, rendered.truth()), 0.1);
+    EXPECT_LT(error_m(mapped.final, rendered.truth()), 0.1);
+    EXPECT_GT(mapped.map.keyframe_count(), 1);
+    EXPECT_GT(mapped.map.point_count(), 100);
+    EXPECT_FALSE(mapped.job_seconds.empty());
+    ASSERT_TRUE(mapped.finishing);
+    EXPECT_FALSE(mapped.finishing->cut_short);
+    EXPECT_THAT(mapped.finishing->faults, SizeIs(0));
+    EXPECT_EQ(mapped.finishing->report.after.keyframes, mapped.map.keyframe_count());
+  }
+}
+
+TEST(RunMap, ShowsEachFrameWithThePointsSeenInIt) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {});
+  MapRunHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  int looks = 0;
+  hooks.look = [&looks](const RunView& view) {
+    ++looks;
+    EXPECT_EQ(view.images.time, view.frame.time);
+    const std::vector<SeenPoint>& seen = view.session.seen_points();
+    EXPECT_EQ(std::ranges::count_if(seen, &SeenPoint::is_inlier), view.frame.report->inliers);
+  };
+  const MapRun mapped = run_map(*recording, {}, hooks);
+  EXPECT_EQ(looks, static_cast<int>(mapped.frames.size()));
+}
+
+TEST(RunMap, RepeatsItselfWhenPaced) {
+  const MapRun first = run(RenderedFixture::shared(), Pace::paced);
+  const MapRun second = run(RenderedFixture::shared(), Pace::paced);
+  EXPECT_EQ(positions(first.causal), positions(second.causal));
+  EXPECT_EQ(positions(first.final), positions(second.final));
+}
+
+bool same(const Trajectory& first, const Trajectory& second) {
+  return std::ranges::equal(first, second, [](const StampedPose& a, const StampedPose& b) {
+    return a.time == b.time && a.world_from_body == b.world_from_body;
+  });
+}
+
+TEST(RunMap, GivesThePosesOfSlam) {
+  const MapRun mapped = run(RenderedFixture::shared(), Pace::paced);
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {});
+  SlamOptions options;
+  options.workers = Workers::repeatable;
+  Slam slam = Slam::mapping(recording->calibration(), options);
+  Trajectory causal;
+  for (int i = 0; i < recording->size(); ++i) {
+    const ImageFrame frame = recording->read(i).value();
+    const FrameReport report = slam.process(view_of(frame));
+    if (report.map_from_body) causal.push_back({report.time, *report.map_from_body});
+  }
+  slam.finish();
+  EXPECT_TRUE(same(causal, mapped.causal));
+  EXPECT_TRUE(same(slam.trajectory(), mapped.final));
+  EXPECT_EQ(slam.keyframes(), mapped.map.keyframe_count());
+  EXPECT_EQ(slam.points(), mapped.map.point_count());
+}
+
+TEST(RunMap, NotesInWhichFrameAJobRanWhereTheyShareAThread) {
+  const MapRun mapped = run(RenderedFixture::shared(), Pace::same_thread);
+  int taken_over = 0;
+  for (std::size_t i = 1; i < mapped.frames.size(); ++i) {
+    const std::optional<double> job_before = mapped.frames[i].report->job_seconds;
+    const StageSeconds& before = mapped.frames[i - 1].seconds;
+    EXPECT_GE(before.map_submit, job_before.value_or(0.0));
+    EXPECT_GE(before.map, before.map_submit);
+    EXPECT_GE(before.total, before.map + before.track);
+    taken_over += job_before ? 1 : 0;
+  }
+  EXPECT_GT(taken_over, 0);
+}
+
+TEST(RunMap, StopsAfterTheFrameItIsAt) {
+  const MapRun mapped = run(RenderedFixture::shared(), Pace::paced, 5);
+  EXPECT_THAT(mapped.frames, SizeIs(5));
+  EXPECT_THAT(mapped.causal, SizeIs(5));
+  EXPECT_THAT(mapped.final, SizeIs(5));
+  EXPECT_FALSE(mapped.finishing) << "a stopped run is to be saved soon";
+}
+
+TEST(RunMap, CutsFinishingShortWhenStopped) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
+  EngineOptions options;
+  options.vocabulary = Vocabulary::load(default_vocabulary_path());
+  bool stopped = false;
+  MapRunHooks hooks;
+  hooks.should_stop = [&stopped] { return stopped; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.before_finishing_step = [&stopped](const char*) { stopped = true; };
+  const MapRun mapped = run_map(*recording, options, hooks);
+  ASSERT_TRUE(mapped.finishing);
+  EXPECT_TRUE(mapped.finishing->cut_short);
+  EXPECT_THAT(mapped.final, SizeIs(6));
+}
+
+TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
+  std::vector<int> keyframes;
+  MapRunHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.offer_map = [&keyframes](const Map& online, const auto&) { keyframes.push_back(online.keyframe_count()); };
+  const MapRun mapped = run_map(*recording, {}, hooks);
+  EXPECT_THAT(keyframes, SizeIs(6));
+  EXPECT_THAT(keyframes, Each(Gt(0)));
+  EXPECT_FALSE(mapped.finishing) << "no places were recognised";
+}
+
+TEST(RunMap, GoesOnPastImagesThatAreTornOrAbsent) {
+  const RenderedFixture damaged("byre_damaged_room", 12, 20.0);
+  std::filesystem::resize_file(damaged.image("cam0", 4), 100);
+  std::filesystem::remove(damaged.image("cam1", 7));
+  const MapRun mapped = run(damaged, Pace::same_thread);
+  EXPECT_THAT(mapped.frames, SizeIs(12));
+  EXPECT_EQ(std::ranges::count_if(mapped.frames, [](const MappedFrame& frame) { return !frame.report; }), 1);
+  EXPECT_FALSE(mapped.frames[4].report);
+  EXPECT_FALSE(mapped.frames[7].has_right);
+  EXPECT_THAT(mapped.warnings, SizeIs(2));
+  EXPECT_THAT(mapped.final, SizeIs(11));
+}
+
+TEST(RunMap, CountsLateFramesOnlyWhenLive) {
+  EXPECT_THAT(run(RenderedFixture::shared(), Pace::paced).lateness, SizeIs(0));
+  EXPECT_THAT(run(RenderedFixture::shared(), Pace::live).lateness, Each(Gt(0.0)));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,45 @@
+#include "byre/playback/scaled_recording.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+// The same frames, with the camera for the body.
+class OfCamera final : public Recording {
+ public:
+  explicit OfCamera(std::unique_ptr<Recording> recording)
+      : recording_(std::move(recording)), calibration_(recording_->calibration()) {
+    calibration_.body_from_left = {};
+  }
+
+  const Calibration& calibration() const override { return calibration_; }
+  const std::vector<Timestamp>& times() const override { return recording_->times(); }
+  std::optional<ImageFrame> read(int index) override { return recording_->read(index); }
+  const std::vector<std::string>& warnings() const override { return recording_->warnings(); }
+
+ private:
+  std::unique_ptr<Recording> recording_;
+  Calibration calibration_;
+};
+
+}  // namespace
+
+Trajectory ScaledRecording::path_of(const Trajectory& world_from_body) const {
+  Trajectory path = world_from_body;
+  for (StampedPose& sample : path) sample.world_from_body = sample.world_from_body * body_from_camera;
+  return path;
+}
+
+ScaledRecording open_scaled(const std::filesystem::path& path, const FrameRange& range, const OpenOptions& options,
+                            bool has_metric_map) {
+  ScaledRecording opened;
+  opened.recording = open_recording(path, range, options);
+  if (has_metric_map || opened.recording->calibration().tells_metres()) return opened;
+  opened.is_metric = false;
+  opened.body_from_camera = opened.recording->calibration().body_from_left;
+  opened.recording = std::make_unique<OfCamera>(std::move(opened.recording));
+  return opened;
+}
+
+}  // namespace byre

@@ -1,0 +1,60 @@
+// Sessions that are told by wheels or a gyroscope how the body has moved.
+
+#include "byre/session/session_scene.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr std::size_t kDark = 20;   // the first frame that shows nothing,
+constexpr std::size_t kLight = 30;  // and the first that shows something again
+
+SimulatedMission lap() {
+  SimulationOptions options;
+  options.pixel_sigma = 0.2;
+  options.disparity_sigma = 0.1;
+  return simulate_mission(simulated_rig(robot_from_camera()),
+                          circling_trajectory(80, 10.0, 2.0, 1.0, robot_from_camera()), options);
+}
+
+Frame dark(const Frame& frame, const Rig& rig) {
+  Frame result = frame;
+  result.features = std::make_shared<const Features>(rig.width, rig.height, std::vector<Keypoint>{},
+                                                     std::vector<Descriptor>{}, std::vector<Patch>{});
+  return result;
+}
+
+// Of a robot that is blind for an eighth of a lap and has nothing to recognise places by.
+std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told) {
+  SessionOptions options;
+  options.min_kept_share = 0.0;  // where the prediction leads astray, nothing else is tried
+  Session session(mission.rig, options, Lanes(make_inline_executor()));
+  std::vector<FrameReport> reports;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    std::optional<Pose> motion;
+    if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    const bool is_dark = i >= kDark && i < kLight;
+    reports.push_back(session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion));
+  }
+  return reports;
+}
+
+double error_of(const FrameReport& report, const SimulatedMission& mission, std::size_t frame) {
+  const Pose truth = inverse(mission.truth.front().world_from_body) * mission.truth[frame].world_from_body;
+  return (report.map_from_body->translation - truth.translation).norm();
+}
+
+TEST(ToldMotion, LeadsBackToTheMapAfterTheDark) {
+  const SimulatedMission mission = lap();
+  const std::vector<FrameReport> told = reports_of(mission, true), untold = reports_of(mission, false);
+  for (std::size_t i = kDark; i < kLight; ++i) EXPECT_FALSE(told[i].map_from_body) << i;
+  ASSERT_TRUE(told[kLight].map_from_body);
+  EXPECT_LT(error_of(told[kLight], mission, kLight), 0.05);
+  EXPECT_FALSE(untold[kLight].map_from_body && error_of(untold[kLight], mission, kLight) < 0.05);
+}
+
+}  // namespace
+}  // namespace byre

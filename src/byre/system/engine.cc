@@ -1,0 +1,111 @@
+#include "byre/system/engine.h"
+
+#include "byre/map/map_file.h"
+#include "byre/session/stopwatch.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+// The second lane of a mission looks for places in the offline map.
+Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
+  switch (pace) {
+    case Pace::same_thread:
+      return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
+    case Pace::paced:
+      return {make_logged_executor(make_paced_executor(kPacedLatency), log),
+              make_paced_executor(is_mission ? kPacedSearchLatency : kPacedCorrectionLatency)};
+    case Pace::live:
+      return {make_logged_executor(make_live_executor(), log), make_live_executor()};
+  }
+  return {nullptr, nullptr};
+}
+
+std::optional<RefinedCalibration> known_before(const Calibration& given, const EngineOptions& options) {
+  if (options.known || !options.offline) return options.known;
+  return known_calibration(options.offline->recordings(), given);
+}
+
+}  // namespace
+
+std::string_view name_of(Pace pace) {
+  switch (pace) {
+    case Pace::same_thread:
+      return "inline";
+    case Pace::paced:
+      return "paced";
+    case Pace::live:
+      return "live";
+  }
+  return "";
+}
+
+std::string_view name_of(OfflinePolicy policy) {
+  switch (policy) {
+    case OfflinePolicy::first:
+      return "first";
+    case OfflinePolicy::together:
+      return "together";
+  }
+  return "";
+}
+
+Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
+    : known_(known_before(given, options)),
+      extractor_(known_ ? known_->calibration : given, options.extract),
+      session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
+               options.vocabulary, options.offline) {
+  if (options.self_calibrate) refine_calibration(given, options, before.has_value());
+  if (before) session_.continue_map(std::move(*before));
+}
+
+// Of cameras that are known, or that a map before lies by, the readout time alone.
+void Engine::refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended) {
+  if (known_ || is_extended) {
+    session_.refine_readout(known_.value_or(RefinedCalibration{given}));
+  } else {
+    session_.refine_calibration(given, options.self_calibration);
+  }
+}
+
+Engine::Processed Engine::process(const ImageFrame& images, const std::optional<Pose>& last_from_body) {
+  const double submit_seconds_before = log_.submit_seconds;
+  const Stopwatch watch;
+  const Extraction extraction = extractor_.extract(images);
+  Processed processed{session_.process(extraction.frame, last_from_body), {}};
+  processed.seconds.total = watch.seconds();
+  processed.seconds.rectify = extraction.times.rectify;
+  processed.seconds.extract = extraction.times.extract;
+  processed.seconds.stereo = extraction.times.stereo;
+  processed.seconds.track = processed.report.track_seconds;
+  processed.seconds.map = processed.report.map_seconds;
+  processed.seconds.map_submit = log_.submit_seconds - submit_seconds_before;
+  return processed;
+}
+
+Finishing Engine::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
+  const Stopwatch watch;
+  Finishing finishing;
+  finishing.report = session_.finish_map(options, hooks);
+  finishing.cut_short = hooks.should_stop();
+  finishing.seconds = watch.seconds();
+  return finishing;
+}
+
+double Engine::finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
+  const Stopwatch watch;
+  session_.finish_mission(options, hooks);
+  return watch.seconds();
+}
+
+std::optional<RefinedCalibration> Engine::calibration() const {
+  const auto refined = session_.self_calibration();
+  return refined ? refined : known_;
+}
+
+Map Engine::kept_map() const {
+  return offline_copy(standalone_copy(session_.map()));
+}
+
+}  // namespace byre

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "byre/features/extract.h"
+#include "byre/session/session.h"
+#include "byre/system/logged_executor.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// Where mapping runs, and how fast frames are fed.
+//   same_thread  on the frame thread ("inline"), frames as fast as possible
+//   paced        on workers, taken over kPacedLatency frames later, corrections of the whole map
+//                kPacedCorrectionLatency and searches in an offline map kPacedSearchLatency; frames as fast as
+//                possible: repeatable
+//   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
+enum class Pace : std::uint8_t { same_thread, paced, live };
+
+// As on the command line.
+std::string_view name_of(Pace pace);
+std::string_view name_of(OfflinePolicy policy);
+
+inline constexpr int kPacedLatency = 4;             // frames
+inline constexpr int kPacedCorrectionLatency = 40;  // frames
+inline constexpr int kPacedSearchLatency = 6;       // frames
+
+struct EngineOptions {
+  Pace pace = Pace::paced;
+  ExtractOptions extract;
+  SessionOptions session;
+  bool self_calibrate = true;               // refine the calibration given from what is mapped
+  std::optional<RefinedCalibration> known;  // what the cameras are known to be by now, of which the readout time alone
+                                            // is refined; empty: what the offline map knows, if anything
+  SelfCalibrationOptions self_calibration;
+  FinishOptions finish;
+  std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
+  std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
+};
+
+// Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
+struct StageSeconds {
+  double decode = 0.0;  // ahead, in a thread of its own; not in total
+  double rectify = 0.0;
+  double extract = 0.0;
+  double stereo = 0.0;  // or reading depths
+  double track = 0.0;
+  double map = 0.0;         // windows, deltas, new points, and jobs where they run on this thread
+  double map_submit = 0.0;  // of map: handing jobs to the executor, so the whole job where it runs on this thread
+  double total = 0.0;       // from the images in memory to the report
+};
+
+// What finishing a map changed, and how sound it is now.
+struct Finishing {
+  FinishReport report;
+  bool cut_short = false;           // by who asked it to stop
+  double seconds = 0.0;             // wall time
+  std::vector<std::string> faults;  // of the map as it is kept
+};
+
+// A camera rig's front end and the session that its frames go to. Call it from one thread.
+class Engine {
+ public:
+  struct Processed {
+    FrameReport report;
+    StageSeconds seconds;
+  };
+
+  // given: by which the cameras were said to see. before: the map that is gone on with, an online copy; it needs the
+  // vocabulary's words, and options a vocabulary. Throws InputError when the calibration cannot be rectified.
+  Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before = {});
+
+  Processed process(const ImageFrame& images, const std::optional<Pose>& last_from_body = {});
+  FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {}) {
+    return session_.process(frame, last_from_body);
+  }
+
+  void hurry() { session_.hurry(); }  // see Session
+  void finish() { session_.finish(); }
+  // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
+  Finishing finish_map(const FinishOptions& options, const FinishHooks& hooks);
+  double finish_mission(const FinishOptions& options,
+                        const FinishHooks& hooks);  // likewise, on one; wall time, seconds
+
+  const Rig& rig() const { return extractor_.rig(); }
+  const Map& online() const { return session_.map().online(); }
+  const Session& session() const { return session_; }
+  const JobLog& log() const { return log_; }
+  // By which the map lies; empty where nothing but what was given is known.
+  std::optional<RefinedCalibration> calibration() const;
+  // What is kept of the map by now.
+  Map kept_map() const;
+
+ private:
+  void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);
+
+  JobLog log_;
+  std::optional<RefinedCalibration> known_;  // before any frame
+  Extractor extractor_;
+  Session session_;
+};
+
+}  // namespace byre

@@ -1,0 +1,117 @@
+#include "byre/system/input_check.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+using std::chrono::milliseconds;
+
+class StereoInput : public testing::Test {
+ protected:
+  static constexpr int kWidth = 8, kHeight = 6;
+
+  static Calibration pair() {
+    Calibration calibration;
+    calibration.left = {CameraModel::pinhole, kWidth, kHeight, 5.0, 5.0, 3.5, 2.5, {}};
+    calibration.right = StereoPartner{calibration.left, {}};
+    return calibration;
+  }
+
+  ImageView image(milliseconds time) const {
+    return {pixels_.data(), kWidth, kHeight, 0, PixelFormat::grey8, 16, time};
+  }
+  CameraImages images(milliseconds time) const { return {image(time), image(time)}; }
+
+  std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(2 * kWidth * kHeight);
+  InputCheck check_{pair(), {0.005, 1.0}};
+};
+
+TEST_F(StereoInput, IsSoundInOrderOfTime) {
+  EXPECT_EQ(check_.note(images(milliseconds(0))), InputFault::none);
+  EXPECT_EQ(check_.note(images(milliseconds(50))), InputFault::none);
+  EXPECT_EQ(check_.frames(), 2);
+  EXPECT_EQ(check_.frames(InputFault::none), 2);
+}
+
+TEST_F(StereoInput, MayComeTwiceOrTooLate) {
+  check_.note(images(milliseconds(100)));
+  EXPECT_EQ(check_.note(images(milliseconds(100))), InputFault::repeated_time);
+  EXPECT_EQ(check_.note(images(milliseconds(50))), InputFault::out_of_order);
+  EXPECT_EQ(check_.note(images(milliseconds(150))), InputFault::none) << "what is dropped moves no clock";
+}
+
+TEST_F(StereoInput, MayComeAfterAGap) {
+  check_.note(images(milliseconds(0)));
+  EXPECT_EQ(check_.note(images(milliseconds(1000))), InputFault::none);
+  EXPECT_EQ(check_.note(images(milliseconds(2001))), InputFault::after_gap);
+  EXPECT_FALSE(is_dropped(InputFault::after_gap));
+}
+
+TEST_F(StereoInput, MayLackItsRightImage) {
+  CameraImages alone = images(milliseconds(0));
+  alone.right.reset();
+  EXPECT_EQ(check_.note(alone), InputFault::missing_right);
+  CameraImages empty = images(milliseconds(50));
+  empty.right->data = nullptr;
+  EXPECT_EQ(check_.note(empty), InputFault::missing_right);
+  EXPECT_EQ(check_.frames(InputFault::missing_right), 2);
+}
+
+TEST_F(StereoInput, MayHaveARightImageOfAnotherTime) {
+  CameraImages off = images(milliseconds(0));
+  off.right->time = milliseconds(5);
+  EXPECT_EQ(check_.note(off), InputFault::none);
+  off = images(milliseconds(50));
+  off.right->time = milliseconds(44);
+  EXPECT_EQ(check_.note(off), InputFault::late_right);
+  off = images(milliseconds(5000));
+  off.right->time = milliseconds(0);
+  EXPECT_EQ(check_.note(off), InputFault::late_right) << "a gap matters less than which images may be used";
+}
+
+TEST_F(StereoInput, IsDroppedWhereItIsNoImageOfTheCamera) {
+  CameraImages none = images(milliseconds(0));
+  none.left.data = nullptr;
+  EXPECT_EQ(check_.note(none), InputFault::no_image);
+  CameraImages small = images(milliseconds(0));
+  small.right->width = kWidth - 1;
+  EXPECT_EQ(check_.note(small), InputFault::wrong_size);
+  CameraImages narrow = images(milliseconds(0));
+  narrow.left.stride = kWidth - 1;
+  EXPECT_EQ(check_.note(narrow), InputFault::wrong_size);
+  CameraImages deep = images(milliseconds(0));
+  deep.left.format = PixelFormat::depth16;
+  EXPECT_EQ(check_.note(deep), InputFault::wrong_format);
+  for (const InputFault fault : {InputFault::no_image, InputFault::wrong_size, InputFault::wrong_format}) {
+    EXPECT_TRUE(is_dropped(fault)) << to_string(fault);
+  }
+}
+
+TEST_F(StereoInput, MayLackDepths) {
+  Calibration calibration = pair();
+  calibration.right.reset();
+  calibration.depth = DepthCamera{};
+  InputCheck check(calibration, {});
+  CameraImages frame{image(milliseconds(0))};
+  EXPECT_EQ(check.note(frame), InputFault::missing_depth);
+  frame.left.time = milliseconds(50);
+  frame.depth = image(milliseconds(50));
+  EXPECT_EQ(check.note(frame), InputFault::wrong_format);
+  frame.depth->format = PixelFormat::depth16;
+  EXPECT_EQ(check.note(frame), InputFault::none);
+}
+
+TEST(FeatureInput, NeedsFeaturesInOrderOfTime) {
+  InputCheck check({}, {});
+  Frame frame;
+  EXPECT_EQ(check.note(frame), InputFault::no_image);
+  frame.features = std::make_shared<const Features>();
+  EXPECT_EQ(check.note(frame), InputFault::none);
+  EXPECT_EQ(check.note(frame), InputFault::repeated_time);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "byre/session/executor.h"
+
+#include <memory>
+#include <vector>
+
+namespace byre {
+
+struct JobLog {
+  std::vector<double> job_seconds;  // wall time of each finished job, in order
+  double submit_seconds = 0.0;  // of the calling thread: the jobs themselves when they run inline, else next to none
+};
+
+// Does as the other executor, and notes what it did in a log that must outlive it.
+std::unique_ptr<Executor> make_logged_executor(std::unique_ptr<Executor> executor, JobLog& log);
+
+}  // namespace byre

@@ -1,0 +1,31 @@
+#include "byre/system/resources.h"
+
+#include <fstream>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+}  // namespace
+
+ResourceUse resources_used_so_far() {
+  constexpr double kMegabytesPerKibibyte = 1024.0 / 1e6;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime),
+          kMegabytesPerKibibyte * static_cast<double>(usage.ru_maxrss)};
+}
+
+double resident_memory_mb() {
+  long all_pages = 0, resident_pages = 0;
+  std::ifstream("/proc/self/statm") >> all_pages >> resident_pages;
+  return 1e-6 * static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace byre

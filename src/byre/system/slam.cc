@@ -1,0 +1,238 @@
+#include "byre/slam.h"
+
+#include "byre/features/image_threads.h"
+#include "byre/features/image_view.h"
+#include "byre/map/map_file.h"
+#include "byre/slam/online_copy.h"
+#include "byre/system/engine.h"
+#include "byre/system/input_check.h"
+#include "byre/system/stored_map.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+Pace pace_of(Workers workers) {
+  switch (workers) {
+    case Workers::live:
+      return Pace::live;
+    case Workers::repeatable:
+      return Pace::paced;
+    case Workers::none:
+      return Pace::same_thread;
+  }
+  return Pace::live;
+}
+
+EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocabulary) {
+  EngineOptions engine;
+  engine.pace = pace_of(options.workers);
+  engine.extract.max_features = options.max_features;
+  engine.session.map_online = options.map_online;
+  engine.self_calibrate = options.refine_calibration;
+  engine.vocabulary = vocabulary;
+  return engine;
+}
+
+}  // namespace
+
+// What a Slam consists of.
+struct Slam::Parts {
+  Parts(const Calibration& given_calibration, const SlamOptions& slam_options, const Vocabulary& used_vocabulary,
+        const EngineOptions& engine_options, StoredMap beside, std::optional<Map> before = {})
+      : given(given_calibration),
+        options(slam_options),
+        vocabulary(used_vocabulary),
+        about(std::move(beside)),
+        offline(engine_options.offline),
+        engine(given, engine_options, std::move(before)),
+        input(given, {options.max_pair_difference, options.max_gap}) {
+    if (options.image_threads > 0) limit_image_threads(options.image_threads);
+  }
+
+  // The images that the engine is to see; empty where they are dropped, see input.
+  const ImageFrame* take(const CameraImages& images);
+  // How the body has moved since the frame that the engine saw last.
+  std::optional<Pose> take_motion(const std::optional<Pose>& last_from_body, bool is_dropped);
+  FrameReport noted(FrameReport report);
+  FrameReport dropped(Timestamp time) const;
+  StoredMap kept() const;
+
+  // Constant after construction.
+  Calibration given;
+  SlamOptions options;
+  Vocabulary vocabulary;
+  StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
+  std::shared_ptr<const OfflineMap> offline;
+
+  Engine engine;
+  InputCheck input;
+  ImageFrame buffer;                           // holds the images while they are looked at
+  std::optional<Pose> unseen_motion = Pose{};  // over frames that were dropped since; empty: not known
+  State state = State::initialising;           // after the last frame
+  std::optional<Timestamp> first_time;         // of the frames that were not dropped
+  Timestamp last_time{};
+  bool is_finished = false;
+};
+
+const ImageFrame* Slam::Parts::take(const CameraImages& images) {
+  const InputFault fault = is_finished ? input.note(InputFault::after_finishing) : input.note(images);
+  if (is_dropped(fault)) return nullptr;
+  buffer.time = images.left.time;
+  copy_grey(images.left, buffer.left);
+  const bool has_right = given.right && images.right && images.right->data && fault != InputFault::late_right;
+  if (!has_right) buffer.right.reset();
+  if (has_right) copy_grey(*images.right, buffer.right ? *buffer.right : buffer.right.emplace());
+  const bool has_depth = given.depth && images.depth && images.depth->data;
+  if (!has_depth) buffer.depth.reset();
+  if (has_depth) {
+    copy_depth(*images.depth, given.depth->units_per_metre, buffer.depth ? *buffer.depth : buffer.depth.emplace());
+  }
+  return &buffer;
+}
+
+std::optional<Pose> Slam::Parts::take_motion(const std::optional<Pose>& last_from_body, bool is_dropped) {
+  const auto motion = unseen_motion && last_from_body ? std::optional(*unseen_motion * *last_from_body) : std::nullopt;
+  unseen_motion = is_dropped ? motion : Pose{};
+  return motion;
+}
+
+FrameReport Slam::Parts::noted(FrameReport report) {
+  report.input = input.last();
+  state = report.state;
+  if (!first_time) first_time = report.time;
+  last_time = report.time;
+  return report;
+}
+
+FrameReport Slam::Parts::dropped(Timestamp time) const {
+  FrameReport report;
+  report.time = time;
+  report.state = state;
+  report.input = input.last();
+  return report;
+}
+
+StoredMap Slam::Parts::kept() const {
+  StoredMap stored = about;
+  stored.map = engine.kept_map();
+  stored.recordings.push_back(
+      {options.recording, given, first_time.value_or(Timestamp{}), last_time, engine.calibration()});
+  return stored;
+}
+
+Slam::Slam(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Slam::Slam(Slam&&) noexcept = default;
+Slam& Slam::operator=(Slam&&) noexcept = default;
+Slam::~Slam() = default;
+
+Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  StoredMap about;
+  Calibration given = calibration;
+  if (!given.tells_metres()) {
+    about.scale = MapScale::unknown;
+    given.body_from_left = {};  // an arm in metres means nothing to who knows none
+  }
+  return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), about));
+}
+
+Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  StoredMap about = load_for_mapping(map, vocabulary);
+  about.pose_source = PoseSource::slam;
+  Map before = online_copy(about.map);
+  about.map = Map(Origin::offline);
+  EngineOptions engine = engine_options(options, vocabulary);
+  engine.known = known_calibration(about.recordings, calibration);
+  engine.session.recording = static_cast<int>(about.recordings.size());
+  return Slam(std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before)));
+}
+
+Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  EngineOptions engine = engine_options(options, vocabulary);
+  engine.offline = load_offline_map(map, vocabulary);
+  StoredMap about;
+  about.plan = load_plan_registration(map);
+  return Slam(std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about)));
+}
+
+FrameReport Slam::process(const CameraImages& images, const std::optional<Pose>& last_from_body) {
+  const ImageFrame* const taken = parts_->take(images);
+  const auto motion = parts_->take_motion(last_from_body, taken == nullptr);
+  if (taken == nullptr) return parts_->dropped(images.left.time);
+  return parts_->noted(parts_->engine.process(*taken, motion).report);
+}
+
+FrameReport Slam::process(const Frame& frame, const std::optional<Pose>& last_from_body) {
+  const InputFault fault =
+      parts_->is_finished ? parts_->input.note(InputFault::after_finishing) : parts_->input.note(frame);
+  const auto motion = parts_->take_motion(last_from_body, is_dropped(fault));
+  if (is_dropped(fault)) return parts_->dropped(frame.time);
+  return parts_->noted(parts_->engine.process(frame, motion));
+}
+
+void Slam::finish(const std::function<bool()>& should_stop) {
+  if (std::exchange(parts_->is_finished, true)) return;
+  const FinishHooks hooks{should_stop ? should_stop : [] { return false; }, {}};
+  if (hooks.should_stop()) parts_->engine.hurry();
+  parts_->engine.finish();
+  if (hooks.should_stop() || keyframes() == 0) return;
+  if (parts_->offline) {
+    parts_->engine.finish_mission({}, hooks);
+  } else {
+    parts_->engine.finish_map({}, hooks);
+  }
+}
+
+void Slam::save(const fs::path& path) const {
+  if (keyframes() == 0) {
+    throw InputError(path.string(), "is not written, as nothing was mapped yet",
+                     "let the robot move, and look at the reports");
+  }
+  save_for_use(parts_->kept(), parts_->vocabulary, parts_->options.site, path);
+}
+
+Trajectory Slam::trajectory() const {
+  return parts_->engine.session().final_trajectory();
+}
+
+std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {
+  const auto& plan = parts_->about.plan;
+  return plan ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
+}
+
+const Rig& Slam::rig() const {
+  return parts_->engine.rig();
+}
+
+Calibration Slam::calibration() const {
+  const auto refined = parts_->engine.calibration();
+  return refined ? refined->calibration : parts_->given;
+}
+
+bool Slam::is_metric() const {
+  return parts_->about.scale == MapScale::metric;
+}
+
+int Slam::keyframes() const {
+  return parts_->engine.online().keyframe_count();
+}
+
+int Slam::points() const {
+  return parts_->engine.online().point_count();
+}
+
+int Slam::frames() const {
+  return parts_->input.frames();
+}
+
+int Slam::frames(InputFault fault) const {
+  return parts_->input.frames(fault);
+}
+
+}  // namespace byre

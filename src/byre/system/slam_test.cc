@@ -1,0 +1,222 @@
+#include "byre/slam.h"
+
+#include "byre/features/extract.h"
+#include "byre/map/map_file.h"
+#include "byre/recording.h"
+#include "byre/simulation/rendered_fixture.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+std::unique_ptr<Recording> open_shared() {
+  return open_recording(RenderedFixture::shared().folder(), {});
+}
+
+std::vector<ImageFrame> shared_frames() {
+  const auto recording = open_shared();
+  std::vector<ImageFrame> frames;
+  for (int i = 0; i < recording->size(); ++i) frames.push_back(recording->read(i).value());
+  return frames;
+}
+
+SlamOptions repeatable() {
+  SlamOptions options;
+  options.workers = Workers::repeatable;
+  return options;
+}
+
+Trajectory causal(Slam& slam, const std::vector<ImageFrame>& frames) {
+  Trajectory poses;
+  for (const ImageFrame& frame : frames) {
+    const FrameReport report = slam.process(view_of(frame));
+    if (report.map_from_body) poses.push_back({report.time, *report.map_from_body});
+  }
+  return poses;
+}
+
+std::string error_of(const std::function<void()>& attempt) {
+  try {
+    attempt();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class SlamWithAFile : public testing::Test {
+ protected:
+  SlamWithAFile() { fs::remove(map_); }
+  ~SlamWithAFile() override { fs::remove(map_); }
+
+  // Maps the shared recording into the file.
+  void map_shared() const {
+    Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
+    causal(slam, shared_frames());
+    slam.finish();
+    slam.save(map_);
+  }
+
+  const fs::path map_ = fs::path(testing::TempDir()) / ("byre_slam_test." + std::to_string(getpid()) + ".byre");
+};
+
+TEST_F(SlamWithAFile, KeepsWhatAMapWasMadeFrom) {
+  map_shared();
+  const std::vector<ImageFrame> frames = shared_frames();
+  const StoredMap kept = load_map(map_);
+  EXPECT_GT(kept.map.point_count(), 100);
+  ASSERT_THAT(kept.recordings, SizeIs(1));
+  EXPECT_EQ(kept.recordings.front().name, "live");
+  EXPECT_EQ(kept.recordings.front().first_time, frames.front().time);
+  EXPECT_EQ(kept.recordings.front().last_time, frames.back().time);
+  EXPECT_EQ(kept.recordings.front().calibration, open_shared()->calibration());
+  EXPECT_EQ(kept.scale, MapScale::metric);
+}
+
+TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
+  map_shared();
+  Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
+  std::set<SessionEvent> events;
+  FrameReport report;
+  for (const ImageFrame& frame : shared_frames()) {
+    report = slam.process(view_of(frame));
+    events.insert(report.events.begin(), report.events.end());
+  }
+  EXPECT_TRUE(events.contains(SessionEvent::localised));
+  EXPECT_EQ(report.health.verdict, Verdict::trusted) << to_string(report.health.doubt);
+  ASSERT_TRUE(report.map_from_body);
+  EXPECT_FALSE(slam.plan_from_body(*report.map_from_body)) << "the map is on no plan";
+  slam.finish();
+  EXPECT_GT(slam.trajectory().size(), 10u);
+}
+
+TEST_F(SlamWithAFile, GoesOnWithAMap) {
+  map_shared();
+  Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
+  causal(slam, shared_frames());
+  slam.finish();
+  slam.save(map_);
+  const StoredMap kept = load_map(map_);
+  EXPECT_THAT(kept.recordings, SizeIs(2));
+  EXPECT_GT(slam.trajectory().size(), 10u);
+}
+
+TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  Slam slam = Slam::mapping(open_shared()->calibration());
+  EXPECT_THAT(error_of([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
+  EXPECT_FALSE(fs::exists(map_));
+  int keyframes_before = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    slam.process(view_of(frames[i]));
+    if (i % 6 != 0) continue;
+    slam.save(map_);
+    const int keyframes = load_map(map_).map.keyframe_count();
+    EXPECT_GE(keyframes, keyframes_before);
+    keyframes_before = keyframes;
+  }
+  EXPECT_GT(keyframes_before, 0);
+  slam.finish([] { return true; });
+  slam.save(map_);
+  EXPECT_GT(load_map(map_).map.keyframe_count(), 0);
+}
+
+TEST(Slam, NeedsAMapThatCanBeLoaded) {
+  EXPECT_THAT(error_of([] { Slam::on_map(open_shared()->calibration(), "no/such.byre"); }), HasSubstr("no/such.byre"));
+  EXPECT_THAT(error_of([] { Slam::extending(open_shared()->calibration(), "no/such.byre"); }),
+              HasSubstr("no/such.byre"));
+  SlamOptions options;
+  options.vocabulary = "no/such.vocabulary";
+  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
+}
+
+TEST(Slam, DropsWhatIsNoFrameAndGoesOn) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
+  slam.process(view_of(frames[0]));
+  slam.process(view_of(frames[1]));
+  const FrameReport again = slam.process(view_of(frames[1]));
+  EXPECT_EQ(again.input, InputFault::repeated_time);
+  EXPECT_FALSE(again.map_from_body);
+  EXPECT_EQ(again.state, State::tracking);
+  EXPECT_EQ(again.health.verdict, Verdict::untrusted);
+  EXPECT_EQ(slam.process(view_of(frames[0])).input, InputFault::out_of_order);
+  EXPECT_EQ(slam.process(CameraImages{}).input, InputFault::no_image);
+  const FrameReport next = slam.process(view_of(frames[2]));
+  EXPECT_EQ(next.input, InputFault::none);
+  EXPECT_TRUE(next.map_from_body);
+  EXPECT_EQ(slam.frames(), 6);
+  EXPECT_EQ(slam.frames(InputFault::none), 3);
+  EXPECT_EQ(slam.frames(InputFault::out_of_order), 1);
+  slam.finish();
+  EXPECT_EQ(slam.process(view_of(frames[3])).input, InputFault::after_finishing);
+}
+
+TEST(Slam, TracksTheLeftImageWhereTheRightOneCannotBeUsed) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
+  for (std::size_t i = 0; i < 4; ++i) slam.process(view_of(frames[i]));
+  CameraImages alone = view_of(frames[4]);
+  alone.right.reset();
+  const FrameReport without = slam.process(alone);
+  EXPECT_EQ(without.input, InputFault::missing_right);
+  EXPECT_TRUE(without.map_from_body);
+  CameraImages late = view_of(frames[5]);
+  late.right->time += std::chrono::milliseconds(20);
+  const FrameReport unpaired = slam.process(late);
+  EXPECT_EQ(unpaired.input, InputFault::late_right);
+  EXPECT_TRUE(unpaired.map_from_body);
+}
+
+TEST(Slam, SeesTheSameInEveryFormatOfTheSamePicture) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  Slam grey = Slam::mapping(open_shared()->calibration(), repeatable());
+  Slam colour = Slam::mapping(open_shared()->calibration(), repeatable());
+  const auto bgr_of = [](const Image& image) {
+    std::vector<std::uint8_t> bgr;
+    for (const std::uint8_t value : image.pixels) bgr.insert(bgr.end(), 3, value);
+    return bgr;
+  };
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::vector<std::uint8_t> left = bgr_of(frames[i].left), right = bgr_of(*frames[i].right);
+    CameraImages images = view_of(frames[i]);
+    const FrameReport expected = grey.process(images);
+    images.left.data = left.data();
+    images.right->data = right.data();
+    images.left.format = images.right->format = PixelFormat::bgr8;
+    const FrameReport report = colour.process(images);
+    ASSERT_TRUE(report.map_from_body);
+    EXPECT_EQ(*report.map_from_body, *expected.map_from_body);
+  }
+}
+
+TEST(Slam, KnowsNoMetresByOneCamera) {
+  Calibration one = open_shared()->calibration();
+  one.right.reset();
+  EXPECT_FALSE(Slam::mapping(one).is_metric());
+  EXPECT_EQ(Slam::mapping(one).rig().body_from_camera.translation, Eigen::Vector3d(Eigen::Vector3d::Zero()));
+  EXPECT_TRUE(Slam::mapping(open_shared()->calibration()).is_metric());
+}
+
+TEST(Slam, TracksOwnFeaturesAsItsOwn) {
+  const Calibration calibration = open_shared()->calibration();
+  Slam by_images = Slam::mapping(calibration, repeatable()), by_features = Slam::mapping(calibration, repeatable());
+  Extractor extractor(calibration, {});
+  for (const ImageFrame& frame : shared_frames()) {
+    const FrameReport expected = by_images.process(view_of(frame));
+    const FrameReport report = by_features.process(extractor.extract(frame).frame);
+    ASSERT_EQ(report.map_from_body.has_value(), expected.map_from_body.has_value());
+    if (report.map_from_body) EXPECT_EQ(*report.map_from_body, *expected.map_from_body);
+  }
+}
+
+}  // namespace
+}  // namespace byre
