@@ -5,6 +5,7 @@
 #include "byre/byre.h"
 
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace {

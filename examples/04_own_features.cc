@@ -5,10 +5,14 @@
 
 #include "byre/byre.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace {

@@ -10,6 +10,8 @@ packages=(
   libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev libboost-dev
   # the program
   libcli11-dev
+  # the package for Python
+  pybind11-dev python3-dev python3-numpy python3-pytest
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev clang libbenchmark-dev clang-format python3
 )

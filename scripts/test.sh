@@ -47,7 +47,7 @@ run_tests() {
 
 check_format() {
   local folders=()
-  for folder in include src tests examples benchmarks; do
+  for folder in include src tests examples benchmarks python; do
     [[ ! -d $folder ]] || folders+=("$folder")
   done
   if find "${folders[@]}" \( -name '*.h' -o -name '*.cc' \) -print0 | xargs -0 clang-format --dry-run --Werror; then

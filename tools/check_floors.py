@@ -33,7 +33,7 @@ PUBLIC = {
     "trajectory.h": "geometry", "two_view_failure.h": "geometry",
     "features.h": "features", "image.h": "features", "image_condition.h": "features",
     "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
-    "recording.h": "dataset",
+    "calibration_file.h": "dataset", "recording.h": "dataset",
     "health.h": "slam", "state.h": "slam",
     "frame_report.h": "session", "session_event.h": "session",
     "byre.h": "system", "slam.h": "system",

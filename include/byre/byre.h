@@ -4,6 +4,7 @@
 
 #include "byre/alignment.h"
 #include "byre/calibration.h"
+#include "byre/calibration_file.h"
 #include "byre/features.h"
 #include "byre/frame_report.h"
 #include "byre/health.h"

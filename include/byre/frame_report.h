@@ -22,9 +22,11 @@ enum class InputFault : std::uint8_t {
   missing_right,   // of a stereo pair the left image came alone
   late_right,      // the right image was taken at another time, and left out
   missing_depth,   // of a depth camera the image came alone
+  late_depth,      // the depth image was taken at another time, and left out
   no_image,        // the left image holds nothing
   wrong_size,      // an image is not of the calibration's size, or its rows are shorter than their pixels
   wrong_format,    // a depth image where a picture is to be, or the other way round
+  wrong_features,  // own features outside the image, of an octave that does not exist, or a disparity without its sigma
   repeated_time,   // the time of the frame before
   out_of_order,    // an earlier time than the frame before
   after_finishing  // Slam::finish was called before

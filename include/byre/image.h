@@ -30,7 +30,7 @@ struct ImageFrame {
   std::optional<DepthImage> depth{};
 };
 
-//   grey8, grey16   one number a pixel; of grey16 the lower ImageView::bits count
+//   grey8, grey16   one number a pixel; of grey16 from 0 to 2^ImageView::bits - 1
 //   bgr8, rgb8      three bytes a pixel
 //   yuyv            four bytes for two pixels, Y0 U Y1 V (YUV 4:2:2)
 //   nv12            a plane of Y, below it one of U and V for four pixels each (YUV 4:2:0); width and height are even
@@ -49,11 +49,12 @@ struct ImageView {
   Timestamp time{};  // the middle of the exposure, by any clock that never goes back
 };
 
-// What the cameras took at one time, that of the left image.
+// What the cameras took at one time.
 struct CameraImages {
   ImageView left;
-  std::optional<ImageView> right{};  // of a stereo pair
-  std::optional<ImageView> depth{};  // of a depth camera
+  // Of a stereo pair or of a depth camera. A time of zero is that of the left image.
+  std::optional<ImageView> right{};
+  std::optional<ImageView> depth{};
 };
 
 // The images of a recording as a camera would hand them over. Valid as long as the frame is.

@@ -1,11 +1,13 @@
 #pragma once
 
-#include "byre/alignment.h"
 #include "byre/calibration.h"
 #include "byre/features.h"
 #include "byre/frame_report.h"
 #include "byre/image.h"
 #include "byre/input_error.h"
+#include "byre/pose.h"
+#include "byre/rig.h"
+#include "byre/trajectory.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -25,7 +27,7 @@ enum class Workers : std::uint8_t { live, repeatable, none };
 struct SlamOptions {
   Workers workers = Workers::live;
   bool refine_calibration = true;      // from what is seen
-  bool map_online = true;              // of a mission: false tracks on the kept map alone
+  bool map_online = true;              // in a mission: false tracks on the kept map alone
   double max_pair_difference = 0.005;  // seconds between left and right image
   double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
   int max_features = 1000;             // a frame
@@ -38,7 +40,8 @@ struct SlamOptions {
 };
 
 // One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.
-// Making one throws InputError: a calibration that cannot be rectified, a map or a vocabulary that cannot be loaded.
+// Making one throws InputError: a calibration that makes no sense or cannot be rectified, a map or a vocabulary that
+// cannot be loaded.
 // Later, whatever is wrong with a frame is told in its report.
 class Slam {
  public:
@@ -57,19 +60,22 @@ class Slam {
   ~Slam();
 
   // Tracks the next frame. The images are borrowed for the time of the call.
-  // last_from_body: how the body has moved since the frame handed over before, by wheels or a gyroscope. Where it is
-  // known it takes the place of the guess that the body moves on as it did.
+  // last_from_body: how the body has moved since the frame handed over before, in metres, as wheels tell it. It takes
+  // the place of the guess that the body moves on as it did, and leads back to the map after some seconds without a
+  // pose. Of no use where lengths are no metres, and left alone there.
   FrameReport process(const CameraImages& images, const std::optional<Pose>& last_from_body = {});
 
   // The same with features of one's own, in pixels of rig().
   FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {});
 
-  // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes unless
-  // should_stop says to make an end. Frames that come later are dropped.
+  // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
+  // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come
+  // later are dropped.
   void finish(const std::function<bool()>& should_stop = {});
 
   // Keeps what was mapped, with or without finish() before: the whole map, or of a mission what was mapped beside the
-  // map it is on. Replaces the file as a whole. Throws InputError when it cannot be written, or nothing was mapped yet.
+  // map it is on. Replaces the file as a whole. It takes about a second for a thousand keyframes, in which no frame is
+  // tracked. Throws InputError when it cannot be written, or nothing was mapped yet.
   void save(const std::filesystem::path& path) const;
 
   // Every frame that had a pose, as the map has it now.
@@ -81,7 +87,7 @@ class Slam {
   const Rig& rig() const;              // the ideal camera that features are given in
   Calibration calibration() const;     // as it is known by now
   bool is_metric() const;              // whether lengths are metres
-  int keyframes() const;               // of what was mapped
+  int keyframes() const;               // of the map that is made, with what it goes on with; not of one that it is on
   int points() const;                  // likewise
   int frames() const;                  // handed over
   int frames(InputFault fault) const;  // of those, the ones with that fault

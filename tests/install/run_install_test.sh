@@ -32,6 +32,10 @@ shown=$("$byre" vocabulary show)
 echo "$shown"
 [[ $shown == "vocabulary   $prefix/share/byre/default.vocabulary"* ]]
 
+if [[ -d $prefix/lib/python3/dist-packages/byre ]]; then
+  PYTHONPATH=$prefix/lib/python3/dist-packages /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
+fi
+
 build "$source_dir/examples" examples
 cd "$work"
 "$build_dir/tests/recordings/render_room" room --frames 60 --rate 10 --laps 0.4 2>/dev/null

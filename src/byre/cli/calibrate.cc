@@ -1,3 +1,4 @@
+#include "byre/calibration_file.h"
 #include "byre/cli/calibration_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
@@ -8,7 +9,6 @@
 #include "byre/cli/output_file.h"
 #include "byre/cli/run_with_progress.h"
 #include "byre/cli/warnings.h"
-#include "byre/dataset/calibration_file.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
 #include "byre/playback/scaled_recording.h"

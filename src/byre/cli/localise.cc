@@ -1,3 +1,4 @@
+#include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/file_arguments.h"
 #include "byre/cli/frame_range_options.h"
@@ -10,7 +11,6 @@
 #include "byre/cli/progress.h"
 #include "byre/cli/trajectory_input.h"
 #include "byre/cli/warnings.h"
-#include "byre/dataset/calibration_file.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"

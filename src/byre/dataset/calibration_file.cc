@@ -1,4 +1,4 @@
-#include "byre/dataset/calibration_file.h"
+#include "byre/calibration_file.h"
 
 #include "byre/dataset/camera_fields.h"
 #include "byre/input_error.h"

@@ -1,4 +1,4 @@
-#include "byre/dataset/calibration_file.h"
+#include "byre/calibration_file.h"
 
 #include "byre/dataset/test_folder.h"
 #include "byre/geometry/geometry_matchers.h"

@@ -1,4 +1,4 @@
-#include "byre/dataset/calibration_file.h"
+#include "byre/calibration_file.h"
 #include "byre/dataset/euroc_sensor.h"
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/timed_files.h"

@@ -1,6 +1,6 @@
 #include "byre/recording.h"
 
-#include "byre/dataset/calibration_file.h"
+#include "byre/calibration_file.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/recording_index.h"

@@ -1,8 +1,10 @@
 #include "byre/features/image_view.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <opencv2/imgproc.hpp>
@@ -27,6 +29,19 @@ std::size_t bytes_of_pixel(PixelFormat format) {
       return 4;
   }
   return 0;
+}
+
+// Of numbers of several bytes.
+std::size_t alignment_of(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::grey16:
+    case PixelFormat::depth16:
+      return 2;
+    case PixelFormat::depth_metres:
+      return 4;
+    default:
+      return 1;
+  }
 }
 
 std::size_t stride_of(const ImageView& view) {
@@ -82,7 +97,10 @@ bool is_depth(PixelFormat format) {
 }
 
 bool is_sound(const ImageView& view) {
-  if (view.width <= 0 || view.height <= 0 || view.bits < 1 || view.bits > 16) return false;
+  if (view.width <= 0 || view.height <= 0) return false;
+  if (view.format == PixelFormat::grey16 && (view.bits < 1 || view.bits > 16)) return false;
+  const std::size_t alignment = alignment_of(view.format);
+  if (stride_of(view) % alignment != 0 || std::bit_cast<std::uintptr_t>(view.data) % alignment != 0) return false;
   if (stride_of(view) < bytes_of_pixel(view.format) * static_cast<std::size_t>(view.width)) return false;
   if (view.format == PixelFormat::yuyv) return view.width % 2 == 0;
   return view.format != PixelFormat::nv12 || (view.width % 2 == 0 && view.height % 2 == 0);

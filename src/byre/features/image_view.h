@@ -6,7 +6,8 @@ namespace byre {
 
 bool is_depth(PixelFormat format);
 
-// Whether rows are as long as their pixels, and rows and columns as many as the format needs.
+// Whether rows are as long as their pixels, rows and columns as many as the format needs, and numbers of several bytes
+// where the processor reads such.
 bool is_sound(const ImageView& view);
 
 // Copies somebody's picture, as grey, or somebody's depths; the memory of the result is used again. Preconditions: the

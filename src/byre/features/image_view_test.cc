@@ -76,6 +76,7 @@ TEST(ImageView, KnowsRowsThatAreTooShortAndSizesThatTheFormatHasNot) {
   EXPECT_FALSE(is_sound(view(bytes, 0, 2, PixelFormat::grey8)));
   EXPECT_FALSE(is_sound(view(bytes, 3, 2, PixelFormat::yuyv)));
   EXPECT_FALSE(is_sound(view(bytes, 4, 3, PixelFormat::nv12)));
+  EXPECT_FALSE(is_sound(view(bytes, 4, 2, PixelFormat::grey16, 9))) << "a number across two rows";
   ImageView bits = view(bytes, 2, 2, PixelFormat::grey16);
   bits.bits = 17;
   EXPECT_FALSE(is_sound(bits));

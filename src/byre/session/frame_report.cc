@@ -14,12 +14,16 @@ std::string_view to_string(InputFault fault) {
       return "right image is of another time";
     case InputFault::missing_depth:
       return "depth image is missing";
+    case InputFault::late_depth:
+      return "depth image is of another time";
     case InputFault::no_image:
       return "no image";
     case InputFault::wrong_size:
       return "image is not of the calibrated size";
     case InputFault::wrong_format:
       return "image is of a format that does not fit";
+    case InputFault::wrong_features:
+      return "features that no camera sees";
     case InputFault::repeated_time:
       return "time of the frame before";
     case InputFault::out_of_order:

@@ -128,6 +128,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& 
 }
 
 void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
+  const bool was_registered = is_registered();
   if (finished) take_over(*finished);
   global_.collect();
   const bool is_shutter_better = take_over_readout();
@@ -142,7 +143,8 @@ void Session::take_over_results(const std::optional<FinishedJob>& finished, Fram
   const Pose body_now = body_pose(last_camera_from_world());
   odometry_.absorb(last_body_, body_now);
   const Pose correction = body_now * inverse(last_body_);
-  if (is_registered() && log_pose(correction).norm() > kLeastCorrection) report.correction = correction;
+  if (was_registered && is_registered() && log_pose(correction).norm() > kLeastCorrection)
+    report.correction = correction;
   last_body_ = body_now;
 }
 

@@ -166,6 +166,7 @@ class Session {
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void settle_loop(const LoopHypothesis& loop);
 
+  bool may_be_led_back(Timestamp time) const;
   Located locate(const Frame& frame);
   const std::vector<PointId>& local_online_points();
   std::optional<HybridTrack> find_pose(const Frame& frame);

@@ -152,6 +152,7 @@ void Session::lose_pose(ImageFault fault, FrameReport& report) {
   }
   has_pose_ = false;
   confirmations_left_ = 0;
+  if (anchored_.size() > confirmed_end_) told_motion_.reset();
   anchored_.resize(confirmed_end_);  // what was found and never confirmed
   hindsight_.forget_from(confirmed_end_);
   offset_from_online_.reset();

@@ -53,13 +53,21 @@ Vector6 Session::velocity_to(Timestamp time, const Pose& camera_from_world) cons
   return log_pose(camera_from_world * inverse(last_camera_from_world())) / elapsed;
 }
 
+// Lost a moment ago, and told since how the body has moved.
+bool Session::may_be_led_back(Timestamp time) const {
+  constexpr double kMostSeconds = 5.0;
+  return !has_pose_ && told_motion_ && !anchored_.empty() && to_seconds(time - anchored_.back().time) <= kMostSeconds;
+}
+
 Session::Located Session::locate(const Frame& frame) {
   Located located;
   is_focal_asked_ = mission_ && focal_check_.is_due();
   const bool can_search = mission_ || places_;
-  if (!anchored_.empty() && (has_pose_ || !can_search)) located.track = find_pose(frame);
+  const bool is_led_back = can_search && may_be_led_back(frame.time);
+  if (!anchored_.empty() && (has_pose_ || !can_search || is_led_back)) located.track = find_pose(frame);
   if (located.track && located.track->focal) focal_check_.note(*located.track->focal);
   if (located.track && !is_still_confirming(*located.track)) located.track.reset();
+  located.without_prediction = located.track && is_led_back;
   if (!located.track && can_search) {
     located.track = relocalise(frame);
     located.without_prediction = located.track.has_value();

@@ -1,6 +1,6 @@
 #include "byre/simulation/cowshed_recording.h"
 
-#include "byre/dataset/calibration_file.h"
+#include "byre/calibration_file.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"

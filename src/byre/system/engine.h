@@ -13,12 +13,11 @@
 
 namespace byre {
 
-// Where mapping runs, and how fast frames are fed.
-//   same_thread  on the frame thread ("inline"), frames as fast as possible
+// Where mapping runs.
+//   same_thread  on the frame thread ("inline")
 //   paced        on workers, taken over kPacedLatency frames later, corrections of the whole map
-//                kPacedCorrectionLatency and searches in an offline map kPacedSearchLatency; frames as fast as
-//                possible: repeatable
-//   live         on workers, taken over when ready, frames at the recording's own time stamps; none is dropped
+//                kPacedCorrectionLatency and searches in an offline map kPacedSearchLatency: repeatable
+//   live         on workers, taken over when ready; a recording is then played at its own time stamps
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
 // As on the command line.
@@ -73,6 +72,8 @@ class Engine {
   // given: by which the cameras were said to see. before: the map that is gone on with, an online copy; it needs the
   // vocabulary's words, and options a vocabulary. Throws InputError when the calibration cannot be rectified.
   Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before = {});
+  Engine(const Engine&) = delete;  // executors know where its log is
+  Engine& operator=(const Engine&) = delete;
 
   Processed process(const ImageFrame& images, const std::optional<Pose>& last_from_body = {});
   FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {}) {

@@ -26,7 +26,7 @@ class StereoInput : public testing::Test {
   CameraImages images(milliseconds time) const { return {image(time), image(time)}; }
 
   std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(2 * kWidth * kHeight);
-  InputCheck check_{pair(), {0.005, 1.0}};
+  InputCheck check_{pair(), {}, {0.005, 1.0}};
 };
 
 TEST_F(StereoInput, IsSoundInOrderOfTime) {
@@ -68,7 +68,7 @@ TEST_F(StereoInput, MayHaveARightImageOfAnotherTime) {
   off.right->time = milliseconds(44);
   EXPECT_EQ(check_.note(off), InputFault::late_right);
   off = images(milliseconds(5000));
-  off.right->time = milliseconds(0);
+  off.right->time = milliseconds(1);
   EXPECT_EQ(check_.note(off), InputFault::late_right) << "a gap matters less than which images may be used";
 }
 
@@ -94,7 +94,7 @@ TEST_F(StereoInput, MayLackDepths) {
   Calibration calibration = pair();
   calibration.right.reset();
   calibration.depth = DepthCamera{};
-  InputCheck check(calibration, {});
+  InputCheck check(calibration, {}, {});
   CameraImages frame{image(milliseconds(0))};
   EXPECT_EQ(check.note(frame), InputFault::missing_depth);
   frame.left.time = milliseconds(50);
@@ -102,10 +102,50 @@ TEST_F(StereoInput, MayLackDepths) {
   EXPECT_EQ(check.note(frame), InputFault::wrong_format);
   frame.depth->format = PixelFormat::depth16;
   EXPECT_EQ(check.note(frame), InputFault::none);
+  EXPECT_TRUE(check.may_use_depth());
+  frame.left.time = milliseconds(100);
+  EXPECT_EQ(check.note(frame), InputFault::late_depth);
+  EXPECT_FALSE(check.may_use_depth());
+}
+
+TEST_F(StereoInput, HasTheTimeOfItsLeftImageWhereTheRightOneTellsNone) {
+  CameraImages untold = images(milliseconds(500));
+  untold.right->time = {};
+  EXPECT_EQ(check_.note(untold), InputFault::none);
+  EXPECT_TRUE(check_.may_use_right());
+}
+
+TEST_F(StereoInput, MayHaveTimesThatMakeNoSense) {
+  CameraImages far = images(milliseconds(0));
+  far.right->time = Timestamp::min();
+  EXPECT_EQ(check_.note(far), InputFault::late_right);
+  EXPECT_EQ(check_.note(images(std::chrono::duration_cast<milliseconds>(Timestamp::max()))), InputFault::after_gap);
+}
+
+TEST(FeatureInput, NeedsFeaturesThatACameraSees) {
+  Rig rig;
+  rig.width = 8;
+  rig.height = 6;
+  InputCheck check({}, rig, {});
+  const auto fault_with = [&](const Keypoint& keypoint) {
+    Frame frame;
+    frame.features =
+        std::make_shared<const Features>(8, 6, std::vector{keypoint}, std::vector<Descriptor>(1), std::vector<Patch>{});
+    return InputCheck({}, rig, {}).note(frame);
+  };
+  Keypoint sound;
+  sound.pixel = {3.0f, 3.0f};
+  EXPECT_EQ(fault_with(sound), InputFault::none);
+  Keypoint unsure = sound;
+  unsure.disparity = 4.0f;
+  EXPECT_EQ(fault_with(unsure), InputFault::wrong_features) << "a disparity without its sigma";
+  Keypoint small = sound;
+  small.octave = kOctaves;
+  EXPECT_EQ(fault_with(small), InputFault::wrong_features);
 }
 
 TEST(FeatureInput, NeedsFeaturesInOrderOfTime) {
-  InputCheck check({}, {});
+  InputCheck check({}, {}, {});
   Frame frame;
   EXPECT_EQ(check.note(frame), InputFault::no_image);
   frame.features = std::make_shared<const Features>();

@@ -3,6 +3,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/features/image_view.h"
 #include "byre/map/map_file.h"
+#include "byre/map/map_values.h"
 #include "byre/slam/online_copy.h"
 #include "byre/system/engine.h"
 #include "byre/system/input_check.h"
@@ -14,6 +15,22 @@ namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What nobody's images can be seen by. Files were looked through when they were read; these may come from anywhere.
+void require_sense(const Calibration& calibration, const SlamOptions& options) {
+  const auto refuse = [](std::string_view reason) {
+    throw InputError("the calibration given to Slam", reason, "see byre/calibration.h");
+  };
+  if (const auto fault = fault_in(calibration); !fault.empty()) refuse(fault);
+  if (calibration.right && calibration.depth) refuse("has both a right and a depth camera");
+  if (calibration.depth) {
+    const DepthCamera& depth = *calibration.depth;
+    const bool is_sound = depth.units_per_metre > 0.0 && depth.sigma_at_one_metre > 0.0 && depth.baseline > 0.0 &&
+                          (!depth.camera || fault_in(*depth.camera).empty());
+    if (!is_sound) refuse("has no proper depth camera");
+  }
+  if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
+}
 
 Pace pace_of(Workers workers) {
   switch (workers) {
@@ -31,7 +48,6 @@ EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocab
   EngineOptions engine;
   engine.pace = pace_of(options.workers);
   engine.extract.max_features = options.max_features;
-  engine.session.map_online = options.map_online;
   engine.self_calibrate = options.refine_calibration;
   engine.vocabulary = vocabulary;
   return engine;
@@ -48,16 +64,22 @@ struct Slam::Parts {
         vocabulary(used_vocabulary),
         about(std::move(beside)),
         offline(engine_options.offline),
+        is_extended(before.has_value()),
         engine(given, engine_options, std::move(before)),
-        input(given, {options.max_pair_difference, options.max_gap}) {
+        input(given, engine.rig(), {options.max_pair_difference, options.max_gap}) {
     if (options.image_threads > 0) limit_image_threads(options.image_threads);
   }
+  ~Parts() { engine.hurry(); }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
 
   // The images that the engine is to see; empty where they are dropped, see input.
   const ImageFrame* take(const CameraImages& images);
   // How the body has moved since the frame that the engine saw last.
   std::optional<Pose> take_motion(const std::optional<Pose>& last_from_body, bool is_dropped);
   FrameReport noted(FrameReport report);
+  // Of a map that is gone on with, that anything was added to it.
+  bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
   FrameReport dropped(Timestamp time) const;
   StoredMap kept() const;
 
@@ -67,6 +89,8 @@ struct Slam::Parts {
   Vocabulary vocabulary;
   StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
   std::shared_ptr<const OfflineMap> offline;
+  bool is_extended = false;
+  std::optional<PlanRegistration> plan;  // of the map that poses are in
 
   Engine engine;
   InputCheck input;
@@ -75,6 +99,7 @@ struct Slam::Parts {
   State state = State::initialising;           // after the last frame
   std::optional<Timestamp> first_time;         // of the frames that were not dropped
   Timestamp last_time{};
+  bool had_pose = false;  // of any frame, in the map
   bool is_finished = false;
 };
 
@@ -83,10 +108,10 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
   if (is_dropped(fault)) return nullptr;
   buffer.time = images.left.time;
   copy_grey(images.left, buffer.left);
-  const bool has_right = given.right && images.right && images.right->data && fault != InputFault::late_right;
+  const bool has_right = input.may_use_right();
   if (!has_right) buffer.right.reset();
   if (has_right) copy_grey(*images.right, buffer.right ? *buffer.right : buffer.right.emplace());
-  const bool has_depth = given.depth && images.depth && images.depth->data;
+  const bool has_depth = input.may_use_depth();
   if (!has_depth) buffer.depth.reset();
   if (has_depth) {
     copy_depth(*images.depth, given.depth->units_per_metre, buffer.depth ? *buffer.depth : buffer.depth.emplace());
@@ -95,7 +120,9 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
 }
 
 std::optional<Pose> Slam::Parts::take_motion(const std::optional<Pose>& last_from_body, bool is_dropped) {
-  const auto motion = unseen_motion && last_from_body ? std::optional(*unseen_motion * *last_from_body) : std::nullopt;
+  const bool is_of_use = about.scale == MapScale::metric;  // nobody can tell metres to who knows none
+  const auto motion =
+      is_of_use && unseen_motion && last_from_body ? std::optional(*unseen_motion * *last_from_body) : std::nullopt;
   unseen_motion = is_dropped ? motion : Pose{};
   return motion;
 }
@@ -103,6 +130,7 @@ std::optional<Pose> Slam::Parts::take_motion(const std::optional<Pose>& last_fro
 FrameReport Slam::Parts::noted(FrameReport report) {
   report.input = input.last();
   state = report.state;
+  had_pose = had_pose || report.map_from_body;
   if (!first_time) first_time = report.time;
   last_time = report.time;
   return report;
@@ -130,6 +158,7 @@ Slam& Slam::operator=(Slam&&) noexcept = default;
 Slam::~Slam() = default;
 
 Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
+  require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   StoredMap about;
   Calibration given = calibration;
@@ -141,24 +170,30 @@ Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
 }
 
 Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
+  require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   StoredMap about = load_for_mapping(map, vocabulary);
   about.pose_source = PoseSource::slam;
   Map before = online_copy(about.map);
   about.map = Map(Origin::offline);
+  const auto plan = about.plan;
   EngineOptions engine = engine_options(options, vocabulary);
   engine.known = known_calibration(about.recordings, calibration);
   engine.session.recording = static_cast<int>(about.recordings.size());
-  return Slam(std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before)));
+  auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before));
+  parts->plan = plan;
+  return Slam(std::move(parts));
 }
 
 Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
+  require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   EngineOptions engine = engine_options(options, vocabulary);
   engine.offline = load_offline_map(map, vocabulary);
-  StoredMap about;
-  about.plan = load_plan_registration(map);
-  return Slam(std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about)));
+  engine.session.map_online = options.map_online;
+  auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
+  parts->plan = load_plan_registration(map);
+  return Slam(std::move(parts));
 }
 
 FrameReport Slam::process(const CameraImages& images, const std::optional<Pose>& last_from_body) {
@@ -181,7 +216,7 @@ void Slam::finish(const std::function<bool()>& should_stop) {
   const FinishHooks hooks{should_stop ? should_stop : [] { return false; }, {}};
   if (hooks.should_stop()) parts_->engine.hurry();
   parts_->engine.finish();
-  if (hooks.should_stop() || keyframes() == 0) return;
+  if (hooks.should_stop() || !parts_->has_mapped()) return;
   if (parts_->offline) {
     parts_->engine.finish_mission({}, hooks);
   } else {
@@ -190,7 +225,7 @@ void Slam::finish(const std::function<bool()>& should_stop) {
 }
 
 void Slam::save(const fs::path& path) const {
-  if (keyframes() == 0) {
+  if (!parts_->has_mapped()) {
     throw InputError(path.string(), "is not written, as nothing was mapped yet",
                      "let the robot move, and look at the reports");
   }
@@ -202,7 +237,7 @@ Trajectory Slam::trajectory() const {
 }
 
 std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {
-  const auto& plan = parts_->about.plan;
+  const auto& plan = parts_->plan;
   return plan ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
 }
 

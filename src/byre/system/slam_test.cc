@@ -9,6 +9,7 @@
 #include <set>
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -58,9 +59,11 @@ class SlamWithAFile : public testing::Test {
   ~SlamWithAFile() override { fs::remove(map_); }
 
   // Maps the shared recording into the file.
-  void map_shared() const {
+  void map_shared(std::size_t frames = 1000) const {
     Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
-    causal(slam, shared_frames());
+    std::vector<ImageFrame> seen = shared_frames();
+    seen.resize(std::min(frames, seen.size()));
+    causal(slam, seen);
     slam.finish();
     slam.save(map_);
   }
@@ -99,14 +102,46 @@ TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
 }
 
 TEST_F(SlamWithAFile, GoesOnWithAMap) {
-  map_shared();
+  map_shared(8);
+  const Map before = load_map(map_).map;
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
+  EXPECT_EQ(slam.keyframes(), before.keyframe_count());
   causal(slam, shared_frames());
   slam.finish();
   slam.save(map_);
   const StoredMap kept = load_map(map_);
   EXPECT_THAT(kept.recordings, SizeIs(2));
+  EXPECT_GT(kept.map.keyframe_count(), before.keyframe_count());
   EXPECT_GT(slam.trajectory().size(), 10u);
+}
+
+TEST_F(SlamWithAFile, LeavesAMapAloneInWhichItNeverFoundItself) {
+  map_shared(8);
+  Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
+  ImageFrame dark = shared_frames().front();
+  std::ranges::fill(dark.left.pixels, std::uint8_t{0});
+  slam.process(view_of(dark));
+  slam.finish();
+  EXPECT_THAT(error_of([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
+}
+
+TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
+  map_shared(8);
+  StoredMap on_plan = load_map(map_);
+  on_plan.plan = PlanRegistration{"barn", {1.0, {Eigen::Quaterniond::Identity(), {10.0, 20.0, 0.0}}}};
+  save_map(on_plan, map_);
+  Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
+  const Trajectory poses = causal(slam, shared_frames());
+  ASSERT_FALSE(poses.empty());
+  const Eigen::Vector3d in_map = poses.back().world_from_body.translation;
+  const Eigen::Vector3d on_floor = slam.plan_from_body(poses.back().world_from_body).value().translation;
+  EXPECT_LT((on_floor - in_map - Eigen::Vector3d(10.0, 20.0, 0.0)).norm(), 1e-9);
+  slam.finish();
+  ASSERT_GT(slam.keyframes(), 0);
+  slam.save(map_);
+  const StoredMap kept = load_map(map_);
+  EXPECT_THAT(kept.recordings, SizeIs(1));
+  EXPECT_FALSE(kept.plan) << "it was the other map that was laid on the plan";
 }
 
 TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
@@ -127,6 +162,21 @@ TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
   slam.finish([] { return true; });
   slam.save(map_);
   EXPECT_GT(load_map(map_).map.keyframe_count(), 0);
+}
+
+TEST(Slam, NeedsACalibrationThatMakesSense) {
+  const Calibration sound = open_shared()->calibration();
+  const auto error_with = [](const Calibration& calibration) { return error_of([&] { Slam::mapping(calibration); }); };
+  Calibration unknown = sound;
+  unknown.left.fx = unknown.left.fy = 0.0;
+  EXPECT_THAT(error_with(unknown), HasSubstr("has no proper camera"));
+  Calibration both = sound;
+  both.depth = DepthCamera{};
+  EXPECT_THAT(error_with(both), HasSubstr("has both a right and a depth camera"));
+  Calibration unitless = both;
+  unitless.right.reset();
+  unitless.depth->units_per_metre = 0.0;
+  EXPECT_THAT(error_with(unitless), HasSubstr("has no proper depth camera"));
 }
 
 TEST(Slam, NeedsAMapThatCanBeLoaded) {
@@ -158,6 +208,7 @@ TEST(Slam, DropsWhatIsNoFrameAndGoesOn) {
   EXPECT_EQ(slam.frames(InputFault::out_of_order), 1);
   slam.finish();
   EXPECT_EQ(slam.process(view_of(frames[3])).input, InputFault::after_finishing);
+  EXPECT_EQ(slam.process(Frame{}).input, InputFault::after_finishing);
 }
 
 TEST(Slam, TracksTheLeftImageWhereTheRightOneCannotBeUsed) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "byre/pose.h"
+#include "byre/trajectory.h"
+
+#include <optional>
+#include <string_view>
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+// A list of poses that Python sees as one object, not as a list.
+PYBIND11_MAKE_OPAQUE(byre::Trajectory)
+
+namespace byre::python {
+
+namespace py = pybind11;
+
+// Each adds its part of the package to the module.
+void bind_cameras(py::module_& module);
+void bind_slam(py::module_& module);
+void bind_evaluation(py::module_& module);
+
+// In Python a pose is a 4x4 matrix.
+Eigen::Matrix4d matrix_of(const Pose& pose);
+std::optional<Eigen::Matrix4d> matrix_of(const std::optional<Pose>& pose);
+// Throws InputError when it is no rigid motion. name: of the argument.
+Pose pose_of(const Eigen::Matrix4d& matrix, std::string_view name);
+
+}  // namespace byre::python

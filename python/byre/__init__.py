@@ -1,0 +1,47 @@
+"""Visual SLAM for robots that work in the same building every day.
+
+    import byre
+
+    recording = byre.Recording("MH_01_easy")
+    slam = byre.Slam.mapping(recording.calibration)
+    for images in recording:
+        report = slam.process(images)
+        print(report.verdict, report.map_from_body)
+    slam.finish()
+    slam.save("hall.byre")
+
+A robot hands over its own images: slam.process(time_ns, left, right), arrays of numpy that are not copied.
+Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Metres, radians, nanoseconds.
+"""
+from ._byre import (
+    AbsoluteTrajectoryError,
+    Calibration,
+    Camera,
+    CameraChoice,
+    CameraModel,
+    DepthCamera,
+    Doubt,
+    ErrorStatistics,
+    Event,
+    FrameReport,
+    Health,
+    Images,
+    InputError,
+    InputFault,
+    Recording,
+    RelativePoseError,
+    Slam,
+    SlamOptions,
+    State,
+    Trajectory,
+    TrajectoryFormat,
+    Verdict,
+    Workers,
+    __version__,
+    absolute_trajectory_error,
+    read_calibration,
+    read_trajectory,
+    relative_pose_error,
+)
+
+__all__ = [name for name in dir() if not name.startswith("_")]

@@ -1,0 +1,121 @@
+// Trajectories and their errors.
+
+#include "bindings.h"
+
+#include "byre/input_error.h"
+#include "byre/trajectory_error.h"
+#include "byre/trajectory_file.h"
+
+#include <string>
+
+namespace byre::python {
+namespace {
+
+using Times = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Matrices = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+Trajectory make_trajectory(const Times& times_ns, const Matrices& poses) {
+  const bool fits = times_ns.ndim() == 1 && poses.ndim() == 3 && poses.shape(0) == times_ns.shape(0) &&
+                    poses.shape(1) == 4 && poses.shape(2) == 4;
+  if (!fits) throw py::value_error("a trajectory has n times and n poses of 4 x 4");
+  Trajectory trajectory;
+  for (py::ssize_t i = 0; i < times_ns.shape(0); ++i) {
+    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    const Eigen::Matrix4d matrix = Eigen::Map<const RowMajor>(poses.data(i));
+    const Timestamp time(times_ns.at(i));
+    if (!trajectory.empty() && time <= trajectory.back().time) throw py::value_error("times do not increase");
+    trajectory.push_back({time, pose_of(matrix, "pose " + std::to_string(i))});
+  }
+  return trajectory;
+}
+
+Times times_of(const Trajectory& trajectory) {
+  Times times(static_cast<py::ssize_t>(trajectory.size()));
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    times.mutable_at(static_cast<py::ssize_t>(i)) = trajectory[i].time.count();
+  return times;
+}
+
+Matrices poses_of(const Trajectory& trajectory) {
+  const auto count = static_cast<py::ssize_t>(trajectory.size());
+  Matrices poses(std::vector<py::ssize_t>{count, 4, 4});
+  for (py::ssize_t i = 0; i < count; ++i) {
+    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(poses.mutable_data(i)) = matrix_of(trajectory[static_cast<std::size_t>(i)].world_from_body);
+  }
+  return poses;
+}
+
+std::vector<PosePair> pairs_of(const Trajectory& estimate, const Trajectory& truth, double time_offset_s) {
+  AssociationOptions options;
+  options.time_offset = from_seconds(time_offset_s);
+  return associate(estimate, truth, options);
+}
+
+AbsoluteTrajectoryError ate(const Trajectory& estimate, const Trajectory& truth, bool scale, double time_offset_s) {
+  const auto error =
+      absolute_trajectory_error(pairs_of(estimate, truth, time_offset_s), scale ? Scale::free : Scale::fixed);
+  if (!error) throw InputError("the trajectories", "have less than three poses in common, or all on a line");
+  return *error;
+}
+
+RelativePoseError rpe(const Trajectory& estimate, const Trajectory& truth, std::optional<double> metres,
+                      std::optional<double> seconds, double time_offset_s) {
+  if (metres && seconds) throw py::value_error("give metres or seconds, or none of them for one frame");
+  const std::vector<PosePair> pairs = pairs_of(estimate, truth, time_offset_s);
+  if (metres) return relative_pose_error_by_distance(pairs, *metres, 1.0);
+  return seconds ? relative_pose_error_by_time(pairs, from_seconds(*seconds), 1.0)
+                 : relative_pose_error_by_frame(pairs, 1.0);
+}
+
+void bind_trajectory(py::module_& module) {
+  py::enum_<TrajectoryFormat>(module, "TrajectoryFormat", "Files of trajectories.")
+      .value("tum", TrajectoryFormat::tum)
+      .value("euroc", TrajectoryFormat::euroc)
+      .value("kitti", TrajectoryFormat::kitti);
+  py::class_<Trajectory>(module, "Trajectory", "Poses of a body in the world, in order of time.")
+      .def(py::init(&make_trajectory), py::arg("times_ns"), py::arg("poses"))
+      .def("__len__", &Trajectory::size)
+      .def_property_readonly("times_ns", &times_of, "n times, int64.")
+      .def_property_readonly("poses", &poses_of, "n matrices of 4 x 4.")
+      .def(
+          "write",
+          [](const Trajectory& trajectory, const std::filesystem::path& path, TrajectoryFormat format) {
+            write_trajectory(trajectory, path, format);
+          },
+          py::arg("path"), py::arg("format") = TrajectoryFormat::tum);
+  module.def("read_trajectory", &read_trajectory, py::arg("path"),
+             "A trajectory of a file in TUM's or EuRoC's format, or the truth of an EuRoC recording.");
+}
+
+}  // namespace
+
+void bind_evaluation(py::module_& module) {
+  bind_trajectory(module);
+  py::class_<ErrorStatistics>(module, "ErrorStatistics", "Of errors, in metres or degrees.")
+      .def_readonly("rmse", &ErrorStatistics::rmse)
+      .def_readonly("mean", &ErrorStatistics::mean)
+      .def_readonly("median", &ErrorStatistics::median)
+      .def_readonly("p95", &ErrorStatistics::p95)
+      .def_readonly("max", &ErrorStatistics::max)
+      .def_readonly("count", &ErrorStatistics::count);
+  py::class_<AbsoluteTrajectoryError>(module, "AbsoluteTrajectoryError", "After aligning the estimate to the truth.")
+      .def_readonly("translation", &AbsoluteTrajectoryError::translation, "Metres.")
+      .def_readonly("rotation", &AbsoluteTrajectoryError::rotation, "Degrees.")
+      .def_property_readonly("scale",
+                             [](const AbsoluteTrajectoryError& error) { return error.truth_from_estimate.scale; })
+      .def_property_readonly("errors", [](const AbsoluteTrajectoryError& error) {
+        return py::array_t<double>(static_cast<py::ssize_t>(error.errors.size()), error.errors.data());
+      });
+  py::class_<RelativePoseError>(module, "RelativePoseError", "Of motions between pairs of poses.")
+      .def_readonly("translation", &RelativePoseError::translation, "Metres.")
+      .def_readonly("rotation", &RelativePoseError::rotation, "Degrees.");
+  module.def("absolute_trajectory_error", &ate, py::arg("estimate"), py::arg("truth"), py::arg("scale") = false,
+             py::arg("time_offset_s") = 0.0,
+             "Position error after aligning the estimate to the truth (Sturm 2012), rigidly or with a scale.");
+  module.def("relative_pose_error", &rpe, py::arg("estimate"), py::arg("truth"), py::kw_only(),
+             py::arg("metres") = py::none(), py::arg("seconds") = py::none(), py::arg("time_offset_s") = 0.0,
+             "Error of motions over one frame, or so many metres or seconds (Sturm 2012).");
+}
+
+}  // namespace byre::python

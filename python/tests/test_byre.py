@@ -1,0 +1,221 @@
+"""The package byre, on a small recording of a made-up room."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import byre
+
+HERE = pathlib.Path(__file__).resolve().parent
+REPEATABLE = byre.SlamOptions(workers=byre.Workers.repeatable)
+
+
+@pytest.fixture(scope="session")
+def room(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("recordings") / "room"
+    command = [os.environ["BYRE_RENDER_ROOM"], folder, "--frames", "30", "--rate", "10", "--laps", "0.2"]
+    subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def frames(room):
+    return list(byre.Recording(room))
+
+
+@pytest.fixture(scope="session")
+def room_map(room, frames, tmp_path_factory):
+    path = tmp_path_factory.mktemp("maps") / "room.byre"
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    for images in frames:
+        slam.process(images)
+    slam.finish()
+    slam.save(path)
+    return path
+
+
+def test_recordings_are_lists_of_frames(room):
+    recording = byre.Recording(room)
+    assert len(recording) == 30
+    assert recording.times_ns.shape == (30,)
+    first, last = recording[0], recording[-1]
+    assert first.time_ns == recording.times_ns[0] and last.time_ns == recording.times_ns[-1]
+    assert first.left.shape == (240, 376) and first.left.dtype == np.uint8
+    assert first.right.shape == first.left.shape and first.depth is None
+    with pytest.raises(IndexError):
+        recording[30]
+    assert byre.Recording(room, camera=byre.CameraChoice.left)[0].right is None
+    assert len(byre.Recording(room, start_s=1.0, end_s=2.0)) == 10
+
+
+def test_pixels_outlive_what_they_came_from(room):
+    left = byre.Recording(room)[0].left
+    assert left.base is not None and 0 < left.mean() < 255
+
+
+def test_mapping_gives_what_the_program_gives(room, frames, tmp_path):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    reports = [slam.process(images) for images in frames]
+    assert reports[-1].state == byre.State.tracking
+    assert reports[-1].input == byre.InputFault.none
+    assert byre.Event.initialised in reports[0].events
+    assert reports[-1].map_from_body.shape == (4, 4)
+    assert reports[-1].covariance.shape == (6, 6)
+    slam.finish()
+    slam.trajectory().write(tmp_path / "here.txt")
+    subprocess.run(
+        [os.environ["BYRE_PROGRAM"], "map", room, "--trajectory", tmp_path / "program.txt", "--quiet"],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    assert (tmp_path / "here.txt").read_bytes() == (tmp_path / "program.txt").read_bytes()
+
+
+def test_arrays_of_ones_own_are_seen_alike(room, frames):
+    calibration = byre.Recording(room).calibration
+    by_images, by_arrays = (byre.Slam.mapping(calibration, REPEATABLE) for _ in range(2))
+    for images in frames[:6]:
+        expected = by_images.process(images).map_from_body
+        colour = np.repeat(images.left[:, :, None], 3, axis=2)
+        padded = np.zeros((240, 400), np.uint8)[:, :376]
+        padded[:] = images.right
+        found = by_arrays.process(images.time_ns, colour, padded).map_from_body
+        assert (found == expected).all()
+
+
+def test_frames_that_cannot_be_used_are_told(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    slam.process(frames[1])
+    assert slam.process(frames[1]).input == byre.InputFault.repeated_time
+    assert slam.process(frames[0]).input == byre.InputFault.out_of_order
+    small = np.zeros((10, 10), np.uint8)
+    assert slam.process(frames[2].time_ns, small, small).input == byre.InputFault.wrong_size
+    assert slam.process(frames[2].time_ns, frames[2].left).input == byre.InputFault.missing_right
+    assert slam.frames == 5 and slam.frames_with(byre.InputFault.wrong_size) == 1
+
+
+def test_arrays_that_are_no_images_are_refused(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    with pytest.raises(TypeError, match="uint8 or uint16"):
+        slam.process(1, frames[0].left.astype(np.float64))
+    with pytest.raises(ValueError, match="ascontiguousarray"):
+        slam.process(1, frames[0].left.T.copy().T)
+    with pytest.raises(byre.InputError, match="no rigid motion"):
+        slam.process(frames[0], last_from_body=2 * np.eye(4))
+
+
+def test_missions_are_told_whether_to_trust(room, frames, room_map):
+    slam = byre.Slam.on_map(byre.Recording(room).calibration, room_map, REPEATABLE)
+    reports = [slam.process(images) for images in frames]
+    assert any(byre.Event.localised in report.events for report in reports)
+    assert reports[-1].verdict == byre.Verdict.trusted
+    assert reports[-1].health.doubt == byre.Doubt.none
+    assert reports[-1].health.offline_inliers > 50
+    assert slam.plan_from_body(np.eye(4)) is None
+    assert "trusted" in repr(reports[-1])
+
+
+def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
+    slam = byre.Slam.extending(byre.Recording(room).calibration, room_map, REPEATABLE)
+    before = slam.keyframes
+    assert before > 0
+    for images in frames:
+        slam.process(images)
+    slam.save(tmp_path / "more.byre")
+    assert (tmp_path / "more.byre").stat().st_size > 0
+
+
+def test_bad_input_says_what_and_where(tmp_path, room):
+    with pytest.raises(byre.InputError, match="no-such-recording"):
+        byre.Recording(tmp_path / "no-such-recording")
+    with pytest.raises(byre.InputError, match="no-such.byre"):
+        byre.Slam.on_map(byre.Recording(room).calibration, tmp_path / "no-such.byre")
+    with pytest.raises(byre.InputError, match="nothing was mapped"):
+        byre.Slam.mapping(byre.Recording(room).calibration).save(tmp_path / "empty.byre")
+    assert issubclass(byre.InputError, ValueError)
+
+
+def test_calibrations_may_be_made_by_hand():
+    camera = byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, distortion=[0.1, -0.05])
+    right_from_left = np.eye(4)
+    right_from_left[0, 3] = -0.12
+    pair = byre.Calibration(camera, camera, right_from_left)
+    assert pair.right.fx == 400.0 and pair.left.distortion[:2] == [0.1, -0.05]
+    assert (pair.right_from_left == right_from_left).all() and (pair.body_from_left == np.eye(4)).all()
+    assert byre.Slam.mapping(pair).is_metric
+    assert not byre.Slam.mapping(byre.Calibration(camera)).is_metric
+    with pytest.raises(ValueError, match="belong together"):
+        byre.Calibration(camera, camera)
+    with pytest.raises(byre.InputError, match="right_from_left"):
+        byre.Calibration(camera, camera, 2 * right_from_left)
+
+
+def test_trajectories_go_to_files_and_back(tmp_path):
+    times = np.arange(5, dtype=np.int64) * 100_000_000
+    poses = np.tile(np.eye(4), (5, 1, 1))
+    poses[:, :3, 3] = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 1, 1], [3, 0, 1]]
+    truth = byre.Trajectory(times, poses)
+    truth.write(tmp_path / "truth.txt")
+    again = byre.read_trajectory(tmp_path / "truth.txt")
+    assert (again.times_ns == times).all() and np.allclose(again.poses, poses)
+    moved = poses.copy()
+    moved[:, :3, 3] *= 2.0
+    estimate = byre.Trajectory(times, moved)
+    assert byre.absolute_trajectory_error(estimate, truth, scale=True).translation.rmse < 1e-9
+    assert byre.absolute_trajectory_error(estimate, truth, scale=True).scale == pytest.approx(0.5)
+    error = byre.absolute_trajectory_error(estimate, truth)
+    assert error.errors.shape == (5,) and error.translation.rmse > 0.5
+    assert byre.relative_pose_error(truth, truth, seconds=0.2).translation.rmse < 1e-9
+    with pytest.raises(ValueError, match="do not increase"):
+        byre.Trajectory(times[::-1], poses)
+
+
+def test_other_threads_run_while_a_frame_is_tracked(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, byre.SlamOptions(workers=byre.Workers.none))
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.0005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    during = 0
+    for images in frames[:10]:
+        before = time.monotonic()
+        slam.process(images)
+        after = time.monotonic()
+        during += sum(before < at < after for at in ticks[-200:])
+    stop.set()
+    thread.join()
+    assert during > 0
+
+
+def test_everything_has_a_signature():
+    stub = (pathlib.Path(byre.__file__).parent / "__init__.pyi").read_text()
+    declared = set(re.findall(r"^(?:class|def) (\w+)", stub, re.MULTILINE))
+    assert declared == set(byre.__all__)
+    for name in declared:
+        bound = getattr(byre, name)
+        if not isinstance(bound, type) or issubclass(bound, Exception):
+            continue
+        body = re.search(rf"^class {name}\b.*?(?=^\S|\Z)", stub, re.MULTILINE | re.DOTALL)[0]
+        members = [member for member in vars(bound) if not member.startswith("_") and member not in ("name", "value")]
+        missing = [member for member in members if not re.search(rf"\b{member}\b", body)]
+        assert not missing, f"{name}: {missing}"
+
+
+def test_the_example_maps_and_tells_its_error(room, tmp_path):
+    script = HERE.parent / "examples" / "map_and_plot.py"
+    done = subprocess.run(
+        [sys.executable, script, room, "--map", tmp_path / "room.byre"], check=True, capture_output=True, text=True
+    )
+    assert re.search(r"^ATE \d+\.\d mm over 30 of 30 poses", done.stdout, re.MULTILINE), done.stdout
+    assert (tmp_path / "room.byre").exists()
