@@ -194,6 +194,7 @@ class Session {
   KeyframeEvidence keyframe_evidence(const HybridTrack& track) const;
   void conclude(const Frame& frame, const Located& located, FrameReport& report);
   Matrix6 covariance_of(const TrackedFrame& tracked) const;
+  void judge_calibration(HealthEvidence& evidence) const;
   Health health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const;
   void tell_navigation_error(double seconds_without_pose, FrameReport& report);
 
@@ -202,8 +203,6 @@ class Session {
   bool is_in_present_frame(KeyframeId online) const { return segments_.frame(online) == segments_.frame(); }
   bool is_pose_confirmed() const { return confirmations_left_ == 0; }
   bool is_pose_proven() const { return proofs_left_ == 0; }
-  // Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
-  bool is_calibration_open() const { return calibrator_ && !calibrator_->result(); }
   std::uint32_t next_keyframe_number() const { return last_keyframe_ ? last_keyframe_->number + 1 : 0; }
   Pose camera_from_world(KeyframeId id) const;
   Pose last_camera_from_world() const;

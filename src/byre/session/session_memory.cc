@@ -244,16 +244,25 @@ Matrix6 Session::covariance_of(const TrackedFrame& tracked) const {
   return (is_online ? tracked.covariance : tracked.match_covariance) + mission_->offline().frame_covariance();
 }
 
+// Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
+void Session::judge_calibration(HealthEvidence& evidence) const {
+  constexpr double kFarOff = 3.0;  // pixels; the real calibrations that were refused are off by 0.6 to 2.4
+  evidence.is_miscalibrated = focal_check_.is_off();
+  if (!calibrator_) return;
+  const auto& result = calibrator_->result();
+  evidence.is_calibration_open = !result;
+  evidence.is_calibration_doubtful = result && result->was_refused();
+  if (evidence.is_calibration_doubtful && result->shift >= kFarOff) evidence.is_miscalibrated = true;
+}
+
 Health Session::health_of(const Frame& frame, const Located& located, const Matrix6& covariance) const {
   Health health;
   health.image = frame.condition;
-  HealthEvidence evidence{has_pose_, is_registered(),
-                          is_pose_confirmed() && is_pose_proven() && !is_calibration_open()};
+  HealthEvidence evidence{has_pose_, is_registered(), is_pose_confirmed() && is_pose_proven()};
   evidence.maps_disagree = located.track && located.track->maps_disagree && !located.track->offline_stands;
   evidence.image_fault = image_fault(frame);
   evidence.input = input_;
-  const bool is_refused = calibrator_ && calibrator_->result() && calibrator_->result()->was_refused();
-  evidence.is_miscalibrated = focal_check_.is_off() || is_refused;
+  judge_calibration(evidence);
   health.focal_error = focal_check_.error();
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());

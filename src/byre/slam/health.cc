@@ -43,6 +43,8 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
 Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
   const Doubt input = fault_of_input(evidence);
   if (input != Doubt::none && input != Doubt::blinded) return input;
+  if (evidence.is_calibration_doubtful) return Doubt::calibration;
+  if (evidence.is_calibration_open) return Doubt::unconfirmed;
   if (evidence.maps_disagree && health.agreement && health.agreement->translation > options.max_disagreement) {
     return Doubt::maps_disagree;
   }

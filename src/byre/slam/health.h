@@ -24,11 +24,14 @@ struct HealthOptions {
 struct HealthEvidence {
   bool pose_found = false;
   bool registered = true;      // the pose is in the offline map's frame
-  bool confirmed = true;       // over several frames, since it was found; the calibration by a first look at it
+  bool confirmed = true;       // over several frames, since it was found
   bool maps_disagree = false;  // beyond what the uncertainties of both explain
   ImageFault image_fault = ImageFault::none;
   InputEvidence input{};
-  bool is_miscalibrated = false;  // by FocalCheck; without an offline map by a self-calibration that was refused
+  bool is_miscalibrated = false;  // by FocalCheck; without an offline map by a self-calibration that is far off
+  // Without an offline map: the self-calibration asked for more than a calibration errs by, or did not look yet.
+  bool is_calibration_doubtful = false;
+  bool is_calibration_open = false;
 };
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose

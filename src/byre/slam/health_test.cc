@@ -160,7 +160,17 @@ INSTANTIATE_TEST_SUITE_P(
                   good(),
                   {.pose_found = true, .is_miscalibrated = true},
                   Verdict::untrusted,
-                  Doubt::calibration}));
+                  Doubt::calibration},
+        Judgement{"a calibration that asks for more than any errs by",
+                  good(),
+                  {.pose_found = true, .is_calibration_doubtful = true},
+                  Verdict::degraded,
+                  Doubt::calibration},
+        Judgement{"a calibration that nobody has looked at",
+                  good(),
+                  {.pose_found = true, .is_calibration_open = true},
+                  Verdict::degraded,
+                  Doubt::unconfirmed}));
 
 }  // namespace
 }  // namespace byre
