@@ -25,7 +25,6 @@ function(byre_install_data)
   set(folder share/byre)
   install(FILES ${folder}/default.vocabulary DESTINATION ${CMAKE_INSTALL_DATADIR}/byre)
   install(DIRECTORY ${folder}/protocols DESTINATION ${CMAKE_INSTALL_DATADIR}/byre)
-  file(RELATIVE_PATH from_program ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/byre)
   set_source_files_properties(src/byre/input/data_file.cc PROPERTIES COMPILE_DEFINITIONS
-    "BYRE_DATA_FROM_PROGRAM=\"${from_program}\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
+    "BYRE_DATA_IN_PREFIX=\"${CMAKE_INSTALL_DATADIR}/byre\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
 endfunction()

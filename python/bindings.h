@@ -24,6 +24,9 @@ void bind_cameras(py::module_& module);
 void bind_slam(py::module_& module);
 void bind_evaluation(py::module_& module);
 
+// Text that need not be UTF-8, as names of files are.
+py::str text_of(std::string_view text);
+
 // In Python a pose is a 4x4 matrix.
 Eigen::Matrix4d matrix_of(const Pose& pose);
 std::optional<Eigen::Matrix4d> matrix_of(const std::optional<Pose>& pose);

@@ -1,13 +1,17 @@
 // Cameras, calibrations and recordings.
 
-#include "bindings.h"
+#include "enums.h"
 
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
+#include "byre/input_error.h"
 #include "byre/recording.h"
 
 #include <algorithm>
+#include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace byre::python {
@@ -17,28 +21,28 @@ Camera make_camera(int width, int height, double fx, double fy, double cx, doubl
                    const std::vector<double>& distortion) {
   Camera camera{model, width, height, fx, fy, cx, cy, {}};
   if (distortion.size() > camera.distortion.size()) throw py::value_error("distortion has at most five coefficients");
+  const bool is_distorted = std::ranges::any_of(distortion, [](double value) { return value != 0.0; });
+  if (is_distorted && model == CameraModel::pinhole) throw py::value_error("distortion needs a model that has it");
   std::ranges::copy(distortion, camera.distortion.begin());
   return camera;
 }
 
 Calibration make_calibration(const Camera& left, const std::optional<Camera>& right,
                              const std::optional<Eigen::Matrix4d>& right_from_left,
-                             const std::optional<Eigen::Matrix4d>& body_from_left, double readout_time) {
+                             const std::optional<Eigen::Matrix4d>& body_from_left,
+                             const std::optional<DepthCamera>& depth, double readout_time) {
   if (right.has_value() != right_from_left.has_value()) {
     throw py::value_error("right and right_from_left belong together");
   }
   Calibration calibration{left};
   if (right) calibration.right = StereoPartner{*right, pose_of(*right_from_left, "right_from_left")};
   if (body_from_left) calibration.body_from_left = pose_of(*body_from_left, "body_from_left");
+  calibration.depth = depth;
   calibration.readout_time = readout_time;
   return calibration;
 }
 
 void bind_camera(py::module_& module) {
-  py::enum_<CameraModel>(module, "CameraModel", "Lens models as EuRoC, Kalibr and OpenCV define them.")
-      .value("pinhole", CameraModel::pinhole)
-      .value("radial_tangential", CameraModel::radial_tangential)
-      .value("equidistant", CameraModel::equidistant);
   py::class_<Camera>(module, "Camera", "A camera as calibrated. Pixels count from the centre of the top-left one.")
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{})
@@ -49,26 +53,33 @@ void bind_camera(py::module_& module) {
       .def_readonly("fy", &Camera::fy)
       .def_readonly("cx", &Camera::cx)
       .def_readonly("cy", &Camera::cy)
-      .def_readonly("distortion", &Camera::distortion);
+      .def_readonly("distortion", &Camera::distortion)
+      .def("__eq__", [](const Camera& camera, const Camera& other) { return camera == other; });
 }
 
 void bind_calibration(py::module_& module) {
   py::class_<DepthCamera>(module, "DepthCamera", "A camera whose images hold depths along the optical axis.")
-      .def(py::init([](double units_per_metre, double sigma_at_one_metre) {
+      .def(py::init([](double units_per_metre, double sigma_at_one_metre, const std::optional<Camera>& camera,
+                       const std::optional<Eigen::Matrix4d>& left_from_depth) {
              DepthCamera depth;
              depth.units_per_metre = units_per_metre;
              depth.sigma_at_one_metre = sigma_at_one_metre;
+             depth.camera = camera;
+             if (left_from_depth) depth.left_from_depth = pose_of(*left_from_depth, "left_from_depth");
              return depth;
            }),
            py::arg("units_per_metre") = DepthCamera{}.units_per_metre,
-           py::arg("sigma_at_one_metre") = DepthCamera{}.sigma_at_one_metre,
-           "Registered to the left camera, pixel by pixel.")
+           py::arg("sigma_at_one_metre") = DepthCamera{}.sigma_at_one_metre, py::arg("camera") = py::none(),
+           py::arg("left_from_depth") = py::none(), "Without a camera of its own it is registered to the left one.")
       .def_readonly("units_per_metre", &DepthCamera::units_per_metre)
-      .def_readonly("sigma_at_one_metre", &DepthCamera::sigma_at_one_metre);
+      .def_readonly("sigma_at_one_metre", &DepthCamera::sigma_at_one_metre)
+      .def_readonly("camera", &DepthCamera::camera)
+      .def_property_readonly("left_from_depth",
+                             [](const DepthCamera& depth) { return matrix_of(depth.left_from_depth); });
   py::class_<Calibration>(module, "Calibration", "What is known of a robot's cameras, before any rectification.")
       .def(py::init(&make_calibration), py::arg("left"), py::arg("right") = py::none(),
            py::arg("right_from_left") = py::none(), py::arg("body_from_left") = py::none(),
-           py::arg("readout_time") = 0.0)
+           py::arg("depth") = py::none(), py::arg("readout_time") = 0.0)
       .def_readonly("left", &Calibration::left)
       .def_property_readonly("right",
                              [](const Calibration& calibration) {
@@ -81,8 +92,9 @@ void bind_calibration(py::module_& module) {
                              })
       .def_property_readonly("body_from_left",
                              [](const Calibration& calibration) { return matrix_of(calibration.body_from_left); })
-      .def_readwrite("depth", &Calibration::depth, "The depth camera, of which and a right one there is one at most.")
-      .def_readwrite("readout_time", &Calibration::readout_time, "Seconds from the first row to the last.");
+      .def_readonly("depth", &Calibration::depth)
+      .def_readonly("readout_time", &Calibration::readout_time, "Seconds from the first row to the last.")
+      .def("__eq__", [](const Calibration& calibration, const Calibration& other) { return calibration == other; });
   module.def("read_calibration", &read_calibration, py::arg("path"),
              "The calibration of a file: EuRoC's sensor.yaml, a camera chain of Kalibr, OpenCV or ROS.");
 }
@@ -93,7 +105,80 @@ py::array array_of(const std::vector<Number>& numbers, int width, int height, co
   return py::array_t<Number>({height, width}, numbers.data(), owner);
 }
 
-void bind_recording(py::module_& module) {
+// A recording that any thread may read from, one at a time.
+class SharedRecording {
+ public:
+  explicit SharedRecording(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
+
+  const Recording& constant() const { return *recording_; }  // what reading does not change
+  int size() const { return recording_->size(); }
+  std::optional<ImageFrame> read(int index) {
+    const std::scoped_lock lock(mutex_);
+    return recording_->read(index);
+  }
+  std::vector<std::string> warnings() {
+    const std::scoped_lock lock(mutex_);
+    return recording_->warnings();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<Recording> recording_;
+};
+
+std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const std::optional<CameraChoice>& camera,
+                                      const std::optional<std::filesystem::path>& calibration,
+                                      std::optional<double> frame_rate_hz, std::optional<double> start_s,
+                                      std::optional<double> end_s, int stride) {
+  FrameRange range;
+  range.start_s = start_s;
+  range.end_s = end_s;
+  range.stride = stride;
+  if (stride < 1) throw py::value_error("stride is at least one");
+  const py::gil_scoped_release release;
+  return std::make_shared<SharedRecording>(open_recording(path, range, {camera, calibration, frame_rate_hz}));
+}
+
+std::optional<ImageFrame> frame_of(SharedRecording& recording, int index) {
+  if (index < 0) index += recording.size();
+  if (index < 0 || index >= recording.size()) throw py::index_error("the recording has no such frame");
+  const py::gil_scoped_release release;
+  return recording.read(index);
+}
+
+py::array_t<std::int64_t> times_of(const SharedRecording& recording) {
+  py::array_t<std::int64_t> times(recording.size());
+  auto to = times.mutable_unchecked<1>();
+  for (py::ssize_t i = 0; i < to.shape(0); ++i)
+    to(i) = recording.constant().times()[static_cast<std::size_t>(i)].count();
+  return times;
+}
+
+py::list warnings_of(SharedRecording& recording) {
+  std::vector<std::string> warnings;
+  {
+    const py::gil_scoped_release release;
+    warnings = recording.warnings();
+  }
+  py::list texts;
+  for (const std::string& warning : warnings) texts.append(text_of(warning));
+  return texts;
+}
+
+// Leaves out frames that cannot be read.
+struct FrameIterator {
+  std::shared_ptr<SharedRecording> recording;
+  int next = 0;
+
+  ImageFrame take() {
+    while (next < recording->size()) {
+      if (auto frame = frame_of(*recording, next++)) return std::move(*frame);
+    }
+    throw py::stop_iteration();
+  }
+};
+
+void bind_images(py::module_& module) {
   py::class_<ImageFrame>(module, "Images", "What the cameras took at one time.")
       .def_property_readonly("time_ns", [](const ImageFrame& frame) { return frame.time.count(); })
       .def_property_readonly("left",
@@ -112,43 +197,29 @@ void bind_recording(py::module_& module) {
         if (!image) return py::none();
         return array_of(image->units, image->width, image->height, self);
       });
-  py::enum_<CameraChoice>(module, "CameraChoice", "Which of a recording's cameras to use.")
-      .value("stereo", CameraChoice::stereo)
-      .value("left", CameraChoice::left)
-      .value("right", CameraChoice::right)
-      .value("rgbd", CameraChoice::rgbd);
-  py::class_<Recording>(module, "Recording", "A recorded sequence; a list of frames, read when they are asked for.")
-      .def(py::init([](const std::filesystem::path& path, const std::optional<CameraChoice>& camera,
-                       const std::optional<std::filesystem::path>& calibration, std::optional<double> start_s,
-                       std::optional<double> end_s) {
-             FrameRange range;
-             range.start_s = start_s;
-             range.end_s = end_s;
-             return open_recording(path, range, {camera, calibration, std::nullopt});
-           }),
-           py::arg("path"), py::kw_only(), py::arg("camera") = py::none(), py::arg("calibration") = py::none(),
-           py::arg("start_s") = py::none(), py::arg("end_s") = py::none(),
+}
+
+void bind_recording(py::module_& module) {
+  py::class_<FrameIterator>(module, "_Frames")
+      .def("__iter__", [](FrameIterator& iterator) -> FrameIterator& { return iterator; })
+      .def("__next__", &FrameIterator::take);
+  py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
+      module, "Recording", "A recorded sequence; a list of frames, read when they are asked for.")
+      .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("camera") = py::none(),
+           py::arg("calibration") = py::none(), py::arg("frame_rate_hz") = py::none(), py::arg("start_s") = py::none(),
+           py::arg("end_s") = py::none(), py::arg("stride") = 1,
            "EuRoC, KITTI, TUM RGB-D, a folder of images or a video. Raises InputError.")
-      .def_property_readonly("calibration", [](const Recording& recording) { return recording.calibration(); })
-      .def_property_readonly("warnings", [](const Recording& recording) { return recording.warnings(); })
-      .def_property_readonly("times_ns",
-                             [](const Recording& recording) {
-                               py::array_t<std::int64_t> times(recording.size());
-                               auto to = times.mutable_unchecked<1>();
-                               for (py::ssize_t i = 0; i < to.shape(0); ++i)
-                                 to(i) = recording.times()[static_cast<std::size_t>(i)].count();
-                               return times;
-                             })
-      .def("__len__", &Recording::size)
+      .def_property_readonly("calibration",
+                             [](const SharedRecording& recording) { return recording.constant().calibration(); })
+      .def_property_readonly("warnings", &warnings_of)
+      .def_property_readonly("times_ns", &times_of)
+      .def("__len__", &SharedRecording::size)
+      .def("__getitem__", &frame_of, "The images of a frame; None when they cannot be read, see warnings.")
       .def(
-          "__getitem__",
-          [](Recording& recording, int index) {
-            if (index < 0) index += recording.size();
-            if (index < 0 || index >= recording.size()) throw py::index_error("the recording has no such frame");
-            const py::gil_scoped_release release;
-            return recording.read(index);
-          },
-          "The images of a frame; None when they cannot be read, see warnings.");
+          "__iter__", [](const std::shared_ptr<SharedRecording>& recording) { return FrameIterator{recording}; },
+          "The frames that can be read.");
+  module.def("find_ground_truth", &find_ground_truth, py::arg("path"),
+             "The file of the truth that came with a recording, or None.");
 }
 
 }  // namespace
@@ -156,6 +227,7 @@ void bind_recording(py::module_& module) {
 void bind_cameras(py::module_& module) {
   bind_camera(module);
   bind_calibration(module);
+  bind_images(module);
   bind_recording(module);
 }
 

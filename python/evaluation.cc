@@ -1,6 +1,6 @@
 // Trajectories and their errors.
 
-#include "bindings.h"
+#include "enums.h"
 
 #include "byre/input_error.h"
 #include "byre/trajectory_error.h"
@@ -11,10 +11,13 @@
 namespace byre::python {
 namespace {
 
-using Times = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Times =
+    py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;  // whole numbers, see make_trajectory
 using Matrices = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-Trajectory make_trajectory(const Times& times_ns, const Matrices& poses) {
+Trajectory make_trajectory(const py::array& times, const Matrices& poses) {
+  if (times.dtype().kind() != 'i' && times.dtype().kind() != 'u') throw py::type_error("times are whole nanoseconds");
+  const Times times_ns(times);
   const bool fits = times_ns.ndim() == 1 && poses.ndim() == 3 && poses.shape(0) == times_ns.shape(0) &&
                     poses.shape(1) == 4 && poses.shape(2) == 4;
   if (!fits) throw py::value_error("a trajectory has n times and n poses of 4 x 4");
@@ -60,19 +63,17 @@ AbsoluteTrajectoryError ate(const Trajectory& estimate, const Trajectory& truth,
 }
 
 RelativePoseError rpe(const Trajectory& estimate, const Trajectory& truth, std::optional<double> metres,
-                      std::optional<double> seconds, double time_offset_s) {
+                      std::optional<double> seconds, double scale, double time_offset_s) {
   if (metres && seconds) throw py::value_error("give metres or seconds, or none of them for one frame");
   const std::vector<PosePair> pairs = pairs_of(estimate, truth, time_offset_s);
-  if (metres) return relative_pose_error_by_distance(pairs, *metres, 1.0);
-  return seconds ? relative_pose_error_by_time(pairs, from_seconds(*seconds), 1.0)
-                 : relative_pose_error_by_frame(pairs, 1.0);
+  const RelativePoseError error = metres    ? relative_pose_error_by_distance(pairs, *metres, scale)
+                                  : seconds ? relative_pose_error_by_time(pairs, from_seconds(*seconds), scale)
+                                            : relative_pose_error_by_frame(pairs, scale);
+  if (error.translation.count == 0) throw InputError("the trajectories", "have no two poses in common so far apart");
+  return error;
 }
 
 void bind_trajectory(py::module_& module) {
-  py::enum_<TrajectoryFormat>(module, "TrajectoryFormat", "Files of trajectories.")
-      .value("tum", TrajectoryFormat::tum)
-      .value("euroc", TrajectoryFormat::euroc)
-      .value("kitti", TrajectoryFormat::kitti);
   py::class_<Trajectory>(module, "Trajectory", "Poses of a body in the world, in order of time.")
       .def(py::init(&make_trajectory), py::arg("times_ns"), py::arg("poses"))
       .def("__len__", &Trajectory::size)
@@ -114,7 +115,8 @@ void bind_evaluation(py::module_& module) {
              py::arg("time_offset_s") = 0.0,
              "Position error after aligning the estimate to the truth (Sturm 2012), rigidly or with a scale.");
   module.def("relative_pose_error", &rpe, py::arg("estimate"), py::arg("truth"), py::kw_only(),
-             py::arg("metres") = py::none(), py::arg("seconds") = py::none(), py::arg("time_offset_s") = 0.0,
+             py::arg("metres") = py::none(), py::arg("seconds") = py::none(), py::arg("scale") = 1.0,
+             py::arg("time_offset_s") = 0.0,
              "Error of motions over one frame, or so many metres or seconds (Sturm 2012).");
 }
 

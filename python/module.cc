@@ -1,8 +1,10 @@
-#include "bindings.h"
+#include "enums.h"
 
 #include "byre/input_error.h"
 
+#include <exception>
 #include <string>
+#include <utility>
 
 namespace byre::python {
 
@@ -26,13 +28,40 @@ Pose pose_of(const Eigen::Matrix4d& matrix, std::string_view name) {
   return {*rotation, matrix.topRightCorner<3, 1>()};
 }
 
+py::str text_of(std::string_view text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape"));
+}
+
+namespace {
+
+void bind_input_error(py::module_& module) {
+  static py::handle type;  // never released
+  type = py::exception<InputError>(module, "InputError", PyExc_ValueError).release();
+  type.attr("__doc__") =
+      "Bad input: a file, a calibration, an argument. Says what (place, reason) and what to do (remedy).";
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(std::move(thrown));
+    } catch (const InputError& error) {
+      py::object raised = py::reinterpret_borrow<py::object>(type)(text_of(error.what()));
+      raised.attr("place") = text_of(error.place());
+      raised.attr("reason") = text_of(error.reason());
+      raised.attr("remedy") = text_of(error.remedy());
+      PyErr_SetObject(type.ptr(), raised.ptr());
+    }
+  });
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_byre, module) {
   module.attr("__version__") = BYRE_VERSION;
-  py::register_exception<InputError>(module, "InputError", PyExc_ValueError).doc() =
-      "Bad input: a file, a calibration, an argument. Says what, where, why and what to do.";
+  bind_input_error(module);
+  bind_enums(module);
   bind_cameras(module);
-  bind_slam(module);
   bind_evaluation(module);
+  bind_slam(module);
 }
 
 }  // namespace byre::python

@@ -2,82 +2,24 @@
 
 #include "byre/slam.h"
 
-#include "bindings.h"
+#include "enums.h"
 
-#include <array>
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace byre::python {
 namespace {
 
-template <typename Enum>
-using Named = std::pair<Enum, const char*>;
+// Slam waits for its workers at its end, without keeping Python from going on.
+struct ReleasingDelete {
+  void operator()(Slam* slam) const {
+    const py::gil_scoped_release release;
+    delete slam;
+  }
+};
 
-template <typename Enum, std::size_t kCount>
-void bind_enum(py::module_& module, const char* name, const char* doc, const std::array<Named<Enum>, kCount>& values) {
-  py::enum_<Enum> bound(module, name, doc);
-  for (const auto& [value, value_name] : values) bound.value(value_name, value);
-}
-
-void bind_enums(py::module_& module) {
-  bind_enum<State>(module, "State", "Whether the robot knows where it is.",
-                   std::array<Named<State>, 4>{{{State::initialising, "initialising"},
-                                                {State::tracking, "tracking"},
-                                                {State::relocalising, "relocalising"},
-                                                {State::lost, "lost"}}});
-  bind_enum<Verdict>(
-      module, "Verdict", "How far the pose in the map may be relied on.",
-      std::array<Named<Verdict>, 3>{
-          {{Verdict::trusted, "trusted"}, {Verdict::degraded, "degraded"}, {Verdict::untrusted, "untrusted"}}});
-  bind_enum<Doubt>(module, "Doubt", "What speaks against a pose most.",
-                   std::array<Named<Doubt>, 15>{{{Doubt::none, "none"},
-                                                 {Doubt::no_pose, "no_pose"},
-                                                 {Doubt::blinded, "blinded"},
-                                                 {Doubt::not_registered, "not_registered"},
-                                                 {Doubt::unconfirmed, "unconfirmed"},
-                                                 {Doubt::off_the_map, "off_the_map"},
-                                                 {Doubt::few_points, "few_points"},
-                                                 {Doubt::few_offline_points, "few_offline_points"},
-                                                 {Doubt::clustered, "clustered"},
-                                                 {Doubt::uncertain, "uncertain"},
-                                                 {Doubt::maps_disagree, "maps_disagree"},
-                                                 {Doubt::frozen, "frozen"},
-                                                 {Doubt::right_camera, "right_camera"},
-                                                 {Doubt::cameras_disagree, "cameras_disagree"},
-                                                 {Doubt::calibration, "calibration"}}});
-  bind_enum<InputFault>(module, "InputFault", "What was wrong with a frame as it was handed over.",
-                        std::array<Named<InputFault>, 13>{{{InputFault::none, "none"},
-                                                           {InputFault::after_gap, "after_gap"},
-                                                           {InputFault::missing_right, "missing_right"},
-                                                           {InputFault::late_right, "late_right"},
-                                                           {InputFault::missing_depth, "missing_depth"},
-                                                           {InputFault::late_depth, "late_depth"},
-                                                           {InputFault::no_image, "no_image"},
-                                                           {InputFault::wrong_size, "wrong_size"},
-                                                           {InputFault::wrong_format, "wrong_format"},
-                                                           {InputFault::wrong_features, "wrong_features"},
-                                                           {InputFault::repeated_time, "repeated_time"},
-                                                           {InputFault::out_of_order, "out_of_order"},
-                                                           {InputFault::after_finishing, "after_finishing"}}});
-  bind_enum<SessionEvent>(
-      module, "Event", "What happened in a frame.",
-      std::array<Named<SessionEvent>, 13>{{{SessionEvent::initialised, "initialised"},
-                                           {SessionEvent::localised, "localised"},
-                                           {SessionEvent::pose_lost, "pose_lost"},
-                                           {SessionEvent::relocalised, "relocalised"},
-                                           {SessionEvent::blinded, "blinded"},
-                                           {SessionEvent::left_mapped_area, "left_mapped_area"},
-                                           {SessionEvent::entered_mapped_area, "entered_mapped_area"},
-                                           {SessionEvent::navigation_error, "navigation_error"},
-                                           {SessionEvent::restarted, "restarted"},
-                                           {SessionEvent::online_corrected, "online_corrected"},
-                                           {SessionEvent::loop_found, "loop_found"},
-                                           {SessionEvent::map_corrected, "map_corrected"},
-                                           {SessionEvent::recalibrated, "recalibrated"}}});
-  bind_enum<Workers>(module, "Workers", "Where mapping is worked out beside tracking.",
-                     std::array<Named<Workers>, 3>{
-                         {{Workers::live, "live"}, {Workers::repeatable, "repeatable"}, {Workers::none, "none"}}});
+std::optional<Matrix6> covariance_of(const std::optional<Pose>& pose, const Matrix6& covariance) {
+  return pose ? std::optional(covariance) : std::nullopt;
 }
 
 void bind_reports(py::module_& module) {
@@ -102,15 +44,20 @@ void bind_reports(py::module_& module) {
       .def_property_readonly(
           "map_from_body", [](const FrameReport& report) { return matrix_of(report.map_from_body); },
           "The pose in the map, which is corrected when more is known; None while it is not known.")
-      .def_readonly("covariance", &FrameReport::covariance,
-                    "6x6, translation first, of a small motion as seen in the body.")
+      .def_property_readonly(
+          "covariance",
+          [](const FrameReport& report) { return covariance_of(report.map_from_body, report.covariance); },
+          "6x6, translation first, of a small motion as seen in the body; None without a pose.")
       .def_property_readonly(
           "correction", [](const FrameReport& report) { return matrix_of(report.correction); },
           "By what a correction of the map moved the robot since the frame before, or None.")
       .def_property_readonly(
           "odometry_from_body", [](const FrameReport& report) { return matrix_of(report.odometry_from_body); },
           "The smooth pose, in a frame of its own.")
-      .def_readonly("odometry_covariance", &FrameReport::odometry_covariance)
+      .def_property_readonly("odometry_covariance",
+                             [](const FrameReport& report) {
+                               return covariance_of(report.odometry_from_body, report.odometry_covariance);
+                             })
       .def_readonly("health", &FrameReport::health)
       .def_property_readonly("verdict", [](const FrameReport& report) { return report.health.verdict; })
       .def_readonly("events", &FrameReport::events)
@@ -124,86 +71,115 @@ void bind_reports(py::module_& module) {
       });
 }
 
-PixelFormat format_of(const py::array& image, bool is_depth) {
-  const bool is_bytes = image.dtype().is(py::dtype::of<std::uint8_t>());
-  const bool is_words = image.dtype().is(py::dtype::of<std::uint16_t>());
-  if (is_depth && image.ndim() == 2 && is_words) return PixelFormat::depth16;
-  if (is_depth && image.ndim() == 2 && image.dtype().is(py::dtype::of<float>())) return PixelFormat::depth_metres;
-  if (!is_depth && image.ndim() == 2 && is_bytes) return PixelFormat::grey8;
-  if (!is_depth && image.ndim() == 2 && is_words) return PixelFormat::grey16;
-  if (!is_depth && image.ndim() == 3 && image.shape(2) == 3 && is_bytes) return PixelFormat::bgr8;
-  throw py::type_error(is_depth
-                           ? "depth is an array of uint16 (units) or float32 (metres), height x width"
-                           : "an image is an array of uint8 or uint16, height x width, or of uint8, height x width "
-                             "x 3 (blue, green, red)");
+constexpr const char* kPictures =
+    "an image is an array of uint8 or uint16, height x width, or of uint8, height x width x 3";
+constexpr const char* kDepths = "depth is an array of uint16 (units) or float32 (metres), height x width";
+
+bool is_of(const py::array& image, char kind, py::ssize_t size) {
+  return image.dtype().kind() == kind && image.itemsize() == size && image.dtype().byteorder() != '>';
+}
+
+PixelFormat depth_format(const py::array& image) {
+  if (image.ndim() == 2 && is_of(image, 'u', 2)) return PixelFormat::depth16;
+  if (image.ndim() == 2 && is_of(image, 'f', 4)) return PixelFormat::depth_metres;
+  throw py::type_error(kDepths);
+}
+
+PixelFormat picture_format(const py::array& image, const std::optional<PixelFormat>& given) {
+  const bool is_flat = image.ndim() == 2 || (image.ndim() == 3 && image.shape(2) == 1);
+  const bool is_colour = image.ndim() == 3 && image.shape(2) == 3 && is_of(image, 'u', 1);
+  if (is_colour) return given.value_or(PixelFormat::bgr8);
+  if (is_flat && is_of(image, 'u', 1)) return PixelFormat::grey8;
+  if (is_flat && is_of(image, 'u', 2)) return PixelFormat::grey16;
+  throw py::type_error(kPictures);
 }
 
 // The array's own memory: rows may be apart, pixels in a row not.
-ImageView view_of(const py::array& image, std::int64_t time_ns, int bits, bool is_depth = false) {
-  const PixelFormat format = format_of(image, is_depth);
-  const bool is_packed = image.strides(image.ndim() - 1) == image.itemsize() &&
-                         (image.ndim() == 2 || image.strides(1) == 3 * image.itemsize()) && image.strides(0) > 0;
+ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, int bits) {
+  if (image.size() == 0) return {};
+  const py::ssize_t channels = image.ndim() == 3 ? image.shape(2) : 1;
+  const bool is_packed = image.strides(1) == channels * image.itemsize() && image.strides(0) > 0 &&
+                         (channels == 1 || image.strides(2) == image.itemsize());
   if (!is_packed) throw py::value_error("the pixels of a row do not lie side by side; use numpy.ascontiguousarray");
-  return {image.data(),
-          static_cast<int>(image.shape(1)),
-          static_cast<int>(image.shape(0)),
-          static_cast<std::size_t>(image.strides(0)),
-          format,
-          bits,
-          Timestamp(time_ns)};
+  ImageView view{image.data(), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0))};
+  view.stride = static_cast<std::size_t>(image.strides(0));
+  view.format = format;
+  view.bits = bits;
+  view.time = time;
+  return view;
+}
+
+std::optional<Pose> motion_of(const std::optional<Eigen::Matrix4d>& last_from_body) {
+  return last_from_body ? std::optional(pose_of(*last_from_body, "last_from_body")) : std::nullopt;
 }
 
 FrameReport process(Slam& slam, std::int64_t time_ns, const py::array& left, const std::optional<py::array>& right,
                     const std::optional<py::array>& depth, const std::optional<Eigen::Matrix4d>& last_from_body,
-                    int bits) {
-  CameraImages images{view_of(left, time_ns, bits)};
-  if (right) images.right = view_of(*right, time_ns, bits);
-  if (depth) images.depth = view_of(*depth, time_ns, bits, true);
-  std::optional<Pose> motion;
-  if (last_from_body) motion = pose_of(*last_from_body, "last_from_body");
+                    const std::optional<PixelFormat>& format, int bits, std::optional<std::int64_t> right_time_ns,
+                    std::optional<std::int64_t> depth_time_ns) {
+  const Timestamp time(time_ns);
+  CameraImages images{view_of(left, picture_format(left, format), time, bits)};
+  images.left.time = time;
+  if (right)
+    images.right = view_of(*right, picture_format(*right, format), Timestamp(right_time_ns.value_or(time_ns)), bits);
+  if (depth) images.depth = view_of(*depth, depth_format(*depth), Timestamp(depth_time_ns.value_or(time_ns)), bits);
+  const std::optional<Pose> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(images, motion);
 }
 
 FrameReport process_images(Slam& slam, const ImageFrame& images, const std::optional<Eigen::Matrix4d>& last_from_body) {
-  std::optional<Pose> motion;
-  if (last_from_body) motion = pose_of(*last_from_body, "last_from_body");
+  const std::optional<Pose> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(view_of(images), motion);
 }
 
-SlamOptions options_of(Workers workers, bool refine_calibration, bool map_online, const std::string& recording,
-                       const std::string& site, int max_features,
-                       const std::optional<std::filesystem::path>& vocabulary) {
+// Ctrl-C makes an end; the map stays as far as it was adjusted.
+void finish(Slam& slam) {
+  bool is_interrupted = false;
+  {
+    const py::gil_scoped_release release;
+    slam.finish([&is_interrupted] {
+      if (is_interrupted) return true;
+      const py::gil_scoped_acquire acquire;
+      return is_interrupted = PyErr_CheckSignals() != 0;
+    });
+  }
+  if (is_interrupted) throw py::error_already_set();
+}
+
+// Takes its fields by name.
+SlamOptions options_of(const py::kwargs& fields) {
   SlamOptions options;
-  options.workers = workers;
-  options.refine_calibration = refine_calibration;
-  options.map_online = map_online;
-  options.recording = recording;
-  options.site = site;
-  options.max_features = max_features;
-  options.vocabulary = vocabulary;
+  const py::object self = py::cast(&options, py::return_value_policy::reference);
+  for (const auto& [name, value] : fields) {
+    if (!py::hasattr(self, name)) throw py::type_error("SlamOptions has no field " + py::str(name).cast<std::string>());
+    py::setattr(self, name, value);
+  }
   return options;
 }
 
 void bind_options(py::module_& module) {
-  const SlamOptions defaults;
   py::class_<SlamOptions>(module, "SlamOptions", "How a Slam works; none needs to be given.")
-      .def(py::init(&options_of), py::kw_only(), py::arg("workers") = defaults.workers,
-           py::arg("refine_calibration") = defaults.refine_calibration, py::arg("map_online") = defaults.map_online,
-           py::arg("recording") = defaults.recording, py::arg("site") = defaults.site,
-           py::arg("max_features") = defaults.max_features, py::arg("vocabulary") = py::none())
-      .def_readwrite("workers", &SlamOptions::workers)
+      .def(py::init(&options_of))
+      .def_property(
+          "workers", [](const SlamOptions& options) { return options.workers; },
+          [](SlamOptions& options, Workers workers) { options.workers = workers; })
       .def_readwrite("refine_calibration", &SlamOptions::refine_calibration)
       .def_readwrite("map_online", &SlamOptions::map_online)
+      .def_readwrite("max_pair_difference", &SlamOptions::max_pair_difference, "Seconds.")
+      .def_readwrite("max_gap", &SlamOptions::max_gap, "Seconds.")
+      .def_readwrite("max_features", &SlamOptions::max_features)
+      .def_readwrite("image_threads", &SlamOptions::image_threads)
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
-      .def_readwrite("max_features", &SlamOptions::max_features);
+      .def_readwrite("vocabulary", &SlamOptions::vocabulary);
 }
 
 void bind_slam_itself(py::module_& module) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  py::class_<Slam>(module, "Slam", "One robot's SLAM: images in, poses out. Call it from one thread.")
+  py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>(
+      module, "Slam", "One robot's SLAM: images in, poses out. Call it from one thread.")
       .def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
                   "Maps what is seen.")
       .def_static("extending", &Slam::extending, py::arg("calibration"), py::arg("map"),
@@ -214,12 +190,12 @@ void bind_slam_itself(py::module_& module) {
            "Tracks the next frame of a Recording.")
       .def(
           "process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
-          py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("bits") = 16,
+          py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("format") = py::none(),
+          py::arg("bits") = 16, py::arg("right_time_ns") = py::none(), py::arg("depth_time_ns") = py::none(),
           "Tracks the next frame: arrays height x width of uint8 or uint16 (of so many bits), or height x width x 3 of "
-          "uint8 (blue, green, red); depth of uint16 (units) or float32 (metres). Nothing is copied.")
-      .def(
-          "finish", [](Slam& slam) { slam.finish(); }, released,
-          "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
+          "uint8 (blue, green, red, unless format says rgb8); depth of uint16 (units) or float32 (metres). They are "
+          "borrowed for the time of the call.")
+      .def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")
       .def(
@@ -239,7 +215,6 @@ void bind_slam_itself(py::module_& module) {
 }  // namespace
 
 void bind_slam(py::module_& module) {
-  bind_enums(module);
   bind_reports(module);
   bind_options(module);
   bind_slam_itself(module);

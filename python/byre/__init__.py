@@ -10,7 +10,7 @@
     slam.finish()
     slam.save("hall.byre")
 
-A robot hands over its own images: slam.process(time_ns, left, right), arrays of numpy that are not copied.
+A robot hands over its own images: slam.process(time_ns, left, right), arrays of numpy.
 Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Metres, radians, nanoseconds.
 """
 from ._byre import (
@@ -28,6 +28,7 @@ from ._byre import (
     Images,
     InputError,
     InputFault,
+    PixelFormat,
     Recording,
     RelativePoseError,
     Slam,
@@ -39,6 +40,7 @@ from ._byre import (
     Workers,
     __version__,
     absolute_trajectory_error,
+    find_ground_truth,
     read_calibration,
     read_trajectory,
     relative_pose_error,

@@ -16,17 +16,20 @@ def run(path: str) -> byre.Slam:
     recording = byre.Recording(path)
     slam = byre.Slam.mapping(recording.calibration, byre.SlamOptions(workers=byre.Workers.repeatable))
     for images in recording:
-        if images is not None:
-            slam.process(images)
+        slam.process(images)
     slam.finish()
     return slam
 
 
 def tell_error(estimate: byre.Trajectory, path: str) -> None:
-    try:
-        truth = byre.read_trajectory(path)
-    except byre.InputError:
+    found = byre.find_ground_truth(path)
+    if found is None:
         print("the recording has no truth")
+        return
+    try:
+        truth = byre.read_trajectory(found)
+    except byre.InputError as error:
+        print(f"no error is told: {error}")
         return
     error = byre.absolute_trajectory_error(estimate, truth).translation
     print(f"ATE {1e3 * error.rmse:.1f} mm over {error.count} of {len(estimate)} poses, at most {1e3 * error.max:.1f} mm")

@@ -1,7 +1,11 @@
 """The package byre, on a small recording of a made-up room."""
+import enum
+import gc
 import os
 import pathlib
+import pickle
 import re
+import shutil
 import subprocess
 import sys
 import threading
@@ -54,9 +58,38 @@ def test_recordings_are_lists_of_frames(room):
     assert len(byre.Recording(room, start_s=1.0, end_s=2.0)) == 10
 
 
-def test_pixels_outlive_what_they_came_from(room):
+def test_pixels_outlive_what_they_came_from(room, frames):
     left = byre.Recording(room)[0].left
-    assert left.base is not None and 0 < left.mean() < 255
+    gc.collect()
+    others = [byre.Recording(room)[i].left for i in range(1, 5)]
+    assert (left == frames[0].left).all() and len(others) == 4
+
+
+def test_recordings_are_read_by_several_threads(room):
+    recording = byre.Recording(room)
+    expected = [images.left.sum() for images in recording]
+    sums = [None] * 4
+
+    def read(k):
+        sums[k] = [recording[i].left.sum() for i in range(len(recording)) if recording.warnings == []]
+
+    threads = [threading.Thread(target=read, args=(k,), daemon=True) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sums == [expected] * 4
+
+
+def test_frames_that_cannot_be_read_are_left_out(room, tmp_path):
+    damaged = tmp_path / "damaged"
+    shutil.copytree(room, damaged)
+    recording = byre.Recording(damaged)
+    image = damaged / "mav0" / "cam0" / "data" / f"{recording.times_ns[3]}.png"
+    image.write_bytes(image.read_bytes()[:100])
+    assert recording[3] is None
+    assert len(list(recording)) == len(recording) - 1
+    assert image.name in recording.warnings[-1]
 
 
 def test_mapping_gives_what_the_program_gives(room, frames, tmp_path):
@@ -89,6 +122,45 @@ def test_arrays_of_ones_own_are_seen_alike(room, frames):
         assert (found == expected).all()
 
 
+def test_arrays_may_come_from_elsewhere(room, frames):
+    calibration = byre.Recording(room).calibration
+    plain, other = (byre.Slam.mapping(calibration, REPEATABLE) for _ in range(2))
+    for images in frames[:6]:
+        expected = plain.process(images).map_from_body
+        left = pickle.loads(pickle.dumps(images.left))[:, :, None]
+        right = images.right.astype(np.uint16) * 257
+        right.flags.writeable = False
+        found = other.process(images.time_ns, left, right).map_from_body
+        assert (found == expected).all()
+
+
+def test_colours_are_weighed_as_their_order_says(room, frames):
+    calibration = byre.Recording(room).calibration
+    reports = {}
+    for order in (byre.PixelFormat.bgr8, byre.PixelFormat.rgb8):
+        slam = byre.Slam.mapping(calibration, REPEATABLE)
+        for images in frames[:3]:
+            colour = np.zeros((240, 376, 3), np.uint8)
+            colour[:, :, 2] = images.left  # red, or blue: three times as bright or dark
+            reports[order] = slam.process(images.time_ns, colour, images.right, format=order)
+    assert reports[byre.PixelFormat.bgr8].features != reports[byre.PixelFormat.rgb8].features
+
+
+def test_depths_are_of_units_or_metres(room, frames):
+    left = byre.Recording(room).calibration.left
+    calibration = byre.Calibration(left, depth=byre.DepthCamera(units_per_metre=1000.0))
+    found = []
+    for depth in (np.full((240, 376), 2000, np.uint16), np.full((240, 376), 2.0, np.float32)):
+        slam = byre.Slam.mapping(calibration, REPEATABLE)
+        assert slam.is_metric
+        for images in frames[:3]:
+            report = slam.process(images.time_ns, images.left, depth=depth)
+        found.append(report.map_from_body)
+    assert (found[0] == found[1]).all()
+    late = slam.process(frames[3].time_ns, frames[3].left, depth=depth, depth_time_ns=frames[1].time_ns)
+    assert late.input is byre.InputFault.late_depth
+
+
 def test_frames_that_cannot_be_used_are_told(room, frames):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
     slam.process(frames[1])
@@ -97,13 +169,32 @@ def test_frames_that_cannot_be_used_are_told(room, frames):
     small = np.zeros((10, 10), np.uint8)
     assert slam.process(frames[2].time_ns, small, small).input == byre.InputFault.wrong_size
     assert slam.process(frames[2].time_ns, frames[2].left).input == byre.InputFault.missing_right
-    assert slam.frames == 5 and slam.frames_with(byre.InputFault.wrong_size) == 1
+    late = slam.process(frames[3].time_ns, frames[3].left, frames[3].right, right_time_ns=frames[4].time_ns)
+    assert late.input == byre.InputFault.late_right
+    dropped = slam.process(frames[0])
+    assert dropped.map_from_body is None and dropped.covariance is None
+    assert slam.frames == 7 and slam.frames_with(byre.InputFault.wrong_size) == 1
+    with pytest.raises(TypeError):
+        slam.frames_with(20)
+
+
+def test_enumerations_are_those_of_python():
+    assert issubclass(byre.Verdict, enum.Enum) and len(byre.Verdict) == 3
+    assert byre.Verdict["trusted"] is byre.Verdict.trusted
+    options = byre.SlamOptions(workers=byre.Workers.none, max_gap=2.0)
+    assert options.workers is byre.Workers.none and options.max_gap == 2.0
+    options.workers = byre.Workers.live
+    assert options.workers is byre.Workers.live
+    with pytest.raises(TypeError, match="no field worker"):
+        byre.SlamOptions(worker=byre.Workers.none)
 
 
 def test_arrays_that_are_no_images_are_refused(room, frames):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
-    with pytest.raises(TypeError, match="uint8 or uint16"):
-        slam.process(1, frames[0].left.astype(np.float64))
+    for image in (frames[0].left.astype(np.float64), frames[0].left.astype(">u2"), frames[0].left > 100):
+        with pytest.raises(TypeError, match="uint8 or uint16"):
+            slam.process(1, image)
+    assert slam.process(1, np.zeros((0, 64), np.uint8)).input is byre.InputFault.no_image
     with pytest.raises(ValueError, match="ascontiguousarray"):
         slam.process(1, frames[0].left.T.copy().T)
     with pytest.raises(byre.InputError, match="no rigid motion"):
@@ -132,8 +223,11 @@ def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
 
 
 def test_bad_input_says_what_and_where(tmp_path, room):
-    with pytest.raises(byre.InputError, match="no-such-recording"):
+    with pytest.raises(byre.InputError, match="no-such-recording") as raised:
         byre.Recording(tmp_path / "no-such-recording")
+    assert "no-such-recording" in raised.value.place and raised.value.reason and raised.value.remedy
+    with pytest.raises(byre.InputError, match="caf"):
+        byre.Recording("caf\udce9")
     with pytest.raises(byre.InputError, match="no-such.byre"):
         byre.Slam.on_map(byre.Recording(room).calibration, tmp_path / "no-such.byre")
     with pytest.raises(byre.InputError, match="nothing was mapped"):
@@ -142,7 +236,7 @@ def test_bad_input_says_what_and_where(tmp_path, room):
 
 
 def test_calibrations_may_be_made_by_hand():
-    camera = byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, distortion=[0.1, -0.05])
+    camera = byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, byre.CameraModel.radial_tangential, [0.1, -0.05])
     right_from_left = np.eye(4)
     right_from_left[0, 3] = -0.12
     pair = byre.Calibration(camera, camera, right_from_left)
@@ -150,6 +244,9 @@ def test_calibrations_may_be_made_by_hand():
     assert (pair.right_from_left == right_from_left).all() and (pair.body_from_left == np.eye(4)).all()
     assert byre.Slam.mapping(pair).is_metric
     assert not byre.Slam.mapping(byre.Calibration(camera)).is_metric
+    assert pair == byre.Calibration(camera, camera, right_from_left) and pair != byre.Calibration(camera)
+    with pytest.raises(ValueError, match="needs a model"):
+        byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, distortion=[0.1])
     with pytest.raises(ValueError, match="belong together"):
         byre.Calibration(camera, camera)
     with pytest.raises(byre.InputError, match="right_from_left"):
@@ -174,28 +271,30 @@ def test_trajectories_go_to_files_and_back(tmp_path):
     assert byre.relative_pose_error(truth, truth, seconds=0.2).translation.rmse < 1e-9
     with pytest.raises(ValueError, match="do not increase"):
         byre.Trajectory(times[::-1], poses)
+    with pytest.raises(TypeError, match="whole nanoseconds"):
+        byre.Trajectory(times * 1e-9, poses)
+    with pytest.raises(byre.InputError, match="no two poses"):
+        byre.relative_pose_error(truth, truth, metres=1000.0)
 
 
-def test_other_threads_run_while_a_frame_is_tracked(room, frames):
-    slam = byre.Slam.mapping(byre.Recording(room).calibration, byre.SlamOptions(workers=byre.Workers.none))
+def test_other_threads_run_while_a_map_is_finished(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    for images in frames:
+        slam.process(images)
     ticks, stop = [], threading.Event()
 
     def tick():
         while not stop.is_set():
             ticks.append(time.monotonic())
-            time.sleep(0.0005)
+            time.sleep(0.001)
 
-    thread = threading.Thread(target=tick)
-    thread.start()
-    during = 0
-    for images in frames[:10]:
-        before = time.monotonic()
-        slam.process(images)
-        after = time.monotonic()
-        during += sum(before < at < after for at in ticks[-200:])
+    threading.Thread(target=tick, daemon=True).start()
+    before = time.monotonic()
+    slam.finish()
+    after = time.monotonic()
     stop.set()
-    thread.join()
-    assert during > 0
+    # A lock that is kept lets a thread go on once at most, when the call is over.
+    assert sum(before < at < after - 0.002 for at in ticks) > 1
 
 
 def test_everything_has_a_signature():

@@ -32,9 +32,10 @@ shown=$("$byre" vocabulary show)
 echo "$shown"
 [[ $shown == "vocabulary   $prefix/share/byre/default.vocabulary"* ]]
 
-if [[ -d $prefix/lib/python3/dist-packages/byre ]]; then
-  PYTHONPATH=$prefix/lib/python3/dist-packages /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
-fi
+for package in "$prefix"/lib/python3*/dist-packages/byre; do
+  [[ -d $package ]] || continue # was not built
+  PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
+done
 
 build "$source_dir/examples" examples
 cd "$work"

@@ -92,24 +92,26 @@ TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
 
 TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  const RenderedFixture small("byre_eventful_room", 3, 20.0);
+  const RenderedFixture small("byre_eventful_room", 8, 20.0);
   const Outcome full = run("run '" + small.folder().string() + "' --events /dev/full --trajectory final.txt");
   EXPECT_EQ(full.exit_code, 1);
   const std::string warning =
       "byre: warning: /dev/full: events are missing, as they could not be written: No space left";
   EXPECT_THAT(full.errors, HasSubstr(warning));
-  EXPECT_LT(full.errors.find(warning), full.errors.find("3 of 3 frames"));
+  EXPECT_LT(full.errors.find(warning), full.errors.find("8 of 8 frames"));
   EXPECT_THAT(full.errors, HasSubstr("byre: error: /dev/full: events are missing"));
-  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(3));
+  EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(8));
 
+  // Found in a map after some frames, which is another event than that it is in view.
+  EXPECT_EQ(run("map '" + small.folder().string() + "' -o known.byre").exit_code, 0);
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   const std::string reading = "cd '" + folder_.string() + "' && head -c 1 pipe >/dev/null &";
   EXPECT_EQ(std::system(reading.c_str()), 0);
-  const Outcome closed = run("run '" + small.folder().string() + "' --events pipe --stats stats.json");
+  const Outcome closed = run("run '" + small.folder().string() + "' --map known.byre --events pipe --stats stats.json");
   EXPECT_EQ(closed.exit_code, 1);
   EXPECT_THAT(closed.errors,
               HasSubstr("byre: warning: pipe: events are missing, as they could not be written: Broken"));
-  EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 3u);
+  EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 8u);
 }
 
 TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {

@@ -2,8 +2,12 @@
 
 #include "byre/input_error.h"
 
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <system_error>
+
+#include <dlfcn.h>
 
 namespace byre {
 namespace {
@@ -15,20 +19,43 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-fs::path data_beside_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path() : program.parent_path() / BYRE_DATA_FROM_PROGRAM;
+// The file that this code was loaded from: a program, or a shared object such as a module of Python.
+fs::path this_binary() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&this_binary), &info) == 0 || info.dli_fname == nullptr) return {};
+  std::error_code ignored;
+  return fs::canonical(info.dli_fname, ignored);
+}
+
+fs::path this_program() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored);
+}
+
+// Of an installation that may have been moved: its prefix is one of the folders that the binary lies in.
+std::optional<fs::path> find_above(const fs::path& binary, const fs::path& name) {
+  for (fs::path folder = binary.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    const fs::path data = folder / BYRE_DATA_IN_PREFIX / name;
+    if (is_file(data)) return data;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 fs::path find_data_file(const fs::path& name, std::string_view remedy) {
-  for (const fs::path& folder : {data_beside_program(), fs::path(BYRE_INSTALLED_DATA), fs::path(BYRE_SOURCE_DATA)}) {
+  const char* const given = std::getenv("BYRE_DATA");
+  if (given != nullptr && is_file(fs::path(given) / name)) return fs::path(given) / name;
+  for (const fs::path& binary : {this_program(), this_binary()}) {
+    if (const auto found = find_above(binary, name)) return *found;
+  }
+  for (const fs::path folder : {BYRE_INSTALLED_DATA, BYRE_SOURCE_DATA}) {
     if (is_file(folder / name)) return (folder / name).lexically_normal();
   }
-  throw InputError(name.string(), std::string("is neither in ") + BYRE_INSTALLED_DATA + " nor in the source tree",
-                   remedy);
+  throw InputError(
+      name.string(),
+      std::string("is neither in ") + BYRE_INSTALLED_DATA + " nor in the source tree, nor where BYRE_DATA says",
+      remedy);
 }
 
 }  // namespace byre

@@ -2,7 +2,12 @@
 
 #include "byre/input_error.h"
 
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -12,6 +17,18 @@ using testing::HasSubstr;
 TEST(DataFile, IsFoundInTheSourceTree) {
   EXPECT_TRUE(std::filesystem::is_regular_file(find_data_file("default.vocabulary", "")));
   EXPECT_TRUE(std::filesystem::is_regular_file(find_data_file("protocols/euroc.yaml", "")));
+}
+
+TEST(DataFile, IsFirstLookedForWhereTheEnvironmentSays) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("byre_data." + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "default.vocabulary") << "another";
+  setenv("BYRE_DATA", folder.c_str(), 1);
+  EXPECT_EQ(find_data_file("default.vocabulary", ""), folder / "default.vocabulary");
+  EXPECT_NE(find_data_file("protocols/euroc.yaml", "").parent_path(), folder) << "what is not there is looked for on";
+  unsetenv("BYRE_DATA");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(DataFile, SaysWhatToDoWithoutIt) {

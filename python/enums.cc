@@ -1,0 +1,104 @@
+#include "enums.h"
+
+#include <utility>
+#include <vector>
+
+namespace byre::python {
+namespace {
+
+template <typename Enum>
+void bind_enum(py::module_& module, const char* name, const char* doc,
+               const std::vector<std::pair<const char*, Enum>>& members) {
+  py::list values;
+  for (const auto& [member, value] : members) values.append(py::make_tuple(member, static_cast<int>(value)));
+  py::object type = py::module_::import("enum").attr("Enum")(name, values, py::arg("module") = "byre");
+  type.attr("__doc__") = doc;
+  module.attr(name) = type;
+  PythonEnum<Enum>::type = type.release();
+}
+
+void bind_enums_of_input(py::module_& module) {
+  bind_enum<CameraModel>(module, "CameraModel", "Lens models as EuRoC, Kalibr and OpenCV define them.",
+                         {{"pinhole", CameraModel::pinhole},
+                          {"radial_tangential", CameraModel::radial_tangential},
+                          {"equidistant", CameraModel::equidistant}});
+  bind_enum<CameraChoice>(module, "CameraChoice", "Which of a recording's cameras to use.",
+                          {{"stereo", CameraChoice::stereo},
+                           {"left", CameraChoice::left},
+                           {"right", CameraChoice::right},
+                           {"rgbd", CameraChoice::rgbd}});
+  bind_enum<PixelFormat>(module, "PixelFormat", "What the numbers of a picture mean.",
+                         {{"grey8", PixelFormat::grey8},
+                          {"grey16", PixelFormat::grey16},
+                          {"bgr8", PixelFormat::bgr8},
+                          {"rgb8", PixelFormat::rgb8}});
+  bind_enum<InputFault>(module, "InputFault", "What was wrong with a frame as it was handed over.",
+                        {{"none", InputFault::none},
+                         {"after_gap", InputFault::after_gap},
+                         {"missing_right", InputFault::missing_right},
+                         {"late_right", InputFault::late_right},
+                         {"missing_depth", InputFault::missing_depth},
+                         {"late_depth", InputFault::late_depth},
+                         {"no_image", InputFault::no_image},
+                         {"wrong_size", InputFault::wrong_size},
+                         {"wrong_format", InputFault::wrong_format},
+                         {"wrong_features", InputFault::wrong_features},
+                         {"repeated_time", InputFault::repeated_time},
+                         {"out_of_order", InputFault::out_of_order},
+                         {"after_finishing", InputFault::after_finishing}});
+}
+
+void bind_enums_of_reports(py::module_& module) {
+  bind_enum<State>(module, "State", "Whether the robot knows where it is.",
+                   {{"initialising", State::initialising},
+                    {"tracking", State::tracking},
+                    {"relocalising", State::relocalising},
+                    {"lost", State::lost}});
+  bind_enum<Verdict>(
+      module, "Verdict", "How far the pose in the map may be relied on.",
+      {{"trusted", Verdict::trusted}, {"degraded", Verdict::degraded}, {"untrusted", Verdict::untrusted}});
+  bind_enum<Doubt>(module, "Doubt", "What speaks against a pose most.",
+                   {{"none", Doubt::none},
+                    {"no_pose", Doubt::no_pose},
+                    {"blinded", Doubt::blinded},
+                    {"not_registered", Doubt::not_registered},
+                    {"unconfirmed", Doubt::unconfirmed},
+                    {"off_the_map", Doubt::off_the_map},
+                    {"few_points", Doubt::few_points},
+                    {"few_offline_points", Doubt::few_offline_points},
+                    {"clustered", Doubt::clustered},
+                    {"uncertain", Doubt::uncertain},
+                    {"maps_disagree", Doubt::maps_disagree},
+                    {"frozen", Doubt::frozen},
+                    {"right_camera", Doubt::right_camera},
+                    {"cameras_disagree", Doubt::cameras_disagree},
+                    {"calibration", Doubt::calibration}});
+  bind_enum<SessionEvent>(module, "Event", "What happened in a frame.",
+                          {{"initialised", SessionEvent::initialised},
+                           {"localised", SessionEvent::localised},
+                           {"pose_lost", SessionEvent::pose_lost},
+                           {"relocalised", SessionEvent::relocalised},
+                           {"blinded", SessionEvent::blinded},
+                           {"left_mapped_area", SessionEvent::left_mapped_area},
+                           {"entered_mapped_area", SessionEvent::entered_mapped_area},
+                           {"navigation_error", SessionEvent::navigation_error},
+                           {"restarted", SessionEvent::restarted},
+                           {"online_corrected", SessionEvent::online_corrected},
+                           {"loop_found", SessionEvent::loop_found},
+                           {"map_corrected", SessionEvent::map_corrected},
+                           {"recalibrated", SessionEvent::recalibrated}});
+}
+
+}  // namespace
+
+void bind_enums(py::module_& module) {
+  bind_enums_of_input(module);
+  bind_enums_of_reports(module);
+  bind_enum<Workers>(module, "Workers", "Where mapping is worked out beside tracking.",
+                     {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}});
+  bind_enum<TrajectoryFormat>(
+      module, "TrajectoryFormat", "Files of trajectories.",
+      {{"tum", TrajectoryFormat::tum}, {"euroc", TrajectoryFormat::euroc}, {"kitti", TrajectoryFormat::kitti}});
+}
+
+}  // namespace byre::python

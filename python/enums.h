@@ -1,0 +1,67 @@
+#pragma once
+
+#include "bindings.h"
+
+#include "byre/calibration.h"
+#include "byre/frame_report.h"
+#include "byre/recording.h"
+#include "byre/slam.h"
+#include "byre/trajectory_file.h"
+
+namespace byre::python {
+
+// Enumerations are those of Python's own enum module, one type for each.
+template <typename Enum>
+struct PythonEnum {
+  inline static py::handle type;  // of Python; made by bind_enums, never released
+};
+
+// Precondition: bind_enums was called.
+template <typename Enum>
+py::object to_python(Enum value) {
+  return py::reinterpret_borrow<py::object>(PythonEnum<Enum>::type)(static_cast<int>(value));
+}
+
+void bind_enums(py::module_& module);
+
+}  // namespace byre::python
+
+namespace pybind11::detail {
+
+template <typename Enum>
+struct byre_enum_caster {
+  PYBIND11_TYPE_CASTER(Enum, const_name("enum"));
+
+  bool load(handle source, bool /*convert*/) {
+    const handle type = byre::python::PythonEnum<Enum>::type;
+    if (!type || !isinstance(source, type)) return false;
+    value = static_cast<Enum>(source.attr("value").cast<int>());
+    return true;
+  }
+  static handle cast(Enum source, return_value_policy /*policy*/, handle /*parent*/) {
+    return byre::python::to_python(source).release();
+  }
+};
+
+template <>
+struct type_caster<byre::CameraModel> : byre_enum_caster<byre::CameraModel> {};
+template <>
+struct type_caster<byre::CameraChoice> : byre_enum_caster<byre::CameraChoice> {};
+template <>
+struct type_caster<byre::State> : byre_enum_caster<byre::State> {};
+template <>
+struct type_caster<byre::Verdict> : byre_enum_caster<byre::Verdict> {};
+template <>
+struct type_caster<byre::Doubt> : byre_enum_caster<byre::Doubt> {};
+template <>
+struct type_caster<byre::InputFault> : byre_enum_caster<byre::InputFault> {};
+template <>
+struct type_caster<byre::SessionEvent> : byre_enum_caster<byre::SessionEvent> {};
+template <>
+struct type_caster<byre::Workers> : byre_enum_caster<byre::Workers> {};
+template <>
+struct type_caster<byre::PixelFormat> : byre_enum_caster<byre::PixelFormat> {};
+template <>
+struct type_caster<byre::TrajectoryFormat> : byre_enum_caster<byre::TrajectoryFormat> {};
+
+}  // namespace pybind11::detail
