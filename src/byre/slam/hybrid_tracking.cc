@@ -227,9 +227,16 @@ Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& f
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
   opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
-  // A compromise between what stayed and what moved fits fewer offline points than the online pose does.
+  // A compromise between what stayed and what moved fits fewer offline points than the online pose does. Against an
+  // online map it takes more of them than agree by chance, where walls hide what should be in view.
   if (opinions.maps_disagree && opinions.offline_stands) {
+    constexpr double kMinShare = 0.04;  // of those in the frustum
     const MeasuredPoints& points = found.measured.offline;
+    const auto inliers = static_cast<double>(std::ranges::count(opinions.offline->inliers, true));
+    if (inliers < kMinShare * static_cast<double>(found.expected.offline.size())) {
+      opinions.offline_stands = false;
+      return opinions;
+    }
     opinions.offline_stands = count_fitting(query, opinions.offline->camera_from_world, points) >=
                               count_fitting(query, opinions.online->camera_from_world, points);
   }
