@@ -52,7 +52,7 @@ KEPT_IN = {
     r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
-    r"boost/.*": {"viewer"},
+    r"boost/.*": {"dataset", "viewer"},
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
     r"yaml-cpp/.*|nlohmann/.*": {"dataset", "viewer", "cli"},
 }

@@ -1,6 +1,7 @@
 #include "byre/dataset/image_file.h"
 
 #include "byre/dataset/image_size.h"
+#include "byre/dataset/png_chunks.h"
 
 #include <algorithm>
 #include <array>
@@ -55,8 +56,10 @@ bool is_cut_jpeg(const Bytes& bytes) {
 cv::Mat decode(const Bytes& bytes, int flags) {
   const std::optional<ImageSize> size = stated_size(bytes);
   if (size && size->pixels() > kMostPixels) return {};
+  const std::optional<Bytes> png = is_png(bytes) ? png_of_pixels(bytes) : std::nullopt;
+  if (is_png(bytes) && !png) return {};
   try {
-    return cv::imdecode(bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
+    return cv::imdecode(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
     return {};
   }

@@ -57,6 +57,15 @@ TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
   EXPECT_EQ(clear->pixels, std::vector<std::uint8_t>(6, 90));
 }
 
+// What the decoder would say itself.
+TEST_F(ReadImage, SaysNothingOnTheErrorStreamOfAFileThatIsDamaged) {
+  cv::imwrite((folder_ / "cut.png").string(), cv::Mat(480, 640, CV_8U, cv::Scalar(77)));
+  cut_in_half("cut.png");
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(read_image(folder_ / "cut.png"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 using ReadDepthImage = TestFolder;
 
 TEST_F(ReadDepthImage, KeepsAllSixteenBits) {
