@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <random>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -35,9 +36,13 @@ void move(Map& map, const Pose& world_motion) {
 // A room mapped at one visit, and again at another.
 class TrackHybrid : public ::testing::Test {
  protected:
-  static SimulationOptions visit(std::uint64_t noise_seed) {
+  explicit TrackHybrid(int landmarks = SimulationOptions{}.landmarks) : landmarks_(landmarks) {}
+
+  SimulationOptions visit(std::uint64_t noise_seed) const {
     SimulationOptions options;
     options.noise_seed = noise_seed;
+    options.landmarks = landmarks_;
+    options.max_features = landmarks_ / 2;
     return options;
   }
 
@@ -65,6 +70,18 @@ class TrackHybrid : public ::testing::Test {
     }
   }
 
+  // All offline points but each so-manieth: walls hide them, or they look otherwise by now.
+  void hide_but_each(std::uint32_t count) {
+    std::mt19937_64 random(1);
+    for (const PointId id : offline_.point_ids()) {
+      if (id.number % count == 0) continue;
+      MapPoint point = *offline_.find_point(id);
+      for (std::uint64_t& bits : point.descriptor) bits = random();
+      offline_.update_point(id, point);
+    }
+  }
+
+  const int landmarks_;
   const SimulatedMission before_ = quarter_circle(visit(1));
   const SimulatedMission earlier_ = quarter_circle(visit(2));
   const SimulatedMission now_ = quarter_circle(visit(3));
@@ -111,6 +128,24 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapHoweverFarTheOnlineMapIsOff) {
                 PointNear((shift_by(metres) * inverse(truth_)).translation, 0.01));
     online_ = std::move(online);
   }
+}
+
+class TrackHybridAmongMuch : public TrackHybrid {
+ protected:
+  TrackHybridAmongMuch() : TrackHybrid(16000) {}
+};
+
+TEST_F(TrackHybridAmongMuch, FollowsTheOnlineMapWhereFewOfTheOfflinePointsInViewAgree) {
+  hide_but_each(27);
+  move(online_, shift_by(0.06));
+  const Pose predicted = truth_ * inverse(shift_by(0.06));
+  const auto track = track_frame(predicted, OfflinePolicy::first);
+  ASSERT_TRUE(track);
+  ASSERT_TRUE(track->from_offline) << "they are enough for a pose";
+  EXPECT_LT(track->offline_matches, 0.04 * track->offline_expected);
+  EXPECT_TRUE(track->maps_disagree);
+  EXPECT_FALSE(track->offline_stands);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
 }
 
 TEST_F(TrackHybrid, IsHardlyPulledByALargeThingThatWasMovedByAHandsBreadth) {
