@@ -74,8 +74,8 @@ class Slam {
   void finish(const std::function<bool()>& should_stop = {});
 
   // Keeps what was mapped, with or without finish() before: the whole map, or of a mission what was mapped beside the
-  // map it is on. Replaces the file as a whole. It takes about a second for a thousand keyframes, in which no frame is
-  // tracked. Throws InputError when it cannot be written, or nothing was mapped yet.
+  // map it is on. Replaces the file as a whole. No frame is tracked meanwhile: some milliseconds a keyframe. Throws
+  // InputError when it cannot be written, or nothing was mapped yet.
   void save(const std::filesystem::path& path) const;
 
   // Every frame that had a pose, as the map has it now.

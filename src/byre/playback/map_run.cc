@@ -1,10 +1,8 @@
 #include "byre/playback/map_run.h"
 
-#include "byre/input_error.h"
 #include "byre/playback/decode_ahead.h"
 #include "byre/playback/live_clock.h"
 #include "byre/session/stopwatch.h"
-#include "byre/system/logged_executor.h"
 #include "byre/system/resources.h"
 
 #include <utility>
