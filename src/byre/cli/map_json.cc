@@ -16,16 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string_view name_of(OfflinePolicy policy) {
-  switch (policy) {
-    case OfflinePolicy::first:
-      return "first";
-    case OfflinePolicy::together:
-      return "together";
-  }
-  return "";
-}
-
 constexpr double kMillisecondsPerSecond = 1e3;
 constexpr std::size_t kListedWarnings = 20;
 constexpr const char* kCovariance =

@@ -41,6 +41,16 @@ std::string_view name_of(Pace pace) {
   return "";
 }
 
+std::string_view name_of(OfflinePolicy policy) {
+  switch (policy) {
+    case OfflinePolicy::first:
+      return "first";
+    case OfflinePolicy::together:
+      return "together";
+  }
+  return "";
+}
+
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
     : known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),

@@ -22,6 +22,7 @@ enum class Pace : std::uint8_t { same_thread, paced, live };
 
 // As on the command line.
 std::string_view name_of(Pace pace);
+std::string_view name_of(OfflinePolicy policy);
 
 inline constexpr int kPacedLatency = 4;             // frames
 inline constexpr int kPacedCorrectionLatency = 40;  // frames
