@@ -16,6 +16,10 @@ function(byre_precompile kind target)
     return()
   endif()
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # without it ccache finds nothing
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # It takes what is precompiled for code of ours, and warns of the standard library's, falsely.
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-maybe-uninitialized)
+  endif()
   get_property(first GLOBAL PROPERTY BYRE_PRECOMPILED_${kind}_BY)
   if(first)
     target_precompile_headers(${target} REUSE_FROM ${first})

@@ -1,19 +1,17 @@
 #!/usr/bin/env bash
 # Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
 # benchmark runs), checks the formatting, then runs the library's unit tests under the address and undefined-behaviour
-# sanitizers, and fuzzes the reading of map files. Says which tests were skipped for lack of their recordings.
-# Usage: test.sh [--quick|--races]   --quick leaves sanitizers and fuzzing out; --races adds the thread sanitizer, to be
-#                                    used after a change to what runs beside the frame thread
+# sanitizers and those of rooms with threads under the thread sanitizer, and fuzzes the reading of map files. Says which
+# tests were skipped for lack of their recordings, and which took longest.
+# Usage: test.sh [--quick]   --quick leaves sanitizers and fuzzing out
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 quick=false
-races=false
 case ${1:-} in
   "") ;;
   --quick) quick=true ;;
-  --races) races=true ;;
-  *) echo "usage: test.sh [--quick|--races]" >&2; exit 2 ;;
+  *) echo "usage: test.sh [--quick]" >&2; exit 2 ;;
 esac
 
 passed=0
@@ -32,6 +30,12 @@ print_skips() {
   grep -A1 -E ': Skipped$' "$output" | grep -vE '^--$|: Skipped$' | sort -u | sed 's/^/Skipped: /' || true
 }
 
+# The tests of a preset that took longest, in seconds.
+print_slowest() {
+  sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .* ([0-9.]+) sec.*$/\2 s  \1/p' "build/$1/tests.log" |
+    sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
+}
+
 # Runs the tests of a preset and adds up what ctest's closing lines say; it counts skipped tests among the passed ones.
 run_tests() {
   local preset=$1 log=build/$1/tests.log closing skips
@@ -43,6 +47,7 @@ run_tests() {
   passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - skips))
   skipped=$((skipped + skips))
   print_skips "$preset"
+  print_slowest "$preset"
 }
 
 check_format() {
@@ -70,11 +75,9 @@ if ! $quick; then
   scripts/build.sh dev byre_unit_tests
   run_tests dev
 
-  if $races; then
-    headline "Thread sanitizer: tests of the session"
-    scripts/build.sh tsan byre_session_tests
-    run_tests tsan
-  fi
+  headline "Thread sanitizer: tests of rooms with threads"
+  scripts/build.sh tsan
+  run_tests tsan
 
   headline "Fuzzing: map files, for 20 s"
   if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then

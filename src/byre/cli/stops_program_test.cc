@@ -110,6 +110,11 @@ class Stops : public ProgramTest {
     }
   }
 
+  // When the map that is there was saved; before everything else where there is none.
+  fs::file_time_type time_saved() const {
+    return is_there("room.byre") ? fs::last_write_time(folder_ / "room.byre") : fs::file_time_type::min();
+  }
+
   // Of what is there, everything is whole.
   void expect_whole_files() const {
     if (is_there("room.byre")) expect_sound_map();
@@ -155,9 +160,11 @@ TEST_F(Stops, AtRandomMomentsLeaveWholeFiles) {
     const pid_t process = start(is_map ? map_arguments() : run_arguments());
     ASSERT_GT(process, 0);
     wait_for(moment, delay_s, process);
+    const fs::file_time_type last_saved = time_saved();
     kill(process, signal);
     const End end = end_of(process);
     expect_whole_files();
+    EXPECT_GE(time_saved(), last_saved) << "the last map saved is lost";
     const bool is_whole_run = end.code == 0;
     const bool is_stopped = end.code == 128 + signal;
     EXPECT_TRUE(is_whole_run || is_stopped || end.signal == signal) << read("stderr.txt");
