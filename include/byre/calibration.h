@@ -44,8 +44,8 @@ struct StereoPartner {
 // A camera beside the left one whose images hold depths along its optical axis.
 struct DepthCamera {
   std::optional<Camera> camera{};      // empty where its images are registered: pixel by pixel those of the left camera
-  Pose left_from_depth{};              // identity where they are registered
-  double units_per_metre = 5000.0;     // of the numbers in its images
+  Pose left_from_depth{};              // identity where its images are registered
+  double units_per_metre = 5000.0;     // numbers in the depth images per metre
   double sigma_at_one_metre = 0.0025;  // metres, of a depth; grows with its square, as in all that triangulate
   double baseline = 0.08;              // metres: depths are told as disparities of a pair this far apart
 
@@ -64,7 +64,7 @@ struct Calibration {
 
   bool tells_metres() const { return right.has_value() || depth.has_value(); }
 
-  // Of every number, to the last digit.
+  // Equality of every number, to the last digit.
   bool operator==(const Calibration&) const = default;
 };
 

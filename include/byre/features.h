@@ -97,8 +97,8 @@ class Features {
 struct Frame {
   Timestamp time{};
   std::shared_ptr<const Features> features;
-  std::optional<ImageCondition> condition = {};        // of the left image; empty for simulated frames
-  std::optional<ImageCondition> right_condition = {};  // of the right one, where there is one
+  std::optional<ImageCondition> condition = {};        // what the left image is like; empty for simulated frames
+  std::optional<ImageCondition> right_condition = {};  // what the right image is like, where there is one
   std::uint64_t content = 0;                           // checksum of the left image's pixels; 0 for simulated frames
 };
 

@@ -19,9 +19,9 @@ namespace byre {
 enum class InputFault : std::uint8_t {
   none,
   after_gap,       // a long time after the frame before: the pose may have been lost for it
-  missing_right,   // of a stereo pair the left image came alone
+  missing_right,   // the left image of a stereo pair came alone
   late_right,      // the right image was taken at another time, and left out
-  missing_depth,   // of a depth camera the image came alone
+  missing_depth,   // the image of a depth camera came without depths
   late_depth,      // the depth image was taken at another time, and left out
   no_image,        // the left image holds nothing
   wrong_size,      // an image is not of the calibration's size, or its rows are shorter than their pixels
@@ -42,17 +42,18 @@ inline bool is_dropped(InputFault fault) {
 struct FrameReport {
   Timestamp time{};
   State state = State::initialising;
-  InputFault input = InputFault::none;  // of what was handed over; a frame that was dropped has no pose
+  InputFault input = InputFault::none;  // fault of the images handed over; a frame that was dropped has no pose
   // In the frame of the offline map, or in that of the session's own map where there is no offline one. Corrected
   // whenever more is known, so it may jump. Empty while it is not known.
   std::optional<Pose> map_from_body;
-  Matrix6 covariance = Matrix6::Zero();  // of delta in map_from_body * exp_pose(delta), relative to the map's origin
-  // By what a correction of the map moved the robot since the frame before: after_from_before, both in the map's frame.
+  // Covariance of delta in map_from_body * exp_pose(delta), relative to the map's origin.
+  Matrix6 covariance = Matrix6::Zero();
+  // How a correction of the map moved the robot since the frame before: after_from_before, both in the map's frame.
   // Poses kept from earlier frames are as they were: Slam::trajectory has them as they are now.
   std::optional<Pose> correction;
   // Smooth: moves with what was seen from one frame to the next, and never jumps; its frame is the body's at the start.
   std::optional<Pose> odometry_from_body;
-  Matrix6 odometry_covariance = Matrix6::Zero();  // of delta in odometry_from_body * exp_pose(delta)
+  Matrix6 odometry_covariance = Matrix6::Zero();  // covariance of delta in odometry_from_body * exp_pose(delta)
   Health health;
   int features = 0;
   int expected_points = 0;  // map points in the frustum
@@ -61,8 +62,8 @@ struct FrameReport {
   bool keyframe_added = false;
   TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
   std::vector<SessionEvent> events;                     // what happened in this frame, in order
-  double track_seconds = 0.0;                           // wall time on the calling thread
-  double map_seconds = 0.0;                             // of it for mapping: windows, deltas, new points, inline jobs
+  double track_seconds = 0.0;                           // wall time of tracking on the calling thread
+  double map_seconds = 0.0;                             // wall time of mapping on the calling thread, with inline jobs
   std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
 
   bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }

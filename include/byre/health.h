@@ -27,7 +27,7 @@ enum class Doubt : std::uint8_t {
   few_points,          // too few points hold the pose
   few_offline_points,  // inside the mapped area, but the pose is held by online points
   clustered,           // the points lie in a small part of the image
-  uncertain,           // they leave the pose open by more than is useful
+  uncertain,           // the points leave the pose open by more than is useful
   maps_disagree,       // offline and online points give different poses
   frozen,              // the camera gives the same image again
   right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
@@ -47,13 +47,13 @@ struct Agreement {
 struct Health {
   Verdict verdict = Verdict::untrusted;
   Doubt doubt = Doubt::no_pose;
-  int offline_expected = 0;  // in the frustum, not suspended
-  int offline_matches = 0;   // of those
-  int offline_inliers = 0;   // of those
+  int offline_expected = 0;  // offline points in the frustum that are not suspended
+  int offline_matches = 0;   // offline points that were matched
+  int offline_inliers = 0;   // offline points that agree with the pose
   int online_inliers = 0;
-  int suspended = 0;                    // offline points left out for this mission: they are not where the map has them
-  double inlier_share = 0.0;            // of all matches
-  double spread = 0.0;                  // of the inliers, share of the image's diagonal where they spread least
+  int suspended = 0;          // offline points left out for this mission: they are not where the map has them
+  double inlier_share = 0.0;  // inliers as a share of all matches
+  double spread = 0.0;        // how far the inliers spread where they do so least, as a share of the image's diagonal
   std::optional<Agreement> agreement;   // where both kinds of points give a pose
   double position_sigma = 0.0;          // metres, the root of the trace of the covariance
   double rotation_sigma = 0.0;          // radians

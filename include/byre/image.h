@@ -45,14 +45,14 @@ struct ImageView {
   int height = 0;          // pixels
   std::size_t stride = 0;  // bytes from one row to the next; zero: rows without padding
   PixelFormat format = PixelFormat::grey8;
-  int bits = 16;     // of grey16: 12 for a camera that counts to 4095
+  int bits = 16;     // significant bits of a grey16 pixel: 12 for a camera that counts to 4095
   Timestamp time{};  // the middle of the exposure, by any clock that never goes back
 };
 
 // What the cameras took at one time.
 struct CameraImages {
   ImageView left;
-  // Of a stereo pair or of a depth camera. A time of zero is that of the left image.
+  // The second image of a stereo pair or of a depth camera. A time of zero is that of the left image.
   std::optional<ImageView> right{};
   std::optional<ImageView> depth{};
 };

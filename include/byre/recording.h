@@ -33,14 +33,14 @@ struct FrameRange {
   std::optional<double> end_s{};    // exclusive
   int first = 0;                    // frame index, inclusive
   std::optional<int> last{};        // exclusive
-  int stride = 1;                   // every n-th frame of those
+  int stride = 1;                   // every n-th frame within the limits is read
 };
 
 // What a recording does not say of itself, or is to be taken otherwise.
 struct OpenOptions {
-  std::optional<CameraChoice> camera{};                // else both where there are two, with depth where there is depth
+  std::optional<CameraChoice> camera{};  // empty: both where there are two, with depth where there is depth
   std::optional<std::filesystem::path> calibration{};  // a file read_calibration knows, in place of the recording's own
-  std::optional<double> frame_rate_hz{};               // of images and videos, in place of what they say
+  std::optional<double> frame_rate_hz{};               // frame rate of images and videos, in place of what they say
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
@@ -57,7 +57,7 @@ class Recording {
   // likewise without a depth image, but no warning where none was taken.
   // May be called from any thread, but from one at a time.
   virtual std::optional<ImageFrame> read(int index) = 0;
-  virtual const std::vector<std::string>& warnings() const = 0;  // those of opening it first
+  virtual const std::vector<std::string>& warnings() const = 0;  // warnings of opening it first, then of reading
 
   int size() const { return static_cast<int>(times().size()); }
 };

@@ -65,7 +65,7 @@ class Slam {
   // pose. Of no use where lengths are no metres, and left alone there.
   FrameReport process(const CameraImages& images, const std::optional<Pose>& last_from_body = {});
 
-  // The same with features of one's own, in pixels of rig().
+  // Tracks the next frame by features of one's own, in pixels of rig().
   FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {});
 
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
@@ -84,13 +84,15 @@ class Slam {
   // Where a pose in the map lies on the floor plan that the map is registered on; empty when it is on none.
   std::optional<Pose> plan_from_body(const Pose& map_from_body) const;
 
-  const Rig& rig() const;              // the ideal camera that features are given in
-  Calibration calibration() const;     // as it is known by now
-  bool is_metric() const;              // whether lengths are metres
-  int keyframes() const;               // of the map that is made, with what it goes on with; not of one that it is on
-  int points() const;                  // likewise
-  int frames() const;                  // handed over
-  int frames(InputFault fault) const;  // of those, the ones with that fault
+  const Rig& rig() const;           // the ideal camera that features are given in
+  Calibration calibration() const;  // as it is known by now
+  bool is_metric() const;           // whether lengths are metres
+  // Keyframes and points of the map that is made, with those of a map that it goes on with; not of the map that a
+  // mission is on.
+  int keyframes() const;
+  int points() const;
+  int frames() const;                  // all frames handed over
+  int frames(InputFault fault) const;  // frames handed over with that fault
 
  private:
   struct Parts;

@@ -50,7 +50,7 @@ struct AbsoluteTrajectoryError {
 // Position error after aligning the estimate to the truth (Sturm 2012). Empty when alignment is impossible.
 std::optional<AbsoluteTrajectoryError> absolute_trajectory_error(const std::vector<PosePair>& pairs, Scale scale);
 
-// The same under a given alignment: the identity measures the error in the frame of a map that was aligned before.
+// The error under a given alignment: the identity measures it in the frame of a map that was aligned before.
 AbsoluteTrajectoryError absolute_trajectory_error(const std::vector<PosePair>& pairs,
                                                   const Similarity& truth_from_estimate);
 
@@ -73,17 +73,17 @@ double path_length(const Trajectory& trajectory);  // metres
 
 // How much of what there was to estimate has a pose: an error alone flatters a trajectory that omits the hard part.
 struct Coverage {
-  int expected = 0;   // frames
-  int with_pose = 0;  // of those
+  int expected = 0;   // frames that should have a pose
+  int with_pose = 0;  // expected frames that have one
 
   double share() const { return expected > 0 ? static_cast<double>(with_pose) / expected : 0.0; }
 };
 
-// Of the given frames, those that have an estimated pose within a millisecond. Precondition: times ascend.
+// Coverage of the given frames: those that have an estimated pose within a millisecond. Precondition: times ascend.
 Coverage coverage_of_frames(const Trajectory& estimate, const std::vector<Timestamp>& frame_times);
 
-// Where the frames are not known: as many as fit into the truth's span at the estimate's median interval. Takes a
-// trajectory of regularly chosen frames for complete. Empty for fewer than two poses or a truth without a span.
+// Coverage where the frames are not known: as many as fit into the truth's span at the estimate's median interval.
+// Takes a trajectory of regularly chosen frames for complete. Empty for fewer than two poses or a truth without a span.
 std::optional<Coverage> coverage_of_span(const Trajectory& estimate, const Trajectory& truth, Timestamp time_offset);
 
 }  // namespace byre

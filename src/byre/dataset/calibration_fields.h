@@ -24,10 +24,10 @@ class CalibrationFields {
   // Each throws InputError when the field is missing or of another kind.
   CalibrationFields group(const std::string& field) const;  // the fields within this one
   std::string word(const std::string& field) const;
-  // Of a list, of a list of rows, or of a matrix that keeps its numbers row by row under "data".
+  // The numbers of a list, of a list of rows, or of a matrix that keeps them row by row under "data".
   std::vector<double> numbers(const std::string& field) const;
-  std::vector<double> numbers(const std::string& field, std::size_t count) const;  // so many
-  Pose pose(const std::string& field) const;                                       // of the 4x4 matrix of a rigid one
+  std::vector<double> numbers(const std::string& field, std::size_t count) const;  // exactly so many
+  Pose pose(const std::string& field) const;                                       // rigid motion, from its 4x4 matrix
   double positive(const std::string& field) const;                                 // one number above zero
   int pixels(const std::string& field) const;                                      // one side of an image
 
@@ -36,7 +36,7 @@ class CalibrationFields {
 
   YAML::Node find(const std::string& field) const;
 
-  std::string place_;  // of all of them, with what separates it from a field
+  std::string place_;  // beginning of every field's place, with what separates it from the field
   YAML::Node node_;
 };
 

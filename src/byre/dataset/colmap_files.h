@@ -17,7 +17,7 @@ std::map<std::uint32_t, ColmapCamera> read_colmap_cameras_binary(const std::file
 std::map<std::uint32_t, ColmapImage> read_colmap_images_binary(const std::filesystem::path& path);
 std::map<std::uint64_t, ColmapPoint> read_colmap_points_binary(const std::filesystem::path& path);
 
-// Of unit length to 1 %, as files have it; else empty.
+// A rotation whose quaternion is of unit length to 1 %, as files have it; else empty.
 std::optional<Eigen::Quaterniond> colmap_rotation(double w, double x, double y, double z);
 
 void write_colmap_text(const ColmapModel& model, const std::filesystem::path& folder);

@@ -13,8 +13,8 @@ namespace byre {
 // geo-referenced plan those of the projected coordinate system, which may be millions; seen from above, y is 90 degrees
 // to the left of x. Pixels are continuous, whole numbers are centres, (0, 0) is that of the top left one.
 struct FloorPlan {
-  std::string name;             // of the file that describes it
-  std::filesystem::path image;  // can be opened as it is
+  std::string name;             // name of the file that describes the plan
+  std::filesystem::path image;  // path that can be opened as it is
   int width = 0;                // pixels
   int height = 0;
   Eigen::Matrix2d metres_per_pixel = Eigen::Matrix2d::Identity();  // columns: a step to the right, a step down

@@ -81,7 +81,7 @@ bool comes_before(std::string_view name, std::string_view other) {
     name.remove_prefix(1);
     other.remove_prefix(1);
   }
-  if (name.empty() && other.empty()) return whole_name < whole_other;  // they differ in leading zeros
+  if (name.empty() && other.empty()) return whole_name < whole_other;  // equal but for leading zeros
   return name.empty();
 }
 

@@ -23,8 +23,8 @@ bool comes_before(std::string_view name, std::string_view other);
 // from one to the next, taken as nanoseconds, are numbers of frames. Precondition: files are in natural order.
 std::optional<std::vector<Timestamp>> times_in_names(const std::vector<std::filesystem::path>& files);
 
-// The same of one file alone, whose number is taken for nanoseconds where these reach beyond the first years of any
-// clock (17 digits).
+// The time in the name of one file alone, whose number is taken for nanoseconds where these reach beyond the first
+// years of any clock (17 digits).
 std::optional<Timestamp> time_in_name(const std::filesystem::path& file);
 
 // Times of so many frames at a steady rate, the first at zero. Precondition: frame_rate_hz > 0.

@@ -98,7 +98,7 @@ void check_times(const std::vector<Timestamp>& times, RecordingCheck& check) {
   check.longest_gap_s = std::ranges::max(intervals);
 }
 
-// Of pairs of frames that follow each other, the first ones.
+// The first frames of pairs that follow each other, spread evenly over the recording.
 std::vector<int> spread_over(int frames, int samples) {
   std::vector<int> first;
   const int count = std::max(1, std::min(samples, frames / 2));
@@ -134,7 +134,7 @@ class FrameSum {
     }
   }
 
-  std::uint64_t content() const { return content_; }  // of the last frame; 0 where it could not be read
+  std::uint64_t content() const { return content_; }  // checksum of the last frame; 0 where it could not be read
 
   void tell(RecordingCheck& check) const {
     check.left = left_.result();

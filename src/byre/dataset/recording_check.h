@@ -14,9 +14,9 @@ namespace byre {
 // Medians of the images of one camera that were looked at, and how many of them are of no use.
 struct CameraCheck {
   int images = 0;
-  double brightness = 0.0;  // of these see ImageCondition
-  double contrast = 0.0;
-  double sharpness = 0.0;
+  double brightness = 0.0;        // mean grey value, see ImageCondition
+  double contrast = 0.0;          // see ImageCondition
+  double sharpness = 0.0;         // see ImageCondition
   std::array<int, 5> by_fault{};  // images by ImageFault
 
   int of_no_use() const { return images - by_fault[0]; }
@@ -36,15 +36,15 @@ struct RecordingCheck {
   double rate_hz = 0.0;
   int gaps = 0;  // intervals of more than half as much again as usual
   double longest_gap_s = 0.0;
-  int looked_at = 0;      // frames
-  int unreadable = 0;     // of those
-  int without_right = 0;  // of those, where there should be one
-  int repeated = 0;       // of those, the same as the frame before, bit by bit
-  double features = 0.0;  // of a left image, the median
+  int looked_at = 0;      // frames that were looked at
+  int unreadable = 0;     // frames looked at that could not be read
+  int without_right = 0;  // frames looked at without a right image where there should be one
+  int repeated = 0;       // frames looked at that are the same as the frame before, bit by bit
+  double features = 0.0;  // median count in a left image
   CameraCheck left;
-  std::optional<CameraCheck> right;  // of a stereo pair
+  std::optional<CameraCheck> right;  // empty unless it is a stereo pair
   std::optional<PairCheck> pair;
-  double field_of_view_deg = 0.0;  // horizontal, of the left image
+  double field_of_view_deg = 0.0;  // left image's, horizontal
   double baseline_m = 0.0;         // 0 for one camera
 };
 

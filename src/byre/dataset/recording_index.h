@@ -50,7 +50,7 @@ RecordingIndex index_kitti(const std::filesystem::path& folder, const OpenOption
 RecordingIndex index_tum(const std::filesystem::path& folder, const OpenOptions& options);
 RecordingIndex index_images(const std::filesystem::path& folder, const OpenOptions& options);
 
-// Of a recording of image files, all frames and cameras. Throws InputError also for a video, which has none.
+// All frames and cameras of a recording of image files. Throws InputError also for a video, which has none.
 RecordingIndex index_recording(const std::filesystem::path& path, const OpenOptions& options);
 
 // The calibration of the options, or else the one in the folder. Throws InputError when there is neither.

@@ -66,7 +66,7 @@ class Video final : public Recording {
         warnings_(std::move(warnings)),
         capture_(std::move(capture)) {}
 
-  // Of all frames, those that are in range. Called once, before any is read.
+  // Keeps the frames that are in range. Called once, before any is read.
   void select(std::vector<std::size_t> numbers, const std::vector<Timestamp>& times_of_all) {
     for (const std::size_t number : numbers) times_.push_back(times_of_all[number]);
     numbers_ = std::move(numbers);
@@ -82,7 +82,7 @@ class Video final : public Recording {
 
   fs::path file_;                      // constant after construction
   Calibration calibration_;            // constant after construction
-  std::vector<std::size_t> numbers_;   // of the frames in range, constant after select
+  std::vector<std::size_t> numbers_;   // numbers in the file of the frames in range, constant after select
   std::vector<Timestamp> times_;       // constant after select
   std::vector<std::string> warnings_;  // grows with read
   cv::VideoCapture capture_;           // stands before frame next_

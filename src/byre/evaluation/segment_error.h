@@ -8,10 +8,10 @@ namespace byre {
 
 // Error of the estimated motion along segments of one length of true path, a metre of it.
 struct SegmentError {
-  double length = 0.0;       // metres; 0: of all lengths
-  double translation = 0.0;  // mean, of the length: 0.01 is one per cent
+  double length = 0.0;       // metres; 0: segments of all lengths together
+  double translation = 0.0;  // mean share of the length: 0.01 is one per cent
   double rotation = 0.0;     // mean, degrees a metre
-  int count = 0;             // of segments
+  int count = 0;             // segments
 };
 
 struct SegmentErrors {

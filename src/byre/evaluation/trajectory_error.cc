@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-constexpr double kIntervalTolerance = 0.1;  // of the interval or length
+constexpr double kIntervalTolerance = 0.1;  // share of the interval or length
 constexpr Timestamp kSameFrame = std::chrono::milliseconds(1);
 
 double to_degrees(double radians) {

@@ -18,7 +18,7 @@ struct Sample {
 // A plane's inverse depth is linear in the image (pixels of the left image as taken).
 struct Surface {
   double inverse_depth = 0.0;  // at the keypoint, per metre
-  Eigen::Vector2d slope;       // of the inverse depth, by pixel
+  Eigen::Vector2d slope;       // change of the inverse depth per pixel
   double residual = 0.0;       // root mean square, per metre
 };
 
@@ -39,7 +39,7 @@ std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vect
   return samples;
 }
 
-// Of samples in the order of depth, those up to the first gap.
+// The samples up to the first gap. Precondition: in the order of depth.
 std::span<const Sample> nearest_surface(const std::vector<Sample>& samples, const DepthOptions& options) {
   const auto is_gap = [&](const Sample& near, const Sample& far) {
     return far.depth - near.depth > options.max_gap * near.depth;

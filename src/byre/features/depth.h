@@ -46,7 +46,8 @@ class DepthReader {
   Camera left_;
   DepthCamera depth_camera_;
   Rig rig_;
-  std::vector<Eigen::Vector3d> rays_;  // of the depth camera's pixels, with z = 1; empty where it is registered
+  // Rays of the depth camera's pixels, z = 1; empty where its images are registered.
+  std::vector<Eigen::Vector3d> rays_;
 };
 
 }  // namespace byre

@@ -57,7 +57,7 @@ TEST(Orientation, AgreesWithOrb) {
   const cv::Mat image = textured_image();
   const OrbFeatures orb = orb_features(image);
   ASSERT_GT(orb.keypoints.size(), 300u);
-  const double precision = 0.3 * std::numbers::pi / 180.0;  // of cv::fastAtan2, which ORB uses
+  const double precision = 0.3 * std::numbers::pi / 180.0;  // precision of cv::fastAtan2, which ORB uses; radians
   for (const cv::KeyPoint& keypoint : orb.keypoints) {
     const double expected = keypoint.angle * std::numbers::pi / 180.0;
     EXPECT_LE(turn_between(orientation(at(image, keypoint.pt), stride(image)), expected), precision);

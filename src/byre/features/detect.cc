@@ -56,7 +56,8 @@ void search_poor_cells(const cv::Mat& level, int max_corners, const DetectOption
   for (std::size_t i = 0; i < grid.size(); ++i) {
     poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
   }
-  std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });  // they are found again
+  // Corners of poor cells are found again.
+  std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (!poor[i]) continue;
     const cv::Rect cell = grid.cell(i);

@@ -28,7 +28,7 @@ struct ExtractOptions {
 struct ExtractTimes {
   double rectify = 0.0;
   double extract = 0.0;  // pyramid, corners, descriptors, patches
-  double stereo = 0.0;   // or reading depths
+  double stereo = 0.0;   // matching left to right, or reading depths
 };
 
 struct Extraction {

@@ -32,7 +32,7 @@ Calibration ideal_pair() {
 struct Wall {
   Texture texture;
   double depth = 2.0;               // metres
-  double pixels_per_metre = 115.0;  // of the texture
+  double pixels_per_metre = 115.0;  // the texture's resolution
 
   Image seen_by(const Camera& camera, const Pose& camera_from_left) const {
     const Pose left_from_camera = inverse(camera_from_left);

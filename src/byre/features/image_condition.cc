@@ -13,9 +13,9 @@ constexpr int kMargin = 16;  // pixels: how far the other pixel of a pair lies a
 
 // Pairs of pixels, near and far, along one direction of the image.
 struct Direction {
-  int right = 0;  // of one step
-  int down = 0;
-  int near = 0;  // steps
+  int right = 0;  // columns of one step
+  int down = 0;   // rows of one step
+  int near = 0;   // steps
   int far = 0;
 
   std::ptrdiff_t offset(int steps, std::ptrdiff_t stride) const { return steps * (down * stride + right); }

@@ -35,7 +35,7 @@ ImageFault fault_in(const cv::Mat& image) {
   return fault_of(condition_of(image), {});
 }
 
-// By a straight motion of so many pixels.
+// The image blurred by a straight motion of so many pixels.
 cv::Mat motion_blurred(const cv::Mat& image, double pixels, double angle) {
   cv::Mat1f path(31, 31, 0.0f);
   for (double along = -pixels / 2.0; along <= pixels / 2.0; along += 0.05) {

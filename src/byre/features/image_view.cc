@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// Of the first plane, where there are several.
+// Bytes of a pixel in the first plane, where there are several.
 std::size_t bytes_of_pixel(PixelFormat format) {
   switch (format) {
     case PixelFormat::grey8:
@@ -31,7 +31,7 @@ std::size_t bytes_of_pixel(PixelFormat format) {
   return 0;
 }
 
-// Of numbers of several bytes.
+// Alignment of numbers of several bytes; 1 for single bytes.
 std::size_t alignment_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::grey16:

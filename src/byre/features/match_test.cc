@@ -42,7 +42,7 @@ Descriptor with_flipped_bits(Descriptor descriptor, int count, std::mt19937_64& 
 
 TEST(MatchFeatures, FindsEachDisturbedDescriptorAgain) {
   const auto first = random_descriptors(60, 1);
-  std::vector<Descriptor> second = random_descriptors(20, 2);  // that first has nothing of
+  std::vector<Descriptor> second = random_descriptors(20, 2);  // descriptors that first has nothing of
   std::mt19937_64 random(3);
   for (const Descriptor& descriptor : first) second.push_back(with_flipped_bits(descriptor, 30, random));
   const auto matches = match_features(features_of(first), features_of(second), {});

@@ -76,7 +76,7 @@ TEST(FullFromOctave, IsUndoneByOctaveFromFull) {
 }
 
 TEST(FullFromOctave, KeepsTheImagesCornerInPlace) {
-  const Eigen::Vector2f corner(-0.5f, -0.5f);  // of the top-left pixel, in every octave
+  const Eigen::Vector2f corner(-0.5f, -0.5f);  // corner of the top-left pixel, in every octave
   for (int octave = 0; octave < kOctaves; ++octave) {
     EXPECT_THAT(full_from_octave(corner, octave), PointNear(corner, 1e-6)) << octave;
   }

@@ -7,7 +7,7 @@ namespace byre {
 // How a camera moved while it took an image, and how far away the scene is.
 struct CameraMotion {
   Vector6 velocity = Vector6::Zero();  // per second: exp_pose(velocity * dt) * camera_from_world
-  double depth = 1.0;                  // of corners that tell none themselves; in the same lengths
+  double depth = 1.0;                  // depth of corners that tell none themselves, in the velocity's unit of length
 };
 
 // A rolling shutter reads row after row, so that each corner is where the camera was at its row's time: the corners as

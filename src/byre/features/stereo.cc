@@ -10,8 +10,9 @@
 namespace byre {
 namespace {
 
-constexpr int kLeftReach = kBlockColumns / 2;   // columns left of a block's middle
-constexpr int kRightReach = kBlockColumns / 2;  // and right of it: one more than is compared, see block_differences
+constexpr int kLeftReach = kBlockColumns / 2;  // columns left of a block's middle
+// Columns right of a block's middle: one more than is compared, see block_differences.
+constexpr int kRightReach = kBlockColumns / 2;
 constexpr int kRowReach = kBlockRows / 2;
 constexpr int kAlignSize = 10;
 
@@ -38,7 +39,7 @@ int cost_between_columns(const std::vector<int>& costs, std::size_t i) {
   return std::max(0, costs[i] - std::abs(costs[i - 1] - costs[i + 1]) / 2);
 }
 
-// Of the block of `from` at (x, y) to those of `to` on columns [first, last] of the same row.
+// Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
 void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last,
                       std::vector<int>& costs) {
   costs.clear();
@@ -116,7 +117,7 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
                                      double max_disparity, const StereoOptions& options) {
-  constexpr float kRoundingSigma = 0.29f;  // of a value rounded to a whole pixel
+  constexpr float kRoundingSigma = 0.29f;  // standard error of a value rounded to a whole pixel
   const float scale = kScaleOfOctave[keypoint.octave];
   const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
   const int x = static_cast<int>(std::lround(centre.x()));

@@ -27,7 +27,7 @@ struct Candidate {
   int inlier_count = 0;
 };
 
-// Of left and right pixel; the disparity's part is zero where there is none.
+// Projected less measured pixel and disparity; the disparity's part is zero where none was measured.
 StereoPixel error_of(const PointSighting& sighting, const StereoPixel& projected) {
   const double disparity = sighting.disparity.value_or(projected.z());
   return projected - StereoPixel(sighting.pixel.x(), sighting.pixel.y(), disparity);

@@ -12,11 +12,11 @@ namespace {
 enum : int { kFocal, kAspect, kCentreU, kCentreV, kFirstDistortion };
 
 // The error of a good calibration, as tools that report 0.1 to 0.2 px of reprojection error leave it.
-constexpr double kFocalSigma = 4e-4;         // of the focal length
-constexpr double kAspectSigma = 1e-4;        // of fy / fx
+constexpr double kFocalSigma = 4e-4;         // share of the focal length
+constexpr double kAspectSigma = 1e-4;        // share of fy / fx
 constexpr double kCentreSigma = 0.15;        // pixels
-constexpr double kRadialSigma = 1e-3;        // of k1, k2, and what takes the place of p1, p2 in a fisheye
-constexpr double kTangentialSigma = 1e-4;    // of p1, p2
+constexpr double kRadialSigma = 1e-3;        // k1 and k2, and what takes the place of p1 and p2 in a fisheye
+constexpr double kTangentialSigma = 1e-4;    // p1 and p2
 constexpr double kRotationSigma = 0.01;      // degrees
 constexpr double kBaselineTurnSigma = 0.05;  // degrees: 0.1 mm across a baseline of a hand's breadth
 

@@ -11,8 +11,8 @@ namespace byre {
 // coefficients 1 to 4; and where the right camera looks and lies. The length of the baseline is not among them: images
 // alone never tell it.
 inline constexpr int kParametersPerCamera = 8;
-inline constexpr int kLeftCamera = 0;                            // index of its first parameter
-inline constexpr int kRightCamera = kParametersPerCamera;        // likewise
+inline constexpr int kLeftCamera = 0;                            // index of the left camera's first parameter
+inline constexpr int kRightCamera = kParametersPerCamera;        // index of the right camera's first parameter
 inline constexpr int kRightRotation = 2 * kParametersPerCamera;  // three: about x, y, z of the right camera
 inline constexpr int kBaselineTurn = kRightRotation + 3;         // two: about z and y, as the left camera sees it
 inline constexpr int kCalibrationParameters = kBaselineTurn + 2;
@@ -23,7 +23,7 @@ using CalibrationMatrix = Eigen::Matrix<double, kCalibrationParameters, kCalibra
 struct CalibrationParameter {
   std::string_view name;
   std::string_view unit;
-  double sigma;  // by which a good calibration errs, in that unit; one sigma
+  double sigma;  // standard error of a good calibration, in the parameter's unit
 };
 
 const std::array<CalibrationParameter, kCalibrationParameters>& calibration_parameters();
@@ -38,11 +38,11 @@ Calibration changed(const Calibration& calibration, const CalibrationVector& sig
 // What the images of a run have told of the calibration that was given for them.
 struct RefinedCalibration {
   Calibration calibration;
-  CalibrationVector change = CalibrationVector::Zero();        // of the one given, in the parameters' sigmas
-  CalibrationVector sigma_before = CalibrationVector::Zero();  // likewise
-  CalibrationVector sigma_after = CalibrationVector::Zero();
-  int keyframes = 0;     // that were looked at
-  int observations = 0;  // of points, by those
+  CalibrationVector change = CalibrationVector::Zero();  // refined less given parameters, in the parameters' sigmas
+  CalibrationVector sigma_before = CalibrationVector::Zero();  // standard errors as given, in the parameters' sigmas
+  CalibrationVector sigma_after = CalibrationVector::Zero();   // standard errors as refined, in the parameters' sigmas
+  int keyframes = 0;                                           // keyframes that were looked at
+  int observations = 0;                                        // observations of points by these keyframes
   // Pixels, root mean square by which the change moves what is seen, disparity too, turns apart. Where there is no
   // change, of the one that was refused, as too large for an error of a calibration.
   double shift = 0.0;

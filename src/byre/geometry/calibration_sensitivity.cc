@@ -22,7 +22,7 @@ struct RectifiedCamera {
   }
 };
 
-// By one parameter.
+// A change of one parameter.
 CalibrationVector step_along(int parameter, double sigmas) {
   CalibrationVector step = CalibrationVector::Zero();
   step[parameter] = sigmas;
@@ -65,7 +65,7 @@ auto right_slopes(const Calibration& given, const Rectification& rectification) 
   };
 }
 
-// By each parameter of the baseline's turn, in baselines.
+// Slopes of the right camera's centre by each parameter of the baseline's turn, in baselines.
 Eigen::Matrix<double, 3, 2> centre_slopes(const Calibration& given, const Rectification& rectification) {
   Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
   if (!given.right) return slopes;

@@ -17,7 +17,8 @@ class CalibrationSensitivity {
   // Throws InputError when the calibration cannot be rectified.
   explicit CalibrationSensitivity(const Calibration& given);
 
-  // Of a point that is seen at this pixel. Without a disparity (not positive) the two rows of the right image are zero.
+  // Slopes for a point that is seen at this pixel. Without a disparity (not positive) the two rows of the right image
+  // are zero.
   Jacobian at(const StereoPixel& pixel) const;
 
   const Rig& rig() const { return rig_; }
@@ -29,10 +30,11 @@ class CalibrationSensitivity {
   using ByRightCamera = Eigen::Matrix<double, 2, kCalibrationParameters - kRightCamera>;
 
   Rig rig_;
-  bool has_right_ = false;  // else a disparity is a depth, which owes the cameras nothing
-  PixelGrid<ByCamera> left_;
-  PixelGrid<ByRightCamera> right_;              // of points far away
-  Eigen::Matrix<double, 3, 2> centre_by_turn_;  // of the right camera, in baselines, as the rectified left one sees it
+  bool has_right_ = false;          // without a right camera a disparity is a depth, which owes the cameras nothing
+  PixelGrid<ByCamera> left_;        // slopes of the left pixel by the left camera's parameters
+  PixelGrid<ByRightCamera> right_;  // slopes of the right pixel of a point far away, by the right camera's parameters
+  // Slopes of the right camera's centre by the baseline's turn, in baselines, in the rectified left camera's frame.
+  Eigen::Matrix<double, 3, 2> centre_by_turn_;
 };
 
 }  // namespace byre

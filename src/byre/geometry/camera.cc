@@ -14,7 +14,7 @@ namespace {
 struct Lens {
   std::array<double, 4> radial{};                                       // k1..k4
   std::array<double, 2> tangential{};                                   // p1, p2
-  double max_radius_squared = std::numeric_limits<double>::infinity();  // of v
+  double max_radius_squared = std::numeric_limits<double>::infinity();  // largest |v|^2 that the lens model holds for
 };
 
 Lens lens_of(const Camera& camera) {

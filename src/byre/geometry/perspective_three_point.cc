@@ -141,7 +141,7 @@ std::optional<Eigen::Vector3d> polish(const Triangle& triangle, Eigen::Vector3d 
     if (step == kSteps || !correction.allFinite()) break;
     depths -= correction;
   }
-  constexpr double kTolerance = 1e-6;  // of the squared lengths; a double solution converges slowly
+  constexpr double kTolerance = 1e-6;  // share of the largest squared length; a double solution converges slowly
   const bool met = residual.cwiseAbs().maxCoeff() < kTolerance * triangle.squared_lengths.maxCoeff();
   if (!met || !(depths.minCoeff() > 0.0)) return std::nullopt;
   return depths;

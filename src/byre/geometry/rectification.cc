@@ -115,7 +115,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
   rig.width = source.width;
   rig.height = source.height;
   rig.focal = std::max(filling, 0.5 * (source.fx + source.fy) / kMaxShrink);
-  // Of a field larger than the image, the part nearest to the axis is shown.
+  // A field larger than the image is shown where it is nearest to the axis.
   const double half_width = 0.5 * (rig.width - 1);
   const double half_height = 0.5 * (rig.height - 1);
   const double middle_x = nearest_to_axis(field.left + half_width / rig.focal, field.right - half_width / rig.focal);

@@ -27,7 +27,7 @@ class RectifiedChange {
                   const Rectification& rectified_after);
 
   Rig rig_;
-  bool has_right_ = false;  // else a disparity is a depth, which stays
+  bool has_right_ = false;  // without a right camera a disparity is a depth, which stays
   double zoom_ = 1.0;       // focal length after, by that before
   Pose after_from_before_;
   PixelGrid<Eigen::Vector2d> left_;  // displacement, pixels

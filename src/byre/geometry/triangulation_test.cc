@@ -46,7 +46,7 @@ TEST(Triangulate, DoesNotDependOnWhichCameraIsFirst) {
 
 TEST(Triangulate, StaysWithinAFewSigmasOfTheTruth) {
   std::mt19937 random(2);
-  std::normal_distribution<double> noise(0.0, 1e-3);  // of a ray with z = 1, about half a pixel
+  std::normal_distribution<double> noise(0.0, 1e-3);  // noise of a ray with z = 1, about half a pixel
   const Eigen::Vector3d point_in_first(0.3, 0.2, 4.0);
   const Eigen::Vector3d point_in_second = kSecondFromFirst * point_in_first;
   const double parallax = 0.5 / 4.0;

@@ -29,8 +29,8 @@ bool is_planar(const Models& models, const TwoViewOptions& options) {
   return models.homography.score > options.min_planar_share * (models.homography.score + models.essential.score);
 }
 
-// Of both models, for what one of them has missed is a rival of what the other has found. A plane's motions are refined
-// by what lies beside the plane too, which tells them apart.
+// Motions of both models, for what one of them has missed is a rival of what the other has found. A plane's motions are
+// refined by what lies beside the plane too, which tells them apart.
 std::vector<Pose> motions_of(const Models& models, Matches matches) {
   std::vector<Pose> motions = motions_from_homography(models.homography.second_from_first);
   std::ranges::copy(motions_from_essential(essential_of(models.essential.second_from_first)),
@@ -78,7 +78,7 @@ Candidate weigh(const Pose& second_from_first, Matches matches) {
 // Motions of a plane that the rest of the scene has brought to the same place are one.
 bool is_same_motion(const Pose& first, const Pose& second) {
   constexpr double kMaxTurn = 0.005;  // radians
-  constexpr double kMaxShift = 0.05;  // of the unit length
+  constexpr double kMaxShift = 0.05;  // share of the translation's length, which is one
   return angle_between(first.rotation, second.rotation) < kMaxTurn &&
          (first.translation - second.translation).norm() < kMaxShift;
 }

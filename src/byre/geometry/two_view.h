@@ -11,11 +11,13 @@ namespace byre {
 
 struct TwoViewOptions {
   int min_matches = 100;
-  int min_points = 80;             // matches that agree on a motion, and their points in front of both cameras
-  double min_parallax = 0.0175;    // radians, median over the matches that agree: a degree
-  double min_planar_share = 0.40;  // of the scores of homography and essential matrix: above it is a plane's
-  double rotation_share = 0.9;     // of the homography's score: from there on a rotation explains the matches as well
-  double rival_share = 0.9;        // of the best motion's score for another motion: it could be either
+  int min_points = 80;           // matches that agree on a motion, and their points in front of both cameras
+  double min_parallax = 0.0175;  // radians, median over the matches that agree: a degree
+  // Share of the homography's score in its own and the essential matrix's together, above which the matches are taken
+  // for those of a plane.
+  double min_planar_share = 0.40;
+  double rotation_share = 0.9;  // a rotation with this share of the homography's score explains the matches as well
+  double rival_share = 0.9;     // another motion with this share of the best one's score makes the choice ambiguous
   TwoViewSearch search;
 };
 

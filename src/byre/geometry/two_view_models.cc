@@ -44,7 +44,7 @@ double transfer_error(const Eigen::Vector3d& transferred, const Eigen::Vector3d&
   return error.squaredNorm() / (2.0 * sigma * sigma);
 }
 
-// Of point to point.
+// Agreement of a match with a homography, from point to point.
 class Transfer {
  public:
   explicit Transfer(const Eigen::Matrix3d& homography)
@@ -61,7 +61,7 @@ class Transfer {
   Eigen::Matrix3d first_from_second_;
 };
 
-// Of point to epipolar line.
+// Agreement of a match with a motion, from point to epipolar line.
 class LineTransfer {
  public:
   explicit LineTransfer(const Pose& motion) : essential_(essential_of(motion)) {}
@@ -249,7 +249,8 @@ NormalEquations linearise(const Pose& motion, Matches matches) {
     const double squared_error = epipolar_error(essential, match);
     if (!(squared_error < kMaxEpipolarError)) continue;
     const Eigen::Vector3d turned = rotation * match.ray_in_first;
-    const Eigen::Vector3d by_translation = turned.cross(match.ray_in_second);  // of second . (translation x turned)
+    // Slope of second . (translation x turned).
+    const Eigen::Vector3d by_translation = turned.cross(match.ray_in_second);
     const double product = motion.translation.dot(by_translation);
     const Eigen::Vector3d by_turn = turned.cross(match.ray_in_second.cross(motion.translation));
     const double error_per_product = product == 0.0 ? 1.0 / match.sigma : std::sqrt(squared_error) / std::abs(product);

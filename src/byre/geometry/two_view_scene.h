@@ -15,8 +15,8 @@ namespace byre {
 
 struct TwoViewSceneOptions {
   int count = 300;
-  double pixel_sigma = 0.0;    // of either view
-  double outlier_ratio = 0.0;  // of matches: a pixel of the second view is anywhere within 60 pixels
+  double pixel_sigma = 0.0;    // noise in each view, pixels
+  double outlier_ratio = 0.0;  // share of matches whose pixel in the second view is anywhere within 60 pixels
   std::uint32_t seed = 1;
 };
 

@@ -172,7 +172,7 @@ TEST(DirectionSigma, TellsHowFarTheDirectionIsOff) {
     const Pose refined = refine_motion(truth, matches);
     squared_sum += std::pow(angle_between_translations(refined, truth) / direction_sigma(refined, matches), 2);
   }
-  EXPECT_GT(squared_sum / kTrials, 0.5);  // of two directions, the least known one makes up one
+  EXPECT_GT(squared_sum / kTrials, 0.5);  // one is expected from the direction known least
   EXPECT_LT(squared_sum / kTrials, 2.0);
 }
 

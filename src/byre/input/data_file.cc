@@ -32,7 +32,7 @@ fs::path this_program() {
   return fs::read_symlink("/proc/self/exe", ignored);
 }
 
-// Of an installation that may have been moved: its prefix is one of the folders that the binary lies in.
+// The file in an installation that may have been moved: its prefix is one of the folders that the binary lies in.
 std::optional<fs::path> find_above(const fs::path& binary, const fs::path& name) {
   for (fs::path folder = binary.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     const fs::path data = folder / BYRE_DATA_IN_PREFIX / name;

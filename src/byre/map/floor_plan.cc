@@ -208,7 +208,7 @@ bool lie_in_a_corner(const std::vector<Eigen::Vector2d>& points, const DrivingPl
   return reach_of_path > kFarthestReach * reach_of_points;
 }
 
-// Of the residuals that are not outliers, whether they are small, and most of all.
+// Whether the residuals that are not outliers are small, and are most of all.
 bool agree(Correspondences correspondences, const PlanFit& fit) {
   double sum = 0.0;
   std::size_t count = 0;

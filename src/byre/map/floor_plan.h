@@ -33,11 +33,12 @@ struct PlanResidual {
 
 // What makes a registration doubtful though it was found.
 enum class PlanDoubt : std::uint8_t {
-  few_points,    // fewer than three correspondences took part, so that none checks another
-  in_line,       // they lie nearly on a line
-  in_a_corner,   // they lie close together and the map reaches far beyond
-  disagreement,  // they are farther off than their sigmas explain, or a large part of them is wrong
-  uneven_path,   // the path lies in no plane, so which way is up comes mostly from how the camera was held
+  few_points,   // fewer than three correspondences took part, so that none checks another
+  in_line,      // the correspondences lie nearly on a line
+  in_a_corner,  // the correspondences lie close together and the map reaches far beyond
+  // The correspondences are farther off than their sigmas explain, or a large part of them is wrong.
+  disagreement,
+  uneven_path,  // the path lies in no plane, so which way is up comes mostly from how the camera was held
 };
 std::string_view to_string(PlanDoubt doubt);  // a sentence with its remedy
 

@@ -15,8 +15,8 @@ using Complex = std::complex<double>;
 using Pairs = std::span<const PlanarPair>;
 using Subset = std::vector<std::size_t>;  // indices of pairs
 
-constexpr double kRayleighMedian = 1.1774;  // of the length of a vector of two normal variables
-constexpr double kRayleigh99 = 3.0349;      // its 99th percentile
+constexpr double kRayleighMedian = 1.1774;  // median length of a vector of two standard normal variables
+constexpr double kRayleigh99 = 3.0349;      // 99th percentile of that vector's length
 constexpr std::size_t kMostSubsets = 20000;
 constexpr int kMostSteps = 20;
 
@@ -54,7 +54,7 @@ std::vector<double> residuals_of(Pairs pairs, const PlanarSimilarity& motion) {
   return residuals;
 }
 
-// Of n pairs, two of which determine a motion: any more, and wrong ones might be a majority.
+// How many of n pairs are trusted, two of which determine a motion: of any more, wrong ones might be a majority.
 std::size_t trusted_half(std::size_t count) {
   return std::min((count + 3) / 2, count);
 }

@@ -13,7 +13,7 @@ namespace byre {
 struct PlanarPair {
   std::complex<double> in_source;
   std::complex<double> in_target;
-  double sigma = 1.0;  // of each coordinate in the target
+  double sigma = 1.0;  // standard error of each coordinate in the target
 };
 
 // in_target = turn * in_source + shift: the turn's angle is the rotation, its magnitude the scale.

@@ -21,7 +21,7 @@ struct Observation {
 
 struct MapPoint {
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
-  // Of the position, square metres. In double: rounded to float it may no longer be positive definite.
+  // Covariance of the position, square metres. In double: rounded to float it may no longer be positive definite.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Vector3f mean_viewing_direction = Eigen::Vector3f::UnitZ();  // unit length, camera to point
   Descriptor descriptor{};                                            // the most central of its observations'
@@ -32,15 +32,15 @@ struct MapPoint {
 
 // What a keyframe's feature has measured of a point: the keypoint, refined in the image against the point's reference.
 struct Sighting {
-  std::optional<PointId> point;                     // may be offline
+  std::optional<PointId> point;                     // a point of this map or an offline one
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // full-resolution pixels
   float pixel_sigma = 1.0f;                         // pixels
 };
 
 // A point of the online map as a keyframe of the offline one sees it, which is never to know of it.
 struct ForeignView {
-  Observation observation;  // by a keyframe of the other map
-  Sighting sighting;        // of a point of this map
+  Observation observation;  // a keyframe of the other map and its feature
+  Sighting sighting;        // what the feature has measured of a point of this map
 };
 
 using Word = std::uint32_t;  // a visual word of a vocabulary, see place/vocabulary.h
@@ -50,7 +50,7 @@ struct Keyframe {
   int rig = 0;        // index into Map::rigs()
   int recording = 0;  // which of the recordings the map was made from, see StoredMap
   Pose camera_from_world;
-  // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin.
+  // Covariance of delta in exp_pose(delta) * camera_from_world, relative to the map's origin.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<Sighting> sightings;   // one per feature
   std::optional<KeyframeId> parent;  // the keyframe of the same map it was tracked from; empty for the first
@@ -138,9 +138,9 @@ class Map {
   int keyframe_count() const { return keyframe_count_; }
   int point_count() const { return point_count_; }
 
-  // By this map's keyframes, ascending; of an offline point too. Empty for an unknown point.
+  // Observations of a point, offline ones too, by this map's keyframes, ascending. Empty for an unknown point.
   const std::vector<Observation>& observations(PointId id) const;
-  // Of one of this map's points, ascending by keyframe. Empty for an unknown or offline point.
+  // Foreign views of one of this map's points, ascending by keyframe. Empty for an unknown or offline point.
   const std::vector<ForeignView>& foreign_views(PointId id) const;
   // The features by which an offline keyframe sees points of this map, ascending.
   std::vector<Observation> foreign_observations(KeyframeId offline) const;

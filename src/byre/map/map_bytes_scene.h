@@ -20,7 +20,7 @@ inline constexpr std::size_t kSectionCountAt = 12;
 inline constexpr std::size_t kFileSizeAt = 16;
 inline constexpr std::size_t kTableAt = 24;
 inline constexpr std::size_t kTableEntrySize = 40;
-inline constexpr std::size_t kSmallestHeaderSize = kTableAt + 10 * kTableEntrySize + 8;  // of format 1
+inline constexpr std::size_t kSmallestHeaderSize = kTableAt + 10 * kTableEntrySize + 8;  // in format 1
 
 // Precondition: the value lies within the bytes.
 template <PlainNumber T>

@@ -31,8 +31,8 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
-  kPlan,                 // from format 2 on; later ones have it empty without a plan
-  kRefinedCalibrations,  // from format 3 on; likewise where nothing was refined
+  kPlan,                 // from format 2 on; later formats have it empty without a plan
+  kRefinedCalibrations,  // from format 3 on; later formats have it empty where nothing was refined
   kReadoutTimes,         // from format 4 on
   kSectionCount
 };
@@ -63,7 +63,7 @@ constexpr std::size_t header_bytes(std::size_t sections) {
 
 using Bytes = std::span<const std::byte>;
 
-// Of sections one after the other, the place where each ends.
+// The places where sections end that lie one after the other.
 using SectionEnds = std::vector<std::size_t>;
 
 SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {

@@ -18,10 +18,11 @@ namespace byre {
 // A recording that keyframes of a map come from.
 struct SourceRecording {
   std::string name;         // as the user called it
-  Calibration calibration;  // of the cameras that took its images, before rectification; as it was given
-  Timestamp first_time{};   // of its frames, whether keyframes or not
-  Timestamp last_time{};
-  std::optional<RefinedCalibration> refined = {};  // by which its images are rectified, where there is one
+  Calibration calibration;  // cameras that took its images, as given, before rectification
+  Timestamp first_time{};   // time of the first frame, keyframe or not
+  Timestamp last_time{};    // time of the last frame, keyframe or not
+  // Refined calibration that its images are rectified by, where there is one.
+  std::optional<RefinedCalibration> refined = {};
 
   const Calibration& present_calibration() const { return refined ? refined->calibration : calibration; }
 };
@@ -50,7 +51,7 @@ struct StoredMap {
   std::vector<SourceRecording> recordings;  // Keyframe::recording is an index
   MapScale scale = MapScale::metric;
   PoseSource pose_source = PoseSource::slam;
-  std::uint64_t vocabulary_checksum = 0;     // of the vocabulary that keyframes' words are of; 0 while they have none
+  std::uint64_t vocabulary_checksum = 0;     // checksum of the vocabulary that the words are of; 0 without words
   std::map<std::string, std::string> notes;  // free text by key, such as site and software
   std::optional<PlanRegistration> plan;      // where it lies on a floor plan, once somebody has found out
 };
@@ -60,7 +61,7 @@ struct StoredMap {
 // stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
-// The same map with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
+// A copy with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
 // each image has every point where it was, disparity included. Arms to a body stay, as they were measured.
 // Precondition: ids without gaps, and a factor that is positive.
 Map scaled_copy(const Map& map, double factor);

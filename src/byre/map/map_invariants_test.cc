@@ -26,7 +26,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct BrokenInvariant {
   const char* name;
-  const char* section;  // that is refused
+  const char* section;  // section of the file that is refused
   const char* fault;
   std::function<void(StoredMap&, MapParts&)> break_it;
 };
@@ -44,7 +44,7 @@ StoredMap broken_map(const BrokenInvariant& broken) {
   return stored;
 }
 
-// Of a keyframe of the first rig, without patches.
+// Changes the keypoints of a keyframe of the first rig, without patches.
 void with_keypoints(Keyframe& keyframe, const std::function<void(std::vector<Keypoint>&)>& change) {
   std::vector<Keypoint> keypoints = keyframe.frame.features->keypoints();
   change(keypoints);

@@ -16,8 +16,8 @@ constexpr int kOfflinePoints = 5;
 
 struct Model {
   std::map<Observation, PointId> sightings;
-  std::map<KeyframeId, std::optional<KeyframeId>> parents;  // of living keyframes
-  std::map<PointId, Observation> references;                // of living online points
+  std::map<KeyframeId, std::optional<KeyframeId>> parents;  // parents of living keyframes
+  std::map<PointId, Observation> references;                // reference views of living online points
 
   std::vector<Observation> observations(PointId point) const {
     std::vector<Observation> found;

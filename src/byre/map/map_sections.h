@@ -16,7 +16,7 @@ namespace byre {
 using Keyframes = std::vector<const Keyframe*>;  // all of a map, by number
 Keyframes keyframes_of(const Map& map);
 
-// Of a keyframe that may have none.
+// The features of a keyframe that may have none.
 const Features& features_of(const Keyframe& keyframe);
 
 // Numbers of things, kept to tell a file whose sections do not belong together.
@@ -73,7 +73,7 @@ void write_refined_calibrations(const std::vector<SourceRecording>& recordings, 
 // Fills in those of the recordings.
 void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& recordings);
 
-// Of rolling shutters, as given and as refined.
+// Readout times of rolling shutters, as given and as refined.
 void write_readout_times(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
 // Fills in those of the recordings and of their refined calibrations.
 void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordings);

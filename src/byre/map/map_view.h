@@ -28,7 +28,7 @@ class MapView {
     std::ranges::for_each(online_->observations(id), visit);
   }
 
-  // The same for every keyframe that sees it through a foreign view too.
+  // Calls visit(observation) for every keyframe that sees the point, also through a foreign view.
   template <typename Visitor>
   void visit_views(PointId id, Visitor visit) const {
     visit_observations(id, visit);

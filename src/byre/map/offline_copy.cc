@@ -27,7 +27,7 @@ class Renumbering {
   std::vector<Id> ids_;
 };
 
-// Those features, ascending, whose patch defines a point.
+// Features of a keyframe, ascending, whose patch defines a point.
 std::vector<int> features_that_define_points(const Map& map, KeyframeId id) {
   std::vector<int> features;
   const std::vector<Sighting>& sightings = map.find_keyframe(id)->sightings;

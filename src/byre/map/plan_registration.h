@@ -13,8 +13,9 @@ using Matrix7 = Eigen::Matrix<double, 7, 7>;
 struct PlanRegistration {
   std::string plan;          // its name
   Similarity plan_from_map;  // scale: metres per unit of the map, 1 for a metric one
-  // Of a small motion as seen in the map's frame, translation (metres) and rotation vector (radians) of delta in
-  // plan_from_map * exp_pose(delta), and of the logarithm of the scale; zero for a scale that was not looked for.
+  // Covariance of a small motion as seen in the map's frame, translation (metres) and rotation vector (radians) of
+  // delta in plan_from_map * exp_pose(delta), and of the logarithm of the scale; zero for a scale that was not looked
+  // for.
   Matrix7 covariance = Matrix7::Zero();
 };
 

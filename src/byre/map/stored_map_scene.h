@@ -133,7 +133,7 @@ class StoredMapScene {
     }
   }
 
-  // Of the point that is added next.
+  // A sighting of the point that is added next.
   void add_sighting(std::uint32_t number, std::uint32_t feature) {
     Keyframe& keyframe = parts_.keyframes[number];
     const PointId point{Origin::offline, static_cast<std::uint32_t>(parts_.points.size())};

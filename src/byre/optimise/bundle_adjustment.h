@@ -27,7 +27,7 @@ struct BundleObservation {
   StereoPixel measured;           // u, v, disparity; pixels
   double pixel_sigma = 1.0;       // pixels, of u and of v
   double disparity_sigma = -1.0;  // pixels
-  double weight = 1.0;            // of its share of the cost; errors and covariances are told without it
+  double weight = 1.0;  // factor on the observation's share of the cost; errors and covariances are told without it
 
   bool is_stereo() const { return disparity_sigma > 0.0; }
 };
@@ -63,10 +63,10 @@ struct BundleOptions {
 struct BundleResult {
   std::vector<Pose> camera_from_world;           // one per pose
   std::vector<Eigen::Vector3d> points_in_world;  // one per point
-  std::vector<double> squared_errors;            // one per observation, squared sigmas, before the robust loss;
-                                                 // infinite for a point at or behind the camera
-  // Of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones. Empty when
-  // none was asked for, the pose did not move, or its observations do not determine it.
+  // One per observation: squared sigmas before the robust loss; infinite for a point at or behind the camera.
+  std::vector<double> squared_errors;
+  // Covariance of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones.
+  // Empty when none was asked for, the pose did not move, or its observations do not determine it.
   std::optional<Matrix6> pose_covariance;
   CalibrationVector calibration_change = CalibrationVector::Zero();  // in the parameters' sigmas
   int iterations = 0;

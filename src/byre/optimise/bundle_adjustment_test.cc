@@ -39,7 +39,7 @@ bool identical(const Pose& first, const Pose& second) {
   return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
 }
 
-// Of every third point that five poses see or more.
+// Indices of one observation of every third point that five poses see or more.
 std::vector<int> one_observation_of_well_seen_points(const BundleProblem& problem) {
   std::vector<int> indices;
   for (int point = 0; point < static_cast<int>(problem.points.size()); point += 3) {

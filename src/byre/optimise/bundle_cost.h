@@ -36,7 +36,7 @@ class CalibrationCost final : public ceres::SizedCostFunction<3, 4, 3, 3, kCalib
  private:
   Eigen::Matrix<double, 3, kCalibrationParameters> by_calibration(const Eigen::Vector3d& point_in_camera) const;
 
-  PoseAndPointCost cost_;  // of the calibration given; constant after construction
+  PoseAndPointCost cost_;  // cost by the given calibration; constant after construction
   const Rig& rig_;
   const CalibrationSensitivity& sensitivity_;
   StereoPixel measured_;       // constant after construction

@@ -81,7 +81,8 @@ class ReducedSystem {
 
  private:
   static constexpr double kSingular = 1e-10;
-  static constexpr double kFreePose = 1e-4;  // of metres and radians: what nothing holds, such as the whole, is finite
+  // Information added to each pose, 1 / m^2 and 1 / rad^2, so that what nothing holds, such as the whole, stays finite.
+  static constexpr double kFreePose = 1e-4;
 
   void add_known(const std::vector<Share>& shares) {
     for (const Share& share : shares) {

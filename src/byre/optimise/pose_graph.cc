@@ -45,7 +45,7 @@ std::vector<bool> held_nodes(const PoseGraph& graph, const std::vector<std::vect
   return held;
 }
 
-// Which nodes paths of edges join to those given, with them.
+// The nodes given, and those that paths of edges join to them.
 std::vector<bool> joined_to(std::vector<bool> reached, const std::vector<std::vector<int>>& neighbours_of) {
   std::vector<int> open;
   for (int node = 0; node < static_cast<int>(reached.size()); ++node) {
@@ -140,7 +140,7 @@ class CeresGraph {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // one thread, and the same with every BLAS
     options.max_num_iterations = options_.max_iterations;
     options.num_threads = options_.threads;
-    options.function_tolerance = 1e-9;  // of the cost; long loops close slowly at the end
+    options.function_tolerance = 1e-9;  // relative change of the cost; long loops close slowly at the end
     options.logging_type = ceres::SILENT;
     return options;
   }

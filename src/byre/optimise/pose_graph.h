@@ -20,10 +20,10 @@ struct PoseGraphEdge {
   int first = 0;   // index into PoseGraph::nodes
   int second = 0;  // index into PoseGraph::nodes, another one
   Pose second_from_first;
-  Matrix6 information = Matrix6::Identity();  // inverse covariance of delta in exp_pose(delta) * second_from_first;
-                                              // may be singular
-  double scale = 1.0;                         // 1 unless the two cameras' lengths were compared
-  double scale_sigma = 0.01;                  // of its logarithm; has a say only while scales are free
+  // Inverse covariance of delta in exp_pose(delta) * second_from_first; may be singular.
+  Matrix6 information = Matrix6::Identity();
+  double scale = 1.0;         // 1 unless the two cameras' lengths were compared
+  double scale_sigma = 0.01;  // standard error of the scale's logarithm; has a say only while scales are free
 };
 
 struct PoseGraph {
@@ -46,9 +46,10 @@ struct PoseGraphOptions {
 struct PoseGraphResult {
   std::vector<Pose> camera_from_world;  // one per node
   std::vector<double> scales;           // one per node
-  std::vector<double> squared_errors;   // one per edge, squared sigmas, before the robust loss: chi-square with six
-                                        // degrees of freedom, with free scales seven
-  double cost = 0.0;                    // half the sum of the losses of the edges that have a say
+  // One per edge: squared sigmas before the robust loss, chi-square with six degrees of freedom, with free scales
+  // seven.
+  std::vector<double> squared_errors;
+  double cost = 0.0;  // half the sum of the losses of the edges that have a say
   int iterations = 0;
   bool usable = false;  // false when the solver failed: then poses and scales are as given
 };

@@ -8,7 +8,7 @@ namespace byre {
 
 namespace {
 
-// By rotation, position and logarithm of the scale.
+// Slopes of an edge's error by a node's rotation, position and logarithm of the scale.
 using NodeJacobian = Matrix7;
 
 // A node as Ceres holds it.

@@ -22,10 +22,10 @@ namespace {
 struct Sighting {
   Eigen::Vector3d point_in_world;
   StereoPixel measured;
-  Eigen::Matrix3d information;  // of the residual in pixels; without a disparity its third row and column are zero
+  Eigen::Matrix3d information;  // inverse covariance in pixels; without a disparity its third row and column are zero
   double weight;
   double squared_error;   // squared sigmas; infinite at or behind the camera, or when not a number
-  double tolerant_error;  // the same with the systematic sigma among the sigmas
+  double tolerant_error;  // squared sigmas, with the systematic sigma among them
   bool stereo;
   bool inlier;
 };
@@ -106,8 +106,8 @@ std::vector<Sighting> sight(std::span<const PoseObservation> observations, const
 
 // From the median of the finite squared errors, so that up to half of them may be outliers.
 double variance_factor(const std::vector<Sighting>& sightings) {
-  constexpr double kMedianMono = 1.386;    // of chi-square with two degrees of freedom
-  constexpr double kMedianStereo = 2.366;  // three
+  constexpr double kMedianMono = 1.386;    // median of chi-square with two degrees of freedom
+  constexpr double kMedianStereo = 2.366;  // median of chi-square with three degrees of freedom
   std::vector<double> ratios;
   ratios.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
@@ -201,9 +201,9 @@ Matrix6 covariance_at(std::vector<Sighting> sightings, const Rig& rig, const Pos
 
 // What the inliers of a region of the image say together.
 struct Region {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();                       // of an error that all of them share
-  Eigen::Vector3d descent = Eigen::Vector3d::Zero();                           // information * that error
-  Eigen::Matrix<double, 6, 3> by_error = Eigen::Matrix<double, 6, 3>::Zero();  // how it pushes the pose
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // inverse covariance of an error that all share
+  Eigen::Vector3d descent = Eigen::Vector3d::Zero();      // information * the shared error
+  Eigen::Matrix<double, 6, 3> by_error = Eigen::Matrix<double, 6, 3>::Zero();  // how the shared error pushes the pose
   int points = 0;
 };
 
@@ -231,9 +231,9 @@ Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, c
 
 // Pixels: how far the regions' mean errors lie off more than noise explains. The prior counts as one region.
 double systematic_sigma_of(const Regions& regions, double variance_factor, double prior) {
-  constexpr int kMinPoints = 4;         // of a region that is asked
-  constexpr double kPriorValues = 2.0;  // one region, of two numbers
-  constexpr double kPoseFreedom = 6.0;  // what the pose has taken out of them
+  constexpr int kMinPoints = 4;         // inliers of a region that has a say
+  constexpr double kPriorValues = 2.0;  // numbers that the prior counts for: one region's u and v
+  constexpr double kPoseFreedom = 6.0;  // numbers that the pose has taken out of the regions' errors
   double excess = 0.0;
   double values = -kPoseFreedom;
   for (const Region& region : regions) {

@@ -35,11 +35,11 @@ struct PoseRefinementOptions {
 
 struct PoseRefinement {
   Pose camera_from_world;
-  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * camera_from_world
+  Matrix6 covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * camera_from_world
   std::vector<bool> inliers;             // one per observation; at or behind the camera never
   int inlier_count = 0;
-  // By which the residuals' variance exceeds the one stated, at least 1: where the map is not settled yet all errors
-  // are larger than their sigmas. Gates, loss and covariance are widened by it.
+  // Factor by which the residuals' variance exceeds the one stated, at least 1: where the map is not settled yet all
+  // errors are larger than their sigmas. Gates, loss and covariance are widened by it.
   double variance_factor = 1.0;
   double systematic_sigma = 0.0;  // pixels, as regions of the image have it in common; see PoseRefinementOptions
 };

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-constexpr int kWordBits = 64;  // of the four numbers of a descriptor
+constexpr int kWordBits = 64;  // bits of each of the four numbers of a descriptor
 
 // Counts, bit by bit, how many descriptors of a cluster have it set.
 class BitCounts {

@@ -27,7 +27,7 @@ struct PlaceCandidate {
 struct PlaceQueryOptions {
   int max_candidates = 10;
   int group_size = 10;           // covisible keyframes that count
-  float min_score_share = 0.5f;  // of the best score: others are left out
+  float min_score_share = 0.5f;  // share of the best score below which candidates are left out
 };
 
 // An inverted file from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the words kept with keyframes
@@ -50,7 +50,7 @@ class PlaceIndex {
  private:
   struct Posting {
     std::uint32_t slot = 0;
-    float weight = 0.0f;  // of the word in the keyframe's bag
+    float weight = 0.0f;  // weight of the word in the keyframe's bag
   };
   struct Entry {
     KeyframeId keyframe;
@@ -60,8 +60,8 @@ class PlaceIndex {
   std::uint32_t take_slot(KeyframeId id);
 
   Vocabulary vocabulary_;                       // constant after construction
-  std::vector<std::vector<Posting>> postings_;  // by word
-  std::vector<Entry> entries_;                  // by slot
+  std::vector<std::vector<Posting>> postings_;  // postings of each word
+  std::vector<Entry> entries_;                  // keyframes by slot
   std::vector<std::uint32_t> free_slots_;
   std::map<KeyframeId, std::uint32_t> slot_of_;
 };

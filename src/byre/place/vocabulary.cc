@@ -16,8 +16,8 @@ namespace byre {
 struct Vocabulary::Data {
   std::unique_ptr<const MappedFile> file;
   std::vector<std::byte> own_bytes;
-  std::span<const std::byte> bytes;  // of one of the two
-  VocabularyView view;               // into these
+  std::span<const std::byte> bytes;  // the whole file, in the mapped memory or our own
+  VocabularyView view;               // view of these bytes
 };
 
 namespace {

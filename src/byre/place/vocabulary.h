@@ -21,7 +21,7 @@ using BagOfWords = std::vector<std::pair<Word, float>>;
 struct VocabularyOptions {
   int branching = 40;  // children of a node, 2 to 255
   int depth = 3;       // levels below the root, at most 16: at most branching^depth words
-  int rounds = 10;     // of clustering at each node, fewer when it settles
+  int rounds = 10;     // rounds of clustering at each node, fewer when it settles
   std::uint64_t seed = 1;
 };
 
@@ -48,7 +48,7 @@ class Vocabulary {
   int word_count() const;
   int branching() const;
   int depth() const;
-  std::uint64_t checksum() const;  // of nodes and weights: equal for equal vocabularies
+  std::uint64_t checksum() const;  // checksum of nodes and weights: equal for equal vocabularies
 
   Word word_of(const Descriptor& descriptor) const;
   std::vector<Word> words_of(const Features& features) const;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kMagic = "byrevoc\n";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderSize = 64;
-constexpr std::size_t kHeaderChecksumAt = 56;  // of the header up to there
+constexpr std::size_t kHeaderChecksumAt = 56;  // place of the checksum of the header's bytes before it
 constexpr std::uint32_t kMaxBranching = 255;
 
 struct Header {

@@ -18,15 +18,15 @@ struct VocabularyTree {
   std::vector<float> weights;              // one per word, that is, per leaf from left to right
 };
 
-// The same, read where it lies, and what follows from it.
+// A VocabularyTree read where it lies, and what follows from it.
 struct VocabularyView {
   std::span<const Descriptor> centres;
   std::span<const std::uint32_t> first_child;
   std::span<const float> weights;
-  std::vector<std::uint32_t> first_word;  // one per node, the leftmost word below it; of a leaf its own
+  std::vector<std::uint32_t> first_word;  // one per node: the leftmost word below it; a leaf's own word
   int branching = 0;                      // most children of a node
   int depth = 0;                          // levels below the root
-  std::uint64_t checksum = 0;             // of all of the above
+  std::uint64_t checksum = 0;             // checksum of the header, which holds those of centres, children and weights
 };
 
 // One per node: the number of leaves to the left of those below it. Precondition: as in VocabularyTree, and every node

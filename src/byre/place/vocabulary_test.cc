@@ -129,7 +129,7 @@ TEST(Training, WeighsWordsByHowFewImagesHaveThem) {
   ASSERT_EQ(vocabulary.word_count(), 3);
   const std::vector<Word> words = words_of(vocabulary, centres);
 
-  // Of four images, three have the first word, two the second, one the third.
+  // Three of the four images have the first word, two the second, one the third.
   const float sum = std::log(4.0f / 3.0f) + std::log(2.0f) + std::log(4.0f);
   for (const auto& [word, weight] : vocabulary.bag_of(words)) {
     const float images_with_word = word == words[0] ? 3.0f : word == words[1] ? 2.0f : 1.0f;

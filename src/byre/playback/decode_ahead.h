@@ -16,8 +16,8 @@ namespace byre {
 struct DecodedFrame {
   Timestamp time{};
   std::optional<ImageFrame> images;   // empty when they cannot be read
-  std::vector<std::string> warnings;  // that reading them gave
-  double seconds = 0.0;               // wall time that took
+  std::vector<std::string> warnings;  // warnings that reading it gave
+  double seconds = 0.0;               // wall time that reading it took
 };
 
 // Reads the frames of a recording in order, in a thread of its own that stays a few frames ahead.
@@ -48,7 +48,7 @@ class DecodeAhead {
   int taken_ = 0;         // owned by the caller of next()
   // A slot belongs to the thread from when it is free until it is filled, then to the caller until it is free again.
   std::array<Slot, kAhead> slots_;
-  std::counting_semaphore<kAhead + 1> free_{kAhead};  // one more, to wake the thread when it is to stop
+  std::counting_semaphore<kAhead + 1> free_{kAhead};  // room for one more, to wake the thread when it is to stop
   std::counting_semaphore<kAhead> filled_{0};
   std::jthread thread_;  // the last member: it uses the others
 };

@@ -16,9 +16,9 @@ struct MappedFrame {
   bool has_depth = false;
   std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
   StageSeconds seconds;
-  int keyframes = 0;       // of the map after it
-  int points = 0;          // of the map after it
-  double memory_mb = 0.0;  // resident, of the whole program
+  int keyframes = 0;       // keyframes of the map after the frame
+  int points = 0;          // points of the map after the frame
+  double memory_mb = 0.0;  // resident memory of the whole program
 };
 
 struct MapRun {
@@ -27,13 +27,13 @@ struct MapRun {
   Trajectory final;                               // as recomputed after the last frame
   Trajectory odometry;                            // the smooth poses as published, in a frame of their own
   Map map{Origin::offline};                       // as it is kept; of the keyframes made, others were found redundant
-  std::optional<RefinedCalibration> calibration;  // by which the map lies, where it was refined
+  std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
   std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
-  std::optional<double> mission_finishing_seconds;  // of a mission, of adjusting its online map as a whole
+  std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
-  std::vector<std::string> warnings;                // of the recording
-  std::vector<double> lateness;  // live: seconds by which frames were fed too late, of those that were
-  double wall_seconds = 0.0;     // of it all
+  std::vector<std::string> warnings;                // warnings of the recording
+  std::vector<double> lateness;                     // seconds by which late frames were fed too late, in a live run
+  double wall_seconds = 0.0;                        // wall time of the whole run
 };
 
 // What can be seen of a run right after a frame: valid for the time of the call.

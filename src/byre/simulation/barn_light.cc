@@ -51,7 +51,7 @@ float light_from_piece(const Vector3f& piece, const WindowLight& window, float a
 
 float light_from_window(const WindowLight& window, const Vector3f& point, const Vector3f& normal,
                         const RayScene& still) {
-  const float quarter = window.half_x.cross(window.half_y).norm();  // of the window's area
+  const float quarter = window.half_x.cross(window.half_y).norm();  // quarter of the window's area, square metres
   float sum = 0.0f;
   for (const float x : {-0.5f, 0.5f}) {
     for (const float y : {-0.5f, 0.5f}) {

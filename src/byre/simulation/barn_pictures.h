@@ -15,9 +15,9 @@ enum class BarnPicture : std::uint8_t {
   timber,    // grain along v
   straw,
   feed,
-  rust,        // galvanised steel that has begun to
+  rust,        // galvanised steel that has begun to rust
   roof_sheet,  // corrugated, waves across u
-  hide,        // of cattle
+  hide,        // coat of cattle
   plastic,
   dung,   // wet concrete behind the fence
   signs,  // boards with numbers and marks

@@ -63,7 +63,7 @@ Calibration perturbed(const Calibration& calibration, const CalibrationError& er
   Calibration result = calibration;
   result.left = perturbed(calibration.left, error.left);
   if (calibration.right) {
-    const Pose true_from_told{rotation_exp(error.right_turned), error.right_moved};  // of the right camera
+    const Pose true_from_told{rotation_exp(error.right_turned), error.right_moved};  // right camera's frames
     result.right = StereoPartner{perturbed(calibration.right->camera, error.right),
                                  inverse(true_from_told) * calibration.right->right_from_left};
   }

@@ -10,8 +10,8 @@ namespace byre {
 // By how much the calibration of one camera is off.
 struct CameraError {
   double focal = 0.0;                                // share of both focal lengths
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // of the principal point, pixels
-  std::array<double, 4> distortion{};                // of the lens model's first coefficients
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // principal point, pixels
+  std::array<double, 4> distortion{};                // first coefficients of the lens model
 };
 
 // By how much the calibration of a pair is off.
@@ -19,7 +19,7 @@ struct CalibrationError {
   CameraError left;
   CameraError right;
   Eigen::Vector3d right_turned = Eigen::Vector3d::Zero();  // radians about the right camera's axes
-  Eigen::Vector3d right_moved = Eigen::Vector3d::Zero();   // metres along them
+  Eigen::Vector3d right_moved = Eigen::Vector3d::Zero();   // metres along the right camera's axes
 };
 
 // What calibrations in the field are off by, drawn from normal distributions. Their standard deviations at level 1, a
@@ -32,7 +32,7 @@ CalibrationError draw_calibration_error(double level, std::uint64_t seed);
 // A calibration that is off by the error. A pinhole camera gets a radial-tangential lens, where the error has one.
 Calibration perturbed(const Calibration& calibration, const CalibrationError& error);
 
-// The same by the error that level and seed draw.
+// A calibration that is off by the error that level and seed draw.
 Calibration perturbed(const Calibration& calibration, double level, std::uint64_t seed);
 
 }  // namespace byre

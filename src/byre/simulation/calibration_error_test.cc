@@ -38,7 +38,7 @@ TEST(CalibrationError, IsNoneAtLevelZero) {
 }
 
 TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
-  constexpr double kTolerance = 0.08;  // of a deviation, three times what a thousand draws vary by
+  constexpr double kTolerance = 0.08;  // share of a deviation: three times what a thousand draws vary by
   const auto expect_sigma = [&](double sigma, const std::function<double(const CalibrationError&)>& number) {
     EXPECT_NEAR(sigma_of(1.0, number) / sigma, 1.0, kTolerance);
     EXPECT_NEAR(sigma_of(3.0, number) / sigma, 3.0, 3.0 * kTolerance);
@@ -70,7 +70,7 @@ TEST(CalibrationError, OfARobotIsTheSameInAllItsRecordings) {
     EXPECT_NEAR(told.right->camera.cx - calibration.right->camera.cx, error.right.centre.x(), 1e-12);
     EXPECT_NEAR(told.left.distortion[0] - calibration.left.distortion[0], error.left.distortion[0], 1e-12);
     const Pose true_from_told =
-        calibration.right->right_from_left * inverse(told.right->right_from_left);  // of the right camera
+        calibration.right->right_from_left * inverse(told.right->right_from_left);  // right camera's frames
     EXPECT_THAT(true_from_told, PoseNear(Pose{rotation_exp(error.right_turned), error.right_moved}, 1e-12, 1e-12));
     EXPECT_THAT(told.body_from_left, PoseNear(calibration.body_from_left, 1e-12, 1e-12));
   }

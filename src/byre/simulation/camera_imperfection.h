@@ -13,11 +13,11 @@ namespace byre {
 struct CameraImperfection {
   double calibration_level = 0.0;  // see draw_calibration_error; 0: the calibration is exact
   std::uint64_t calibration_seed = 1;
-  double rolling_shutter_s = 0.0;  // to read all rows, one after the other; 0: all are exposed at once
-  double time_offset_s = 0.0;      // by which the right camera is exposed later
+  double rolling_shutter_s = 0.0;  // time to read all rows, one after the other; 0: all are exposed at once
+  double time_offset_s = 0.0;      // seconds by which the right camera is exposed later
   double lens_blur = 0.0;          // sigma in the corners of the left image, pixels; see lens_blur_of
-  double gain = 1.0;               // of the right camera, where the left one has 1
-  double offset = 0.0;             // of the right camera, grey values, where the left one has 0
+  double gain = 1.0;               // right camera's, where the left one has 1
+  double offset = 0.0;             // right camera's, grey values, where the left one has 0
   double vignetting = 0.35;        // share of the light that is lost in the corners
   int jpeg_quality = 0;            // 1 to 100, of the images as they are kept; 0: without loss
 };

@@ -11,13 +11,13 @@
 namespace byre {
 
 enum class BarnTime : std::uint8_t { day, dusk };
-enum class BarnGate : std::uint8_t { closed, open };  // of the feed store, in the eastern gable
+enum class BarnGate : std::uint8_t { closed, open };  // gate of the feed store, in the eastern gable
 
 // A cowshed and one visit to it. World frame: x along the feed alley from the western gable, y to the north from the
 // middle of the alley, z up from its floor; metres.
 struct CowshedOptions {
-  std::uint64_t seed = 1;          // of the building
-  int mission = 1;                 // from 1: of what differs from visit to visit
+  std::uint64_t seed = 1;          // draws the building
+  int mission = 1;                 // number from 1, draws what differs from visit to visit
   double change = 0.25;            // share of the movable things that a later mission finds elsewhere
   std::optional<BarnTime> time{};  // unless given: dusk in even missions
   std::optional<int> cows{};       // unless given: 3 in the first mission, 8 in later ones
@@ -34,7 +34,7 @@ struct CowshedSize {
   float bay = 5.0f;  // between columns
   float gate_half_width = 2.0f;
   float gate_height = 3.05f;
-  float store_length = 10.0f;  // of the feed store behind the eastern gable
+  float store_length = 10.0f;  // feed store behind the eastern gable
   float store_half_width = 4.5f;
   float store_height = 3.9f;
 };
@@ -57,7 +57,7 @@ inline constexpr int kThingKinds = 6;
 // Something that people carry about.
 struct MovableThing {
   ThingKind kind = ThingKind::bucket;
-  Eigen::Vector3f position;  // of its foot, in the world
+  Eigen::Vector3f position;  // place of its foot, in the world
   float yaw = 0.0f;          // radians
 };
 
@@ -76,7 +76,7 @@ struct Cowshed {
   QuadMesh still;
   BarnLight light;
   Air air;
-  std::vector<PlanOutline> outlines;  // of what stays where it is
+  std::vector<PlanOutline> outlines;  // outlines of what stays where it is
   std::vector<NamedPoint> marks;
   std::vector<MovableThing> things;
   std::vector<Cow> cows;

@@ -18,8 +18,8 @@ SurfaceLook varied(SurfaceLook look, SeededDraws& draws);
 void add_outline_of_box(Cowshed& barn, const Eigen::Isometry3f& world_from_box, const Eigen::Vector3f& half_size);
 
 void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed);  // floor, walls, roof, windows
-void add_gates(Cowshed& barn, BarnGate eastern);                   // in the gables
-void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed);  // of feed, behind the eastern gable
+void add_gates(Cowshed& barn, BarnGate eastern);                   // gates in the gables
+void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed);  // store of feed behind the eastern gable
 void add_frame(Cowshed& barn, std::uint64_t seed);                 // columns, trusses, purlins
 void add_fences(Cowshed& barn, std::uint64_t seed);                // between the alley and the cows
 void add_cubicles(Cowshed& barn, std::uint64_t seed);              // where the cows lie

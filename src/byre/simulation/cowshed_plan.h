@@ -12,7 +12,7 @@ namespace byre {
 struct FloorPlanImage {
   Image image;                                       // black: walls, posts, curbs; white: free; its top is the north
   double resolution = 0.02;                          // metres per pixel
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  // of the lower left corner of the lower left pixel on the plan
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  // lower left corner of the lower left pixel on the plan
 };
 
 // On the plan lie the barn's own metres: x and y of the world frame, see CowshedOptions.

@@ -80,7 +80,7 @@ struct CowshedRecording::RobotCamera {
   PixelRays pixels;
   ImageSensor sensor;
   Pose body_from_camera;
-  double delay_s;  // by which it is exposed later than the left one
+  double delay_s;  // seconds by which it is exposed later than the left one
 };
 
 // What stays the same for all frames.
@@ -244,8 +244,8 @@ std::vector<float> CowshedRecording::left_depths(Timestamp time) const {
 // Where the left camera sees a mark of a frame, unhidden and not at the rim; empty where it does not.
 std::optional<MarkSighting> CowshedRecording::sighting_at(const NamedPoint& mark, Timestamp time) const {
   constexpr double kNearest = 1.0;  // metres
-  constexpr double kRim = 0.06;     // of the image's width
-  constexpr int kRounds = 3;        // of finding the row, and when that is exposed
+  constexpr double kRim = 0.06;     // share of the image's width
+  constexpr int kRounds = 3;        // rounds of finding the row, and when that is exposed
   const Camera& camera = scene_->calibration.left;
   Pose world_from_camera;
   std::optional<Eigen::Vector2d> pixel(Eigen::Vector2d(0.0, 0.5 * (camera.height - 1)));
@@ -295,7 +295,7 @@ void write_cowshed_recording(CowshedRecording& recording, const std::filesystem:
   write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
                    recording.sightings(), folder / "plan");
   const int total = static_cast<int>(recording.times().size());
-  std::future<void> writing;  // of the frame before, beside rendering
+  std::future<void> writing;  // writes the frame before, beside rendering
   for (int i = 0; i < total; ++i) {
     ImageFrame frame = recording.render_next();
     if (writing.valid()) writing.get();

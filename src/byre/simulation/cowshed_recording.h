@@ -35,8 +35,8 @@ class CowshedRecording {
   explicit CowshedRecording(const CowshedRecordingOptions& options);
   ~CowshedRecording();
 
-  const Calibration& calibration() const;       // of the cameras that see
-  const Calibration& told_calibration() const;  // what is told of them: it errs where the options ask for that
+  const Calibration& calibration() const;       // calibration of the cameras that see
+  const Calibration& told_calibration() const;  // calibration that is told: it errs where the options ask for that
   const Cowshed& barn() const;
   const std::vector<Timestamp>& times() const;
 
@@ -76,8 +76,8 @@ class CowshedRecording {
   FeedingCourse course_;
   std::vector<Timestamp> times_;
   std::unique_ptr<const Scene> scene_;
-  Exposure exposure_;     // of the next frame
-  std::size_t next_ = 0;  // frame
+  Exposure exposure_;     // exposure of the next frame
+  std::size_t next_ = 0;  // index of the next frame
 };
 
 // Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points to register a map

@@ -103,7 +103,7 @@ void write_image(const fs::path& folder, const Image& image, Timestamp time) {
   throw InputError(path.string(), "cannot be written", "check that its folder may be written and the disk is not full");
 }
 
-// By central differences, metres per second.
+// Velocity by central differences, metres per second.
 Eigen::Vector3d velocity_in_world(const Trajectory& truth, std::size_t i) {
   const StampedPose& before = truth[i == 0 ? 0 : i - 1];
   const StampedPose& after = truth[std::min(i + 1, truth.size() - 1)];

@@ -26,7 +26,7 @@ struct FeedingCourseOptions {
   double duration_s = 40.0;     // one lap and a metre more, or several
   double shift_y = 0.0;         // metres by which all of it lies to the left
   double start = 0.0;           // where on the lap to begin, 0 to 1
-  std::uint64_t seed = 1;       // of the vibration
+  std::uint64_t seed = 1;       // draws the vibration
 };
 
 // Where the robot is at any time.

@@ -31,9 +31,9 @@ class LensBlur {
 
   int width_;
   int height_;
-  int steps_ = 0;                 // of equal variance, up to the largest
+  int steps_ = 0;                 // number of blurs of equal variance up to the largest
   float step_variance_ = 0.0f;    // pixels squared
-  std::vector<float> variances_;  // of each pixel, in steps; empty where all is sharp
+  std::vector<float> variances_;  // variance of each pixel, in steps; empty where all is sharp
 };
 
 }  // namespace byre

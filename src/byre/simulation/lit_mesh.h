@@ -15,16 +15,16 @@ class LitMesh {
           RayScene::Build build = RayScene::Build::careful)
       : LitMesh(mesh, mesh, light, id, build) {}
 
-  // Of what moves, see RayScene: it looks as it does at the beginning.
+  // A mesh that moves, see RayScene: it looks as it does at the beginning.
   LitMesh(const QuadMesh& begin, const QuadMesh& end, const std::vector<float>& light, unsigned id,
           RayScene::Build build);
 
-  // By corner where it is an array, in the order of the mesh.
+  // What a facet looks like. Arrays are by corner, in the order of the mesh.
   struct Facet {
     std::array<Eigen::Vector2f, 4> picture_places;
     std::array<float, 4> light;
     Eigen::Vector3f normal;            // unit length
-    Eigen::Vector3f u_slope, v_slope;  // of the picture's place over the surface, pictures per metre
+    Eigen::Vector3f u_slope, v_slope;  // slopes of the picture's place over the surface, pictures per metre
     std::uint32_t surface = 0;
   };
 

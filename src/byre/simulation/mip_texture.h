@@ -23,7 +23,7 @@ class MipTexture {
   // floor seen at a slant, are looked up in several places along them.
   float sample(const Eigen::Vector2f& place, const TextureFootprint& footprint) const;
 
-  // The same for a round footprint of a width in pictures, from the level next to it alone: for what is smooth.
+  // The mean over a round footprint of a width in pictures, from the level next to it alone: for what is smooth.
   float sample(const Eigen::Vector2f& place, float width) const;
 
  private:
@@ -34,7 +34,7 @@ class MipTexture {
 
   int size_log2_;
   std::vector<std::uint8_t> texels_;  // all levels, one after the other, the finest first
-  std::vector<int> first_texel_;      // of each level
+  std::vector<int> first_texel_;      // index of each level's first texel
 };
 
 }  // namespace byre

@@ -10,7 +10,7 @@ using ::testing::FloatNear;
 
 constexpr int kSize = 64;
 constexpr float kTexel = 1.0f / kSize;
-constexpr float kStep = 1.0f / 255.0f;  // of what is stored
+constexpr float kStep = 1.0f / 255.0f;  // step between values that are stored
 
 // Columns of 0 and 1 in turn, so many texels wide.
 MipTexture columns(int width) {

@@ -24,8 +24,8 @@ struct SurfaceLook {
 // Surfaces made of four-sided facets, in the world frame, metres.
 struct QuadMesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Eigen::Vector3f> normals;             // of each vertex, of unit length, away from the solid
-  std::vector<Eigen::Vector2f> picture_places;      // of each vertex, in pictures
+  std::vector<Eigen::Vector3f> normals;             // normal of each vertex, of unit length, away from the solid
+  std::vector<Eigen::Vector2f> picture_places;      // place of each vertex in its picture, in pictures
   std::vector<std::array<std::uint32_t, 4>> quads;  // counter-clockwise seen from outside
   std::vector<std::uint32_t> surface_of_quad;
   std::vector<SurfaceLook> surfaces;  // a surface is smooth: edges lie between surfaces

@@ -54,7 +54,7 @@ void RayScene::intersect(const int* valid, RTCRayHit8& rays) const {
 }
 
 bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  constexpr float kEnd = 1e-3f;  // of the way: what the points themselves lie on
+  constexpr float kEnd = 1e-3f;  // share of the way left out at both ends: what the points themselves lie on
   const Eigen::Vector3f way = to - from;
   RTCRay ray{};
   ray.org_x = from.x();

@@ -16,8 +16,8 @@ class RayScene {
   // id: what hits on this scene have as geomID. The mesh is copied.
   RayScene(const QuadMesh& mesh, unsigned id, Build build = Build::careful) : RayScene(mesh, mesh, id, build) {}
 
-  // Of what moves: rays meet it as it is at their time, from 0, at the beginning, to 1, at the end. Precondition: the
-  // meshes differ in where their vertices are, and in nothing else.
+  // A mesh that moves: rays meet it as it is at their time, from 0, at the beginning, to 1, at the end. Precondition:
+  // the meshes differ in where their vertices are, and in nothing else.
   RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Build build);
 
   // Makes the rays of a packet end at this scene where it is nearer than where they end so far. valid: -1 for the rays

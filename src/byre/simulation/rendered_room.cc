@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-constexpr int kSamplesPerSide = 2;  // of a pixel, against the stairs at the edges of surfaces
+constexpr int kSamplesPerSide = 2;  // samples a side of a pixel, against the stairs at the edges of surfaces
 
 void check(const RenderedRoomOptions& options) {
   const bool has_size = options.room_size.allFinite() && options.room_size.minCoeff() > 0.0;
@@ -29,7 +29,7 @@ SurfaceHit leave_box(const Eigen::Array3f& near, const Eigen::Array3f& far, cons
   return hit;
 }
 
-// The same for a ray that starts outside; empty when it misses the box.
+// The surface that a ray meets when it enters a box from outside; empty when it misses the box.
 std::optional<SurfaceHit> enter_box(const Eigen::Array3f& near, const Eigen::Array3f& far,
                                     const Eigen::Vector3f& direction) {
   SurfaceHit hit;
@@ -41,7 +41,7 @@ std::optional<SurfaceHit> enter_box(const Eigen::Array3f& near, const Eigen::Arr
 
 // About a normal distribution: the sum of four uniform numbers (Irwin-Hall), which no look-up or branch is needed for.
 float noise_from(std::uint64_t bits, float sigma) {
-  constexpr float kUniformSigma = 65536.0f * 0.5773503f;  // of the sum of four uniform 16-bit numbers
+  constexpr float kUniformSigma = 65536.0f * 0.5773503f;  // standard error of the sum of four uniform 16-bit numbers
   const std::uint64_t sum = (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
   return sigma / kUniformSigma * (static_cast<float>(sum) - 2.0f * 65535.0f);
 }

@@ -70,8 +70,8 @@ std::optional<Eigen::Vector2d> same_place(const RenderedRoom& room, const View& 
 }
 
 struct Difference {
-  double warped = 0.0;    // mean absolute difference of grey values where the geometry says
-  double unwarped = 0.0;  // and at the same pixel
+  double warped = 0.0;    // mean absolute difference of grey values at the same place of the room
+  double unwarped = 0.0;  // mean absolute difference of grey values at the same pixel
   int count = 0;
 };
 

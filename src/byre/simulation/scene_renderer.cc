@@ -44,7 +44,7 @@ struct SceneRenderer::PlacedView {
 
   const PixelRays& pixels;
   const LitMesh& moving;
-  std::vector<Placement> placements;  // of each row where the shutter rolls, else one
+  std::vector<Placement> placements;  // one for each row where the shutter rolls, else one for all
 };
 
 struct SceneRenderer::Target {
@@ -180,7 +180,7 @@ std::vector<float> SceneRenderer::smooth_row(const PlacedView& view, int row, co
            (row > 0 && ends_between(here, at(column, row - 1))) ||
            (row + 1 < view.pixels.height() && ends_between(here, at(column, row + 1)));
   };
-  constexpr float kShare = 1.0f / (1.0f + static_cast<float>(kEdgeOffsets.size()));  // of each ray at an edge
+  constexpr float kShare = 1.0f / (1.0f + static_cast<float>(kEdgeOffsets.size()));  // weight of each ray at an edge
   std::vector<Target> targets;
   std::vector<float> radiance;
   for (int column = 0; column < width; ++column) {

@@ -28,8 +28,8 @@ struct SceneView {
 
 // One of the instants that an exposure is made of.
 struct ExposureInstant {
-  Eigen::Vector2f pixel_offset{0.0f, 0.0f};  // of all rays from their pixels' centres, in pixels
-  bool smooth_edges = true;                  // by more rays where surfaces end
+  Eigen::Vector2f pixel_offset{0.0f, 0.0f};  // pixels by which all rays are off their pixels' centres
+  bool smooth_edges = true;                  // more rays where surfaces end
 };
 
 // Renders a scene with Embree, eight rays at a time. Borrows all that it is given. The same view gives the same

@@ -117,7 +117,7 @@ TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
   for (const int row : {camera.height / 2 - 25, camera.height / 2 + 25}) {
     const auto begin = radiance.begin() + static_cast<std::ptrdiff_t>(row) * camera.width;
     const std::vector<float> line(begin, begin + camera.width);
-    double u = 0.5 * camera.width;  // of the marker's left edge: the lens bends it a little along the row
+    double u = 0.5 * camera.width;  // column of the marker's left edge: the lens bends it a little along the row
     for (int round = 0; round < 4; ++round) {
       const double v_of_edge = camera.bearing({u, static_cast<double>(row)}).value().y();
       const double z_of_edge = camera.bearing({u, static_cast<double>(row)}).value().z();

@@ -16,7 +16,7 @@ class SeededDraws {
 
   // Uniform in [low, high).
   float between(float low, float high) {
-    constexpr float kStep = 1.0f / 16777216.0f;  // of 24 bits, as many as a float has
+    constexpr float kStep = 1.0f / 16777216.0f;  // step of 24 bits, as many as a float has
     return low + (high - low) * kStep * static_cast<float>(bits() >> 40);
   }
 

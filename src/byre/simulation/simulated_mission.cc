@@ -123,7 +123,7 @@ Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& ra
   return keypoint;
 }
 
-// The same appearance somewhere else.
+// The keypoint with its appearance somewhere else.
 Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
   constexpr double kNearest = 0.5;  // metres
   keypoint.pixel.x() = static_cast<float>(draw_uniform(random, 0.0, rig.width - 1.0));

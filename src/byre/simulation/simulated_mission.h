@@ -17,12 +17,12 @@ struct SimulationOptions {
   double pixel_sigma = 0.5;                   // pixels at octave 0, times the octave's scale
   double disparity_sigma = 0.3;               // pixels at octave 0, times the octave's scale
   double min_disparity = 1.0;                 // pixels: landmarks farther than this have no disparity
-  double outlier_ratio = 0.0;                 // of features: put at a random pixel and disparity
-  double missing_ratio = 0.1;                 // of visible landmarks that are not detected
-  double descriptor_flip_ratio = 0.03;        // of descriptor bits
+  double outlier_ratio = 0.0;                 // share of features that are put at a random pixel and disparity
+  double missing_ratio = 0.1;                 // share of visible landmarks that are not detected
+  double descriptor_flip_ratio = 0.03;        // share of descriptor bits that are flipped
   int max_features = 1000;
-  std::uint64_t seed = 1;        // of the landmarks: equal seeds are visits to the same room
-  std::uint64_t noise_seed = 1;  // of everything that differs from visit to visit
+  std::uint64_t seed = 1;        // draws the landmarks: equal seeds are visits to the same room
+  std::uint64_t noise_seed = 1;  // draws everything that differs from visit to visit
 };
 
 struct SimulatedMission {

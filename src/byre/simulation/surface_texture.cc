@@ -65,7 +65,7 @@ struct Shape {
   float y = 0.0f;
   float half_length = 0.0f;
   float half_width = 0.0f;
-  float cosine = 1.0f;  // of its direction
+  float cosine = 1.0f;  // cosine of the angle from the cell's x axis to the shape's length
   float sine = 0.0f;
 };
 
@@ -119,7 +119,7 @@ float signed_distance(const Shape& shape, const Cell& cell) {
 
 // Lays a layer of shapes, one to a cell, over a grey value. The outline is blurred over one footprint.
 float cover_with_shapes(float grey, std::uint64_t seed, const SurfaceSpot& spot, float cell_size) {
-  constexpr float kDetail = 0.4f;  // of a cell: the typical size of a shape
+  constexpr float kDetail = 0.4f;  // typical size of a shape, as a share of its cell
   const float opacity = visible_part(kDetail * cell_size, 0.5f * spot.footprint);
   if (opacity == 0.0f) return grey;
   const Cell cell = cell_at(spot, cell_size);

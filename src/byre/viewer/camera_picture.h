@@ -10,7 +10,7 @@ namespace byre {
 struct CameraPictureOptions {
   std::string title;
   bool panel = true;     // health beside the image
-  HealthOptions health;  // whose limits are marked on the meters
+  HealthOptions health;  // limits that are marked on the meters
 };
 
 // What the camera saw with the map points found in it, offline ones green discs and online ones purple diamonds;

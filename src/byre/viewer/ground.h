@@ -16,7 +16,7 @@ struct Ground {
   bool is_metric = true;
   bool is_level = false;               // a plane was driven on, so that heights above it mean something
   std::optional<FloorPlan> plan;       // its frame is the ground's
-  std::shared_ptr<const Image> image;  // of the plan; null without one
+  std::shared_ptr<const Image> image;  // plan's image; null without a plan
 };
 
 // On the floor plan that the map was registered on, else on the plane fitted to its path, along which x then lies. The

@@ -22,8 +22,8 @@ constexpr double kMeterRow = 36.0;
 struct Meter {
   std::string name;
   std::string value;
-  double filled = 0.0;            // of the bar, from 0 to 1
-  std::optional<double> limit{};  // where its tick is
+  double filled = 0.0;            // filled share of the bar, from 0 to 1
+  std::optional<double> limit{};  // place of the tick on the bar, from 0 to 1
   Colour colour = palette::kKeyframe;
 };
 

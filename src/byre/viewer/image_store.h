@@ -14,7 +14,7 @@ class ImageStore {
 
   void add(std::size_t frame, std::string bytes);
 
-  // Of the frame itself or, where that has none, of the kept one nearest to it; nullptr while there is none at all.
+  // The image of the frame or, where it has none, of the kept frame nearest to it; nullptr while there is none at all.
   const std::string* find_nearest(std::size_t frame) const;
 
   std::size_t count() const { return images_.size(); }
@@ -25,7 +25,7 @@ class ImageStore {
 
   std::size_t max_bytes_;  // constant after construction
   std::map<std::size_t, std::string> images_;
-  std::size_t bytes_ = 0;  // of all images
+  std::size_t bytes_ = 0;  // size of all images together
 };
 
 }  // namespace byre

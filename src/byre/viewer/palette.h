@@ -24,7 +24,7 @@ inline constexpr Colour kUntrusted{207, 34, 46};
 inline constexpr Colour kCamera{9, 105, 218};
 inline constexpr Colour kKeyframe{87, 96, 106};
 
-// Of paths that are told apart by name alone.
+// Colours of paths that are told apart by name alone.
 inline constexpr std::array kPaths = {Colour{9, 105, 218}, Colour{191, 57, 137}, Colour{180, 95, 6},
                                       Colour{17, 130, 140}, Colour{87, 60, 180}};
 

@@ -58,7 +58,7 @@ enum class Align : std::uint8_t { left, centre, right };
 struct PictureText {
   Eigen::Vector2d at;  // on the baseline
   std::string text;    // ASCII
-  double size = 13.0;  // of capitals and what hangs below the line together
+  double size = 13.0;  // height of capitals and of what hangs below the line together
   Colour colour;
   Align align = Align::left;
   bool bold = false;

@@ -13,7 +13,7 @@ namespace byre {
 namespace {
 
 constexpr int kOversampling = 2;
-constexpr int kFractionBits = 4;  // of a canvas pixel, in what OpenCV's drawing takes
+constexpr int kFractionBits = 4;  // bits for fractions of a canvas pixel, in what OpenCV's drawing takes
 
 cv::Scalar bgr(const Colour& colour) {
   return {static_cast<double>(colour.blue), static_cast<double>(colour.green), static_cast<double>(colour.red)};
@@ -53,7 +53,7 @@ void draw_area(cv::Mat& canvas, const std::vector<Eigen::Vector2d>& corners, con
 std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector2d>& points, double dash, double gap) {
   std::vector<std::vector<Eigen::Vector2d>> pieces;
   bool is_drawn = false;
-  double left = 0.0;  // of the dash or gap
+  double left = 0.0;  // what is left of the dash or gap
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d step = points[i] - points[i - 1];
     const double length = step.norm();
@@ -163,15 +163,15 @@ void draw(cv::Mat& canvas, const PictureSymbols& mark) {
 }
 
 void draw(cv::Mat& canvas, const PictureText& mark) {
-  constexpr double kCapitals = 0.70;      // height of capitals in sizes of a sans serif,
-  constexpr double kFaceCapitals = 21.0;  // and of OpenCV's letters, pixels
+  constexpr double kCapitals = 0.70;      // height of a sans serif's capitals, in sizes
+  constexpr double kFaceCapitals = 21.0;  // height of OpenCV's capitals, pixels
   constexpr double kPen = 0.085;          // width of a stroke in sizes
   constexpr int kFace = cv::FONT_HERSHEY_SIMPLEX;
   const double scale = kOversampling * kCapitals * mark.size / kFaceCapitals;
   const int pen = std::max(1, cvRound((mark.bold ? 1.5 : 1.0) * kPen * kOversampling * mark.size));
   int baseline = 0;
   const int width = cv::getTextSize(mark.text, kFace, scale, pen, &baseline).width;
-  const double share = 0.5 * static_cast<int>(mark.align);  // of the width left of the place named
+  const double share = 0.5 * static_cast<int>(mark.align);  // share of the width that lies left of the place named
   const cv::Point start(cvRound(kOversampling * mark.at.x() - share * width), cvRound(kOversampling * mark.at.y()));
   cv::putText(canvas, mark.text, start, kFace, scale, bgr(mark.colour), pen, cv::LINE_AA);
 }

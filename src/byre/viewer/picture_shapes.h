@@ -17,10 +17,10 @@ double stroke_width(double size);
 
 bool is_stroked(Symbol symbol);
 
-inline constexpr double kRim = 1.0;   // pixels around a symbol
-inline constexpr double kDash = 2.5;  // of a dashed line, in its widths, and the gap after it
-inline constexpr double kDashGap = 2.0;
-inline constexpr double kDotGap = 2.0;  // between the dots of a dotted one, which are a width across
+inline constexpr double kRim = 1.0;      // pixels around a symbol
+inline constexpr double kDash = 2.5;     // widths of a dashed line along a dash
+inline constexpr double kDashGap = 2.0;  // widths of a dashed line between dashes
+inline constexpr double kDotGap = 2.0;   // widths of a dotted line from dot to dot; a dot is a width across
 
 // Draws it at its own size: BGR.
 cv::Mat rasterised(const Picture& picture);

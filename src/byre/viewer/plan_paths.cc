@@ -121,7 +121,7 @@ LegendEntry verdict_entry(Verdict verdict) {
 }
 
 ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
-  constexpr double kFarthest = 6.0;  // of the usual distance
+  constexpr double kFarthest = 6.0;  // times the usual distance between keyframes
   constexpr double kWidth = 0.75;
   std::vector<SceneKeyframe> keyframes = map.keyframes;
   const auto order = [](const SceneKeyframe& keyframe) { return std::pair(keyframe.origin, keyframe.time); };
@@ -162,7 +162,7 @@ ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& vi
 
 ExplainedMarks camera_marks(const PlanCamera& camera, const PlanView& view) {
   constexpr double kReach = 70.0;    // pixels
-  constexpr double kSteepest = 0.2;  // of the direction's part along the ground, below which it has none
+  constexpr double kSteepest = 0.2;  // least part of the unit direction along the ground: with less, none is shown
   constexpr int kParts = 12;
   const Vector2d at = view.pixel_of(camera.map_from_camera.translation);
   const Eigen::Vector3d ahead =

@@ -21,7 +21,7 @@ class RunMailbox {
  public:
   struct Content {
     std::vector<ShownFrame> frames;
-    std::optional<FrameScene> newest;  // of the last of these frames; left is as recorded, not rectified
+    std::optional<FrameScene> newest;  // scene of the newest of these frames; left is as recorded, not rectified
     std::optional<MapScene> online;
     bool has_ended = false;  // no more frames will come
   };

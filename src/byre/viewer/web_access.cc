@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// Of "name:port", "[::1]:port" or a name alone.
+// The name in "name:port", "[::1]:port" or a name alone.
 std::string_view name_in(std::string_view host) {
   const std::size_t closing = host.find(']');
   if (closing != std::string_view::npos) return host.substr(0, closing + 1);

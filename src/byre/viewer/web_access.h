@@ -8,15 +8,15 @@ namespace byre {
 
 // Who may ask a web server for anything.
 struct WebAccess {
-  std::vector<std::string> host_names;  // that it may be called by, without the port; empty: any
-  std::string token;                    // that the query of each request must hold ("?token=..."); empty: none
+  std::vector<std::string> host_names;  // names that the server may be called by, without the port; empty: any
+  std::string token;                    // value that the query of each request must hold ("?token=..."); empty: none
 };
 
 // On loopback anybody on this machine may ask, by the names of loopback alone: a page from elsewhere whose name was
 // made to lead here (DNS rebinding) is refused. Opened to the network, whoever knows the token may.
 WebAccess access_to(const std::string& bound_address);
 
-// Of 127.0.0.0/8 or ::1.
+// Whether the address is in 127.0.0.0/8 or ::1.
 bool is_loopback(const std::string& address);
 
 // 128 bits from the system's source of randomness, as hexadecimal digits.

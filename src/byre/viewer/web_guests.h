@@ -14,11 +14,12 @@ namespace byre {
 // long.
 struct WebLimits {
   int known = 48;                            // connections at a time that are no strangers
-  int strangers = 16;                        // at a time
-  std::chrono::milliseconds patience{3000};  // for a stranger to have asked, from when it came
-  double arrivals_per_second = 300.0;  // more wait in the kernel, and are turned away there where they are too many
-  int arrivals_at_once = 64;           // after a while without any
-  int free_descriptors = 32;           // are left to the program, or half of all where it may have few
+  int strangers = 16;                        // strangers at a time
+  std::chrono::milliseconds patience{3000};  // time that a stranger has to ask, from when it came
+  // Connections let in. More wait in the kernel, and are turned away there where they are too many.
+  double arrivals_per_second = 300.0;
+  int arrivals_at_once = 64;  // connections let in at once after a while without any
+  int free_descriptors = 32;  // descriptors left to the program, or half of all where it may have few
 };
 
 // Who is connected to a web server, and who has to go when there are too many. Strangers make room for strangers: of
@@ -32,7 +33,7 @@ class WebGuests {
 
   struct Arrival {
     Id id = 0;
-    std::optional<Id> to_close;  // to make room; perhaps the one that has come
+    std::optional<Id> to_close;  // whoever makes room; perhaps the one that has come
   };
   Arrival arrive(const std::string& address);
 
@@ -48,7 +49,7 @@ class WebGuests {
   Id oldest_of_the_most() const;
 
   WebLimits limits_;                     // constant after construction
-  std::map<Id, std::string> strangers_;  // their addresses; ids grow, so the oldest comes first
+  std::map<Id, std::string> strangers_;  // addresses of strangers; ids grow, so the oldest comes first
   int known_ = 0;
   Id next_ = 1;
 };
@@ -71,7 +72,7 @@ class ArrivalRate {
 
   double per_second_;  // constant after construction
   double most_;        // constant after construction
-  double left_;        // at the time last_
+  double left_;        // connections in the bucket at the time last_
   Time last_;
 };
 

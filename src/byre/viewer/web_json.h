@@ -16,7 +16,7 @@ namespace byre {
 nlohmann::json pose_fields(const Pose& a_from_b);
 nlohmann::json vector_fields(const Eigen::Vector3d& vector);
 
-// Of a frame: its report, shortened to what the page shows.
+// Report of a frame, shortened to what the page shows.
 nlohmann::json frame_fields(const ShownFrame& frame);
 
 nlohmann::json camera_fields(const Rig& rig);

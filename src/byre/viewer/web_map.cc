@@ -109,7 +109,7 @@ class MapSite : public WebSite {
     return {map_.output->string(), csv_path.string()};
   }
 
-  ViewedMap map_;  // of it only the registration changes, when it is saved
+  ViewedMap map_;  // constant but for the registration, which changes when it is saved
 
   // Constant after construction.
   std::optional<DrivingPlane> driving_plane_;

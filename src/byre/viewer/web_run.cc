@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kImagesFolder = "/images/";
 constexpr std::size_t kFramesAMessage = 500;
-constexpr int kTimeBetweenCopies = 500;  // of the online map, in times that the last one took
+constexpr int kTimeBetweenCopies = 500;  // least time between copies of the online map, in times that the last one took
 
 std::optional<std::size_t> parse_count(std::string_view text) {
   std::size_t value = 0;
@@ -128,9 +128,9 @@ class RunSite : public WebSite {
   // Owned by the server's thread.
   std::vector<std::string> frames_;  // each as JSON
   std::string online_;
-  std::size_t map_count_ = 0;  // of online maps so far
+  std::size_t map_count_ = 0;  // online maps so far
   ImageStore images_;
-  std::size_t image_count_ = 0;  // so far, also those forgotten
+  std::size_t image_count_ = 0;  // images so far, also those forgotten
   bool has_ended_ = false;
 };
 

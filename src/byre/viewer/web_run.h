@@ -15,15 +15,15 @@ namespace byre {
 
 // What is known of a run before its first frame.
 struct RunDescription {
-  std::string name;                          // of the recording
-  Calibration calibration;                   // of its cameras
-  int frames = 0;                            // that it has
-  Timestamp last_time{};                     // of its last frame
-  std::string map_name;                      // of the offline map, empty without one
-  MapScene offline;                          // its points and keyframes
+  std::string name;                          // name of the recording
+  Calibration calibration;                   // calibration of the recording's cameras
+  int frames = 0;                            // frames in the recording
+  Timestamp last_time{};                     // time of the recording's last frame
+  std::string map_name;                      // name of the offline map, empty without one
+  MapScene offline;                          // points and keyframes of the offline map
   std::optional<Eigen::Vector3d> up_in_map;  // unit length, where the offline map tells
   std::optional<FloorPlan> plan;
-  std::optional<PlanRegistration> registration;  // of the offline map on a plan
+  std::optional<PlanRegistration> registration;  // registration of the offline map on a plan
 };
 
 struct RunViewerOptions {

@@ -36,9 +36,9 @@ constexpr auto kIdleTime = std::chrono::seconds(30);
 constexpr auto kPauseAfterFailure = std::chrono::milliseconds(200);
 constexpr std::uint32_t kMaxHeadBytes = 8 << 10;
 constexpr std::size_t kMaxRequestBytes = 1 << 20;
-constexpr int kMaxWaiting = 512;                   // connections that the kernel keeps until they are let in
-constexpr int kNiceness = 5;                       // of the server's thread: what else the program does comes first
-constexpr std::size_t kMaxMessageBytes = 1 << 10;  // from a page, which has nothing to say there
+constexpr int kMaxWaiting = 512;  // connections that the kernel keeps until they are let in
+constexpr int kNiceness = 5;      // niceness of the server's thread: what else the program does comes first
+constexpr std::size_t kMaxMessageBytes = 1 << 10;  // message from a page, which has nothing to say there
 constexpr auto kPathOfMessages = "/live";
 
 std::string_view view(beast::string_view text) {
@@ -153,7 +153,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
   websocket::stream<beast::tcp_stream> stream_;
   WebSite& site_;
   ListenerProgress progress_;
-  WebMessage message_;  // that is being sent
+  WebMessage message_;  // message that is being sent
   beast::flat_buffer received_;
   bool is_open_ = false;
   bool is_sending_ = false;
@@ -244,9 +244,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   const WebAccess& access_;
   Listeners& listeners_;
   beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;  // of one request
-  Response response_;                                              // that is being sent
-  bool is_known_ = false;                                          // has asked for what it may have
+  std::optional<http::request_parser<http::string_body>> parser_;  // parser of one request
+  Response response_;                                              // response that is being sent
+  bool is_known_ = false;                                          // whether it has asked for what it may have
 };
 
 tcp::endpoint endpoint_of(const WebServerOptions& options) {
@@ -361,7 +361,7 @@ class WebServer::Core {
   }
 
   void welcome(tcp::socket&& socket) {
-    if (socket.native_handle() >= end_of_descriptors_) return;  // which closes it
+    if (socket.native_handle() >= end_of_descriptors_) return;  // closes the socket
     error_code error;
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;  // it is gone again

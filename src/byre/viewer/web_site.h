@@ -38,7 +38,7 @@ struct ListenerProgress {
   std::size_t frames = 0;     // reports of frames
   std::size_t images = 0;     // the newest image that was sent, counted from 1
   std::size_t maps = 0;       // the newest map that was announced, counted from 1
-  bool end_is_known = false;  // that the run is over
+  bool end_is_known = false;  // whether the end of the run has been told
 };
 
 // What a web server serves. All functions are called from the server's thread, one at a time.
