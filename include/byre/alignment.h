@@ -17,7 +17,7 @@ struct Similarity {
   }
 };
 
-// With all lengths times the scale: of a pose, and of the covariance of a small motion.
+// A pose, or the covariance of a small motion, with all lengths times the scale.
 Pose scale_lengths(const Pose& pose, double scale);
 Matrix6 scale_lengths(const Matrix6& covariance, double scale);
 

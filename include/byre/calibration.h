@@ -46,7 +46,7 @@ struct DepthCamera {
   std::optional<Camera> camera{};      // empty where its images are registered: pixel by pixel those of the left camera
   Pose left_from_depth{};              // identity where its images are registered
   double units_per_metre = 5000.0;     // numbers in the depth images per metre
-  double sigma_at_one_metre = 0.0025;  // metres, of a depth; grows with its square, as in all that triangulate
+  double sigma_at_one_metre = 0.0025;  // standard error of a depth of one metre, metres; grows with the square of depth
   double baseline = 0.08;              // metres: depths are told as disparities of a pair this far apart
 
   bool operator==(const DepthCamera&) const = default;

@@ -30,7 +30,7 @@ struct Keypoint {
   Eigen::Vector2f pixel;          // full-resolution pixels; centre of its patch to sub-pixel precision
   float disparity = -1.0f;        // pixels, negative when not matched in the right image
   float disparity_sigma = -1.0f;  // pixels
-  float row_offset = 0.0f;        // where it was matched: the right row less the left one, zero if all is calibrated
+  float row_offset = 0.0f;        // pixels, right less left row of its match, zero if all is calibrated
   float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
   float response = 0.0f;          // corner strength, larger is better
   float row_time = 0.0f;          // when its row was read, from the middle row on: -0.5 to 0.5 times the readout time

@@ -18,7 +18,7 @@ namespace byre {
 // What was wrong with a frame as it was handed over. From no_image on it was dropped: nothing was made of it.
 enum class InputFault : std::uint8_t {
   none,
-  after_gap,       // a long time after the frame before: the pose may have been lost for it
+  after_gap,       // the frame came long after the one before: the pose may have been lost for it
   missing_right,   // the left image of a stereo pair came alone
   late_right,      // the right image was taken at another time, and left out
   missing_depth,   // the image of a depth camera came without depths
@@ -27,8 +27,8 @@ enum class InputFault : std::uint8_t {
   wrong_size,      // an image is not of the calibration's size, or its rows are shorter than their pixels
   wrong_format,    // a depth image where a picture is to be, or the other way round
   wrong_features,  // own features outside the image, of an octave that does not exist, or a disparity without its sigma
-  repeated_time,   // the time of the frame before
-  out_of_order,    // an earlier time than the frame before
+  repeated_time,   // the frame has the time of the one before
+  out_of_order,    // the frame has an earlier time than the one before
   after_finishing  // Slam::finish was called before
 };
 

@@ -54,7 +54,7 @@ struct Health {
   int suspended = 0;          // offline points left out for this mission: they are not where the map has them
   double inlier_share = 0.0;  // inliers as a share of all matches
   double spread = 0.0;        // how far the inliers spread where they do so least, as a share of the image's diagonal
-  std::optional<Agreement> agreement;   // where both kinds of points give a pose
+  std::optional<Agreement> agreement;   // empty unless both kinds of points give a pose
   double position_sigma = 0.0;          // metres, the root of the trace of the covariance
   double rotation_sigma = 0.0;          // radians
   double distance_since_offline = 0.0;  // metres travelled since offline points last held the pose

@@ -30,9 +30,9 @@ std::string_view to_string(CameraChoice choice);
 // Which frames of a recording to read. Both limits apply.
 struct FrameRange {
   std::optional<double> start_s{};  // seconds from the first frame of the recording
-  std::optional<double> end_s{};    // exclusive
+  std::optional<double> end_s{};    // seconds from the first frame of the recording, exclusive
   int first = 0;                    // frame index, inclusive
-  std::optional<int> last{};        // exclusive
+  std::optional<int> last{};        // frame index, exclusive
   int stride = 1;                   // every n-th frame within the limits is read
 };
 

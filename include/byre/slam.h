@@ -26,16 +26,16 @@ enum class Workers : std::uint8_t { live, repeatable, none };
 
 struct SlamOptions {
   Workers workers = Workers::live;
-  bool refine_calibration = true;      // from what is seen
-  bool map_online = true;              // in a mission: false tracks on the kept map alone
-  double max_pair_difference = 0.005;  // seconds between left and right image
+  bool refine_calibration = true;      // whether the calibration is refined by what is seen
+  bool map_online = true;              // whether a mission maps; false: it tracks on the kept map alone
+  double max_pair_difference = 0.005;  // seconds between left image and right or depth image
   double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
-  int max_features = 1000;             // a frame
+  int max_features = 1000;             // most features a frame
   // In how many threads OpenCV works on an image, in the whole process: tracking and mapping fill two cores as it is.
   // Zero leaves that as it is.
   int image_threads = 1;
-  std::string recording = "live";                     // what the frames are called in a kept map
-  std::string site;                                   // where it was made, noted in a kept map unless empty
+  std::string recording = "live";                     // name of the frames in a kept map
+  std::string site;                                   // place where the map was made, noted in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
 };
 
@@ -85,7 +85,7 @@ class Slam {
   std::optional<Pose> plan_from_body(const Pose& map_from_body) const;
 
   const Rig& rig() const;           // the ideal camera that features are given in
-  Calibration calibration() const;  // as it is known by now
+  Calibration calibration() const;  // calibration as it is known by now
   bool is_metric() const;           // whether lengths are metres
   // Keyframes and points of the map that is made, with those of a map that it goes on with; not of the map that a
   // mission is on.

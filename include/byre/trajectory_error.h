@@ -25,8 +25,8 @@ double quantile(const std::vector<double>& sorted, double share);
 // Interpolation is off by an eighth of acceleration times squared gap: 2 mm at 5 m/s^2 in truth of 20 Hz. The nearest
 // sample is off by speed times difference, and so only stands in for truth at what was meant to be the same instant.
 struct AssociationOptions {
-  Timestamp max_gap = std::chrono::milliseconds(60);        // between the truth samples that are interpolated
-  Timestamp max_difference = std::chrono::milliseconds(2);  // to the nearest sample where that is not possible
+  Timestamp max_gap = std::chrono::milliseconds(60);        // largest gap between truth samples that are interpolated
+  Timestamp max_difference = std::chrono::milliseconds(2);  // largest distance to a sample where none is interpolated
   Timestamp time_offset{0};  // added to the truth's time stamps, for truth with a known clock error
 };
 
