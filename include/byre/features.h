@@ -33,7 +33,7 @@ struct Keypoint {
   float row_offset = 0.0f;        // pixels, right less left row of its match, zero if all is calibrated
   float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
   float response = 0.0f;          // corner strength, larger is better
-  float row_time = 0.0f;          // when its row was read, from the middle row on: -0.5 to 0.5 times the readout time
+  float row_time = 0.0f;          // reading time of its row, from the middle row on: -0.5 to 0.5 times the readout time
   std::uint8_t octave = 0;
 
   bool has_disparity() const { return disparity > 0.0f; }
@@ -44,7 +44,7 @@ struct Keypoint {
 struct Patch {
   static constexpr int kSize = 16;                   // octave pixels
   std::array<std::uint8_t, kSize * kSize> pixels{};  // row-major
-  Eigen::Vector2f centre;                            // where the keypoint lies in it, octave pixels, near (8, 8)
+  Eigen::Vector2f centre;                            // place of the keypoint in the patch, octave pixels, near (8, 8)
 };
 
 // Keypoints, their descriptors and patches, one each; sorted by grid cell, so that an area is a few short ranges.

@@ -18,7 +18,7 @@ class CalibrationFields {
   // Throws InputError when the file cannot be read, is no YAML, or has no named fields.
   static CalibrationFields load(const std::filesystem::path& path);
 
-  std::string place(const std::string& field) const;  // as InputError names it
+  std::string place(const std::string& field) const;  // name of the field's place in an InputError
   bool has(const std::string& field) const;
 
   // Each throws InputError when the field is missing or of another kind.

@@ -12,7 +12,7 @@ namespace byre {
 
 // A camera model of COLMAP 3.8, whether byre can use it or not.
 struct ColmapCameraKind {
-  std::int32_t id = 0;  // in binary files
+  std::int32_t id = 0;  // number of the model in binary files
   std::string_view name;
   std::size_t parameters = 0;  // how many
 };

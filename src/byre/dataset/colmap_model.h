@@ -17,10 +17,10 @@ namespace byre {
 // top-left pixel, half a pixel more than byre's.
 
 struct ColmapCamera {
-  std::string model;  // such as "OPENCV"
+  std::string model;  // name of the model, such as "OPENCV"
   std::uint64_t width = 0;
   std::uint64_t height = 0;
-  std::vector<double> parameters;  // as many as the model has
+  std::vector<double> parameters;  // parameters in the model's order, as many as it has
 };
 
 struct ColmapKeypoint {

@@ -17,7 +17,7 @@ std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch
   const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
   const Eigen::Array2f low = reference_pixel - reach;
   const Eigen::Array2f high = reference_pixel + reach;
-  constexpr float kSlack = 0.01f;  // for the rounding of the walk along a row
+  constexpr float kSlack = 0.01f;  // allowance for the rounding of the walk along a row
   if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return std::nullopt;
   const Eigen::Vector2f along_row = reference_from_current.col(0);
   for (int y = 0; y < kTemplateSize; ++y) {

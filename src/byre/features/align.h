@@ -14,7 +14,7 @@ struct AlignOptions {
 };
 
 struct Alignment {
-  Eigen::Vector2f pixel;    // where the reference pixel lies in the current patch, octave pixels
+  Eigen::Vector2f pixel;    // place of the reference pixel in the current patch, octave pixels
   float sigma = 0.0f;       // octave pixels, the larger axis of its covariance
   float similarity = 0.0f;  // zero-mean normalised cross-correlation, at most 1
 };

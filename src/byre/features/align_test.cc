@@ -23,7 +23,7 @@ const Eigen::Vector2f kCentre = Eigen::Vector2f::Constant(Patch::kSize / 2);
 
 // How the current view differs from the reference view of the same corner.
 struct Change {
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // where the corner lies, from the current patch's centre
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // place of the corner from the current patch's centre
   Eigen::Matrix2d reference_from_current = Eigen::Matrix2d::Identity();
   double gain = 1.0;
   double offset = 0.0;  // grey values

@@ -17,7 +17,7 @@ struct Sample {
 
 // A plane's inverse depth is linear in the image (pixels of the left image as taken).
 struct Surface {
-  double inverse_depth = 0.0;  // at the keypoint, per metre
+  double inverse_depth = 0.0;  // inverse depth at the keypoint, per metre
   Eigen::Vector2d slope;       // change of the inverse depth per pixel
   double residual = 0.0;       // root mean square, per metre
 };
@@ -50,7 +50,7 @@ std::span<const Sample> nearest_surface(const std::vector<Sample>& samples, cons
 }
 
 Surface fit_surface(std::span<const Sample> samples) {
-  constexpr double kRidge = 1e-6;  // for samples that lie in one row
+  constexpr double kRidge = 1e-6;  // what keeps the system regular where all samples lie in one row
   Eigen::Matrix3d normal_matrix = kRidge * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const Sample& sample : samples) {

@@ -28,7 +28,7 @@ const std::uint8_t* at(const cv::Mat& image, const cv::Point2f& pixel) {
 }
 
 struct OrbFeatures {
-  std::vector<cv::KeyPoint> keypoints;  // on whole pixels: only one octave
+  std::vector<cv::KeyPoint> keypoints;  // keypoints on whole pixels: only one octave
   cv::Mat descriptors;
 
   Descriptor descriptor(std::size_t i) const {

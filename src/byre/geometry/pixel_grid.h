@@ -54,7 +54,7 @@ class PixelGrid {
   int rows_ = 0;
   int last_cell_width_ = 0;   // pixels
   int last_cell_height_ = 0;  // pixels
-  std::vector<Value> nodes_;  // by rows
+  std::vector<Value> nodes_;  // values of the nodes, row by row
 };
 
 }  // namespace byre

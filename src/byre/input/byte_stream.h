@@ -33,7 +33,7 @@ class ByteWriter {
     write_bytes(std::as_bytes(values));
   }
   void write_bytes(std::span<const std::byte> bytes);
-  void write_text(std::string_view text);  // its length (u32), then its bytes
+  void write_text(std::string_view text);  // length of the text (u32), then its bytes
 
   std::size_t size() const { return bytes_.size(); }
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -62,7 +62,7 @@ class ByteReader {
     if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   }
   std::span<const std::byte> take(std::size_t size);
-  std::string read_text();  // as ByteWriter::write_text wrote it
+  std::string read_text();  // text as ByteWriter::write_text wrote it
 
   // A number (u32) of things that take at least bytes_each each: refuses more than the remaining bytes can hold, so
   // that nothing is reserved that the file does not justify. Precondition: bytes_each > 0.

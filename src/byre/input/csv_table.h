@@ -12,7 +12,7 @@ namespace byre {
 // Cells hold no commas themselves.
 struct CsvTable {
   struct Row {
-    int line = 0;  // as an editor counts them, from 1
+    int line = 0;  // number of the line as an editor counts, from 1
     std::vector<std::string> cells;
   };
 

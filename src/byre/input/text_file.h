@@ -12,8 +12,8 @@ namespace byre {
 // The lines and values of the text files that trajectories, time stamps and calibrations are kept in.
 
 struct TextLine {
-  int number = 0;    // as an editor counts them, from 1
-  std::string text;  // without white space at its ends
+  int number = 0;    // number as an editor counts lines, from 1
+  std::string text;  // text of the line without white space at its ends
 };
 
 // The lines that say something: without blank ones and comments ("#..."). Line ends may be LF or CRLF.

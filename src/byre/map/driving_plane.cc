@@ -12,9 +12,9 @@
 namespace byre {
 namespace {
 
-constexpr double kRigUpSigma = 0.05;          // radians, of a camera that is mounted to look level
-constexpr double kFloorUnevenness = 0.002;    // least, of the path's length
-constexpr double kIndependentPositions = 50;  // at most: neighbours on a path share their errors
+constexpr double kRigUpSigma = 0.05;          // radians, tilt of a camera that is mounted to look level
+constexpr double kFloorUnevenness = 0.002;    // least unevenness, as a share of the path's length
+constexpr double kIndependentPositions = 50;  // most that count: neighbours on a path share their errors
 constexpr double kLeastCommonUp = 0.5;        // length of the mean of unit vectors
 
 Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {

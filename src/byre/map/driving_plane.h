@@ -11,7 +11,7 @@ namespace byre {
 
 // The floor under a robot, as far as its path and the way its camera is held tell it. Lengths in the map's unit.
 struct DrivingPlane {
-  std::vector<Eigen::Vector3d> path_in_map;                // what it was fitted to
+  std::vector<Eigen::Vector3d> path_in_map;                // positions that the plane was fitted to
   Eigen::Vector3d point_in_map = Eigen::Vector3d::Zero();  // mean of the path
   Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();    // unit length
   // Inverse of the covariance of up_in_map, in the map's axes, 1/square radians: how far its tip may be off in a

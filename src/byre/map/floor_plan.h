@@ -27,8 +27,8 @@ struct PlanRegistrationOptions {
 
 // How a correspondence fits.
 struct PlanResidual {
-  Eigen::Vector2d error_in_plan = Eigen::Vector2d::Zero();  // where the map has it, less where it was picked; metres
-  bool is_outlier = false;                                  // took no part
+  Eigen::Vector2d error_in_plan = Eigen::Vector2d::Zero();  // place by the map less the place that was picked, metres
+  bool is_outlier = false;                                  // whether it took no part
 };
 
 // What makes a registration doubtful though it was found.
@@ -43,7 +43,7 @@ enum class PlanDoubt : std::uint8_t {
 std::string_view to_string(PlanDoubt doubt);  // a sentence with its remedy
 
 struct PlanFit {
-  PlanRegistration registration;        // its plan has no name yet
+  PlanRegistration registration;        // registration on a plan that has no name yet
   std::vector<PlanResidual> residuals;  // one for each correspondence
   double rms = 0.0;                     // metres, of the errors' lengths without outliers
   std::vector<PlanDoubt> doubts;

@@ -90,7 +90,7 @@ class Map {
 
   Origin origin() const { return origin_; }
 
-  int add_rig(const Rig& rig);  // its index; an equal rig is not stored twice
+  int add_rig(const Rig& rig);  // index of the rig; an equal one is not stored twice
   const std::vector<Rig>& rigs() const { return rigs_; }
 
   // Adds the keyframe with the observations its sightings name. Points that are gone, and second sightings of the same
@@ -159,7 +159,7 @@ class Map {
   struct KeyframeSlot {
     std::optional<Keyframe> keyframe;
     std::optional<RemovedKeyframe> removed;
-    std::vector<Covisible> covisible;  // by id, ascending
+    std::vector<Covisible> covisible;  // ascending by keyframe
     std::vector<KeyframeId> children;  // ascending
   };
   struct PointSlot {
@@ -188,7 +188,7 @@ class Map {
   std::vector<Rig> rigs_;
   std::vector<KeyframeSlot> keyframes_;
   std::vector<PointSlot> points_;
-  std::vector<std::vector<Observation>> offline_observations_;  // by an online map's keyframes, per offline point
+  std::vector<std::vector<Observation>> offline_observations_;  // observations by online keyframes, per offline point
   std::map<Observation, PointId> points_of_foreign_views_;
   int keyframe_count_ = 0;
   int point_count_ = 0;

@@ -136,7 +136,7 @@ struct SectionPlace {
   std::size_t size = 0;
   std::uint64_t checksum = 0;
 };
-using SectionTable = std::vector<SectionPlace>;  // as many as the file's format has
+using SectionTable = std::vector<SectionPlace>;  // all sections of the file's format
 
 std::uint32_t read_format(ByteReader& header, const std::string& name) {
   const auto format = header.read<std::uint32_t>();

@@ -17,7 +17,7 @@ namespace byre {
 
 // A recording that keyframes of a map come from.
 struct SourceRecording {
-  std::string name;         // as the user called it
+  std::string name;         // name that the user gave it
   Calibration calibration;  // cameras that took its images, as given, before rectification
   Timestamp first_time{};   // time of the first frame, keyframe or not
   Timestamp last_time{};    // time of the last frame, keyframe or not
@@ -53,7 +53,7 @@ struct StoredMap {
   PoseSource pose_source = PoseSource::slam;
   std::uint64_t vocabulary_checksum = 0;     // checksum of the vocabulary that the words are of; 0 without words
   std::map<std::string, std::string> notes;  // free text by key, such as site and software
-  std::optional<PlanRegistration> plan;      // where it lies on a floor plan, once somebody has found out
+  std::optional<PlanRegistration> plan;      // place on a floor plan, once somebody has found it
 };
 
 // A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes and sightings of

@@ -202,7 +202,7 @@ struct BrokenValue {
   const char* name;
   const char* section;
   const char* refusal;
-  std::size_t place;  // in the section
+  std::size_t place;  // byte in the section
   MapBytes value;
 };
 

@@ -54,7 +54,7 @@ class SightingReader {
   }
 
   ByteReader& reader_;
-  std::vector<std::uint32_t> last_observer_;  // by point
+  std::vector<std::uint32_t> last_observer_;  // number of the last keyframe that observes each point
 };
 
 bool observes(const std::vector<Keyframe>& keyframes, const Observation& observation, std::uint32_t point) {

@@ -89,7 +89,7 @@ Map offline_copy(const Map& online) {
   const Renumbering<KeyframeId> keyframes(online.keyframe_ids());
   const Renumbering<PointId> points(online.point_ids());
   MapParts parts{online.rigs(), {}, {}};
-  std::vector<std::vector<int>> feature_numbers;  // by number of keyframe: of each feature, where it comes now
+  std::vector<std::vector<int>> feature_numbers;  // new places of the features of each keyframe, by number
   for (const KeyframeId id : keyframes.ids()) {
     Keyframe keyframe = *online.find_keyframe(id);
     const Rig& rig = online.rigs()[static_cast<std::size_t>(keyframe.rig)];

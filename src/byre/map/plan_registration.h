@@ -11,7 +11,7 @@ using Matrix7 = Eigen::Matrix<double, 7, 7>;
 // Where a map lies on a floor plan. The plan's frame has x and y as the plan has them, in metres, and z up: the height
 // above the floor that was driven on.
 struct PlanRegistration {
-  std::string plan;          // its name
+  std::string plan;          // name of the plan
   Similarity plan_from_map;  // scale: metres per unit of the map, 1 for a metric one
   // Covariance of a small motion as seen in the map's frame, translation (metres) and rotation vector (radians) of
   // delta in plan_from_map * exp_pose(delta), and of the logarithm of the scale; zero for a scale that was not looked

@@ -68,7 +68,7 @@ struct BundleResult {
   // Covariance of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones.
   // Empty when none was asked for, the pose did not move, or its observations do not determine it.
   std::optional<Matrix6> pose_covariance;
-  CalibrationVector calibration_change = CalibrationVector::Zero();  // in the parameters' sigmas
+  CalibrationVector calibration_change = CalibrationVector::Zero();  // change in the parameters' sigmas
   int iterations = 0;
   bool usable = false;  // false when the solver failed: then poses and points are as given
 };

@@ -13,7 +13,7 @@ namespace byre {
 namespace {
 
 using Vector9 = Eigen::Matrix<double, 9, 1>;
-using Jacobian9 = Eigen::Matrix<double, 3, 9>;  // by rotation, translation, point
+using Jacobian9 = Eigen::Matrix<double, 3, 9>;  // columns: rotation, translation, point
 
 struct Parameters {
   Eigen::Quaterniond rotation;

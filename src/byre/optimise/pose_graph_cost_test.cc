@@ -14,7 +14,7 @@ namespace {
 
 using Vector14 = Eigen::Matrix<double, 14, 1>;
 using Jacobian14 =
-    Eigen::Matrix<double, 7, 14>;  // by the first node's rotation, position, log scale, then the second's
+    Eigen::Matrix<double, 7, 14>;  // columns: rotation, position and log scale of the first node, then of the second
 
 // A node as the cost takes it.
 struct Node {

@@ -11,7 +11,7 @@ namespace byre {
 // A map point and where the frame sees it.
 struct PoseObservation {
   Eigen::Vector3d point_in_world;
-  Eigen::Matrix3d point_covariance = Eigen::Matrix3d::Zero();  // in world, square metres
+  Eigen::Matrix3d point_covariance = Eigen::Matrix3d::Zero();  // covariance of the point in world, square metres
   StereoPixel measured;                                        // u, v, disparity; pixels
   double pixel_sigma = 1.0;                                    // pixels, of u and of v
   double disparity_sigma = -1.0;                               // pixels; negative: no disparity

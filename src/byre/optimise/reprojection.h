@@ -12,7 +12,7 @@ inline constexpr double kNearestDepth = 0.01;  // metres
 
 struct InverseDepth {
   double value;
-  double derivative;  // by the depth
+  double derivative;  // slope by the depth
 };
 
 inline InverseDepth inverse_depth(double depth) {

@@ -19,7 +19,7 @@ struct PlaceMatch {
 // Keyframes that see the same place: one of them looks most like the query, the others are covisible with it.
 struct PlaceCandidate {
   KeyframeId keyframe;            // the most similar of the group
-  float score = 0.0f;             // its own
+  float score = 0.0f;             // similarity of that keyframe alone
   float group_score = 0.0f;       // sum over the group: places seen by several keyframes come first
   std::vector<KeyframeId> group;  // most similar first, keyframe itself included
 };

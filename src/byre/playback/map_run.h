@@ -22,11 +22,11 @@ struct MappedFrame {
 };
 
 struct MapRun {
-  std::vector<MappedFrame> frames;                // one for each frame of the recording, fewer when the run was stopped
-  Trajectory causal;                              // poses as published when their frames came
-  Trajectory final;                               // as recomputed after the last frame
-  Trajectory odometry;                            // the smooth poses as published, in a frame of their own
-  Map map{Origin::offline};                       // as it is kept; of the keyframes made, others were found redundant
+  std::vector<MappedFrame> frames;  // one for each frame of the recording, fewer when the run was stopped
+  Trajectory causal;                // poses as published when their frames came
+  Trajectory final;                 // poses as recomputed after the last frame
+  Trajectory odometry;              // the smooth poses as published, in a frame of their own
+  Map map{Origin::offline};         // map as it is kept; of the keyframes made, others were found redundant
   std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
   std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole

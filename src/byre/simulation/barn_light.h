@@ -24,7 +24,7 @@ struct Lamp {
 struct BarnLight {
   std::vector<WindowLight> windows{};
   std::vector<Lamp> lamps{};
-  float ambient = 0.0f;  // from everywhere, less in corners
+  float ambient = 0.0f;  // radiance from everywhere, less in corners
 };
 
 // What a white surface at each vertex of a mesh sends out, shadows and corners included. still: what shadows fall from.

@@ -26,7 +26,7 @@ enum class BarnPicture : std::uint8_t {
 inline constexpr int kBarnPictures = 12;
 inline constexpr int kSignsPerSide = 4;
 
-using BarnPictures = std::vector<MipTexture>;  // by BarnPicture
+using BarnPictures = std::vector<MipTexture>;  // one for each BarnPicture, in its order
 
 // The same seed gives the same pictures, whatever the number of threads (0: as many as the machine has).
 BarnPictures draw_barn_pictures(std::uint64_t seed, int threads);

@@ -19,19 +19,19 @@ struct CowshedOptions {
   std::uint64_t seed = 1;          // draws the building
   int mission = 1;                 // number from 1, draws what differs from visit to visit
   double change = 0.25;            // share of the movable things that a later mission finds elsewhere
-  std::optional<BarnTime> time{};  // unless given: dusk in even missions
-  std::optional<int> cows{};       // unless given: 3 in the first mission, 8 in later ones
-  std::optional<BarnGate> gate{};  // unless given: closed in the first mission, open in later ones
-  double dust = 0.0;               // in the air: 0 none, 1 so much that half of the light is lost in 14 m
+  std::optional<BarnTime> time{};  // empty: day, in even missions dusk
+  std::optional<int> cows{};       // empty: 3 in the first mission, 8 in later ones
+  std::optional<BarnGate> gate{};  // empty: closed in the first mission, open in later ones
+  double dust = 0.0;               // dust in the air: 0 none, 1 so much that half of the light is lost in 14 m
 };
 
 struct CowshedSize {
   float length = 30.0f;
   float half_width = 8.5f;
-  float alley_half_width = 2.5f;  // to the fence
+  float alley_half_width = 2.5f;  // from the middle of the alley to the fence
   float eaves = 3.4f;
   float ridge = 6.2f;
-  float bay = 5.0f;  // between columns
+  float bay = 5.0f;  // distance between columns
   float gate_half_width = 2.0f;
   float gate_height = 3.05f;
   float store_length = 10.0f;  // feed store behind the eastern gable

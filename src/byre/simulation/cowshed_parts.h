@@ -21,8 +21,8 @@ void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed);  // floor, wal
 void add_gates(Cowshed& barn, BarnGate eastern);                   // gates in the gables
 void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed);  // store of feed behind the eastern gable
 void add_frame(Cowshed& barn, std::uint64_t seed);                 // columns, trusses, purlins
-void add_fences(Cowshed& barn, std::uint64_t seed);                // between the alley and the cows
-void add_cubicles(Cowshed& barn, std::uint64_t seed);              // where the cows lie
+void add_fences(Cowshed& barn, std::uint64_t seed);                // fences between the alley and the cows
+void add_cubicles(Cowshed& barn, std::uint64_t seed);              // cubicles where the cows lie
 void add_fittings(Cowshed& barn, std::uint64_t seed);              // signs, pipes, troughs, barrels
 // A tube along x that hangs from a ceiling and shines at dusk.
 void add_lamp(Cowshed& barn, const Eigen::Vector3f& middle, float ceiling, BarnTime time);

@@ -18,7 +18,7 @@ struct CowshedRecordingOptions {
   double duration_s = 40.0;
   double frame_rate_hz = 20.0;
   int image_divisor = 1;  // 1: 752 x 480 pixels
-  double dirt = 0.0;      // on the lenses: 0 none, 1 a dozen of soft spots each
+  double dirt = 0.0;      // dirt on the lenses: 0 none, 1 a dozen of soft spots each
   CameraImperfection camera;
   int threads = 0;  // 0: as many as the machine has; changes no byte
 };

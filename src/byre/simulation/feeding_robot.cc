@@ -11,7 +11,7 @@ namespace byre {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kStep_s = 0.005;          // between samples of the way travelled
+constexpr double kStep_s = 0.005;          // time between samples of the way travelled
 constexpr double kOverlap = 1.0;           // metres driven beyond a whole lap
 constexpr double kShortestStraight = 4.0;  // metres
 constexpr int kTurnSteps = 2000;
@@ -93,7 +93,7 @@ FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(opt
 
 // Metres travelled every kStep_s seconds on a lap whose straights have a length.
 std::vector<double> FeedingCourse::drive(double straight) const {
-  constexpr double kStart_s = 2.5;  // to reach the speed wanted
+  constexpr double kStart_s = 2.5;  // time to reach the speed wanted
   const double half_lap = straight + turn_length_;
   const double first = 2.0 * half_lap * options_.start;
   const auto steps = static_cast<int>(std::ceil(options_.duration_s / kStep_s));

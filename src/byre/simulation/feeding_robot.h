@@ -25,7 +25,7 @@ struct FeedingCourseOptions {
   double turn_speed = 0.5;      // metres per second
   double duration_s = 40.0;     // one lap and a metre more, or several
   double shift_y = 0.0;         // metres by which all of it lies to the left
-  double start = 0.0;           // where on the lap to begin, 0 to 1
+  double start = 0.0;           // place on the lap to begin at, 0 to 1
   std::uint64_t seed = 1;       // draws the vibration
 };
 

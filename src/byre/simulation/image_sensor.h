@@ -30,7 +30,7 @@ float mean_grey(const Image& image);
 
 struct ImageSensorOptions {
   float vignetting = 0.35f;  // share of the light lost in the corners
-  float dirt = 0.0f;         // on the lens: 0 none, 1 a dozen of soft spots
+  float dirt = 0.0f;         // dirt on the lens: 0 none, 1 a dozen of soft spots
   float noise = 1.0f;        // times that of a usual sensor
   float gain = 1.0f;         // times what the exposure asks for
   float offset = 0.0f;       // grey values without light

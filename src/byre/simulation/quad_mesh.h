@@ -17,7 +17,7 @@ struct SurfaceLook {
   BarnPicture picture = BarnPicture::concrete;
   float brightness = 1.0f;                     // times the picture's reflectance
   float picture_width = 2.0f;                  // metres that the picture covers before it repeats
-  Eigen::Vector2f picture_offset{0.0f, 0.0f};  // in pictures
+  Eigen::Vector2f picture_offset{0.0f, 0.0f};  // offset in the picture, in pictures
   float glow = 0.0f;                           // radiance; a surface that glows shows neither picture nor light
 };
 

@@ -11,7 +11,7 @@ namespace byre {
 // Finds where rays meet a mesh, with Embree (Wald 2014). The same rays give the same hits, whichever thread asks.
 class RayScene {
  public:
-  enum class Build : std::uint8_t { careful, quick };  // for many frames; for one
+  enum class Build : std::uint8_t { careful, quick };  // careful for many frames, quick for one
 
   // id: what hits on this scene have as geomID. The mesh is copied.
   RayScene(const QuadMesh& mesh, unsigned id, Build build = Build::careful) : RayScene(mesh, mesh, id, build) {}

@@ -34,7 +34,7 @@ struct RenderedCameras {
 
 // Where a ray meets a surface of the room.
 struct SurfaceHit {
-  float distance = 0.0f;  // in lengths of the ray's direction
+  float distance = 0.0f;  // distance in lengths of the ray's direction
   int box = 0;            // 0: the room itself
   int axis = 0;           // the world's axis across the surface
   bool is_upper = false;  // the surface on the positive side of its box

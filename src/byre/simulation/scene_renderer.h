@@ -47,7 +47,7 @@ class SceneRenderer {
   std::vector<float> depths(const SceneView& view, const LitMesh& moving) const;
 
  private:
-  static constexpr int kRays = 8;  // in a packet
+  static constexpr int kRays = 8;  // rays in a packet
 
   struct PlacedView;
   struct Target;

@@ -18,7 +18,7 @@ using Random = std::mt19937_64;
 
 struct Landmark {
   Eigen::Vector3d position_in_world;
-  Eigen::Vector3d direction_in_world;  // in its surface: what the angle of its keypoints follows
+  Eigen::Vector3d direction_in_world;  // direction in its surface that the angle of its keypoints follows
   double size = 0.0;                   // metres across the patch that describes it
   float response = 0.0f;
   Descriptor descriptor{};

@@ -19,7 +19,7 @@ class TilingCanvas {
   void fill(const std::function<float(int column, int row, float before)>& value);
 
   struct Stroke {
-    float x = 0.0f, y = 0.0f;  // where it begins
+    float x = 0.0f, y = 0.0f;  // place where it begins
     float direction = 0.0f;    // radians
     float length = 0.0f;
     float width = 1.0f;

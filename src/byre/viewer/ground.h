@@ -15,7 +15,7 @@ struct Ground {
   Similarity ground_from_map;
   bool is_metric = true;
   bool is_level = false;               // a plane was driven on, so that heights above it mean something
-  std::optional<FloorPlan> plan;       // its frame is the ground's
+  std::optional<FloorPlan> plan;       // plan whose frame is the ground's
   std::shared_ptr<const Image> image;  // plan's image; null without a plan
 };
 

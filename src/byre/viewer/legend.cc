@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kLegendTextSize = 13.0;  // pixels, as all lengths here
-constexpr double kCharacter = 7.6;        // at most, on average, of that text
+constexpr double kCharacter = 7.6;        // most that a character of that size is wide on average
 constexpr double kLegendMargin = 16.0;
 constexpr double kSample = 24.0;
 constexpr double kSampleGap = 8.0;

@@ -56,7 +56,7 @@ struct PictureSymbols {
 enum class Align : std::uint8_t { left, centre, right };
 
 struct PictureText {
-  Eigen::Vector2d at;  // on the baseline
+  Eigen::Vector2d at;  // place on the baseline
   std::string text;    // ASCII
   double size = 13.0;  // height of capitals and of what hangs below the line together
   Colour colour;

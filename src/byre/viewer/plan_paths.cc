@@ -169,7 +169,7 @@ ExplainedMarks camera_marks(const PlanCamera& camera, const PlanView& view) {
       view.ground_from_map.target_from_source.rotation * (camera.map_from_camera.rotation * Eigen::Vector3d::UnitZ());
   ExplainedMarks all;
   if (ahead.head<2>().norm() > kSteepest) {
-    const double heading = std::atan2(-ahead.y(), ahead.x());  // in the picture, whose y points down
+    const double heading = std::atan2(-ahead.y(), ahead.x());  // heading in the picture, whose y points down
     std::vector<Vector2d> wedge = {at};
     for (int i = 0; i <= kParts; ++i) {
       const double angle = heading + camera.field_of_view * (static_cast<double>(i) / kParts - 0.5);

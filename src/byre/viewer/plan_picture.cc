@@ -221,9 +221,9 @@ PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig) {
 }
 
 AlignedBox2d shown_ground(const PlanScene& scene, const HeightBand& heights) {
-  constexpr double kMargin = 0.04;     // shares of the larger side
-  constexpr double kSiteMargin = 0.2;  // where a part of a large plan is shown
-  constexpr double kSite = 4.0;        // times the map's length
+  constexpr double kMargin = 0.04;     // margin as a share of the larger side
+  constexpr double kSiteMargin = 0.2;  // margin around a part of a large plan, as a share of the larger side
+  constexpr double kSite = 4.0;        // length of a large plan, in lengths of the map
   const AlignedBox2d of_map = box_of_map(scene, heights);
   if (!scene.ground.plan) return with_margin(of_map, kMargin);
   const AlignedBox2d of_plan = box_of_plan(*scene.ground.plan);

@@ -14,7 +14,7 @@ namespace byre {
 
 // A way through the building.
 struct PlanPath {
-  std::string name;  // for the legend
+  std::string name;  // name in the legend
   Trajectory map_from_body;
   std::vector<Verdict> verdicts;  // one for each pose, shown by colour and stroke; or none: one colour for the path
 };

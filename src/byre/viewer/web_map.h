@@ -16,7 +16,7 @@ struct ViewedMap {
   std::string name;
   StoredMap stored;
   std::optional<FloorPlan> plan;
-  std::optional<std::filesystem::path> output;     // where its registered copy goes; empty: it cannot be saved
+  std::optional<std::filesystem::path> output;     // file for the registered copy; empty: it cannot be saved
   double pick_sigma = PlanCorrespondence{}.sigma;  // metres
   PlanRegistrationOptions registration;
 };

@@ -30,7 +30,7 @@ struct RunViewerOptions {
   WebServerOptions server;
   std::size_t max_image_bytes = 200'000'000;     // kept to scrub through; older images are thinned out
   int jpeg_quality = 80;                         // percent
-  std::chrono::milliseconds map_interval{1000};  // between copies of the online map, or more, see RunViewer
+  std::chrono::milliseconds map_interval{1000};  // least time between copies of the online map, see RunViewer
 };
 
 // Shows a run in a browser while it goes on, and afterwards as long as it lives. The run's thread only copies: the left
@@ -60,7 +60,7 @@ class RunViewer {
   WebServer server_;
 
   // Owned by the calling thread.
-  std::chrono::steady_clock::time_point next_map_{};  // when a copy of the online map is due
+  std::chrono::steady_clock::time_point next_map_{};  // time when a copy of the online map is due
 };
 
 }  // namespace byre

@@ -12,7 +12,7 @@ struct WebRequest {
   enum class Method : std::uint8_t { get, post };
 
   Method method = Method::get;
-  std::string path;  // without the query
+  std::string path;  // path without the query
   std::string body;
 };
 
