@@ -23,7 +23,10 @@ FLOORS = [
     {"session"},
     {"system"},
     {"playback"},
-    {"viewer"},
+    {"archive"},
+    {"assessment", "viewer"},
+    {"benchmark"},
+    {"demo"},
     {"cli"},
 ]
 # Headers of include/byre, by the room that each belongs to.
@@ -47,14 +50,15 @@ KEPT_IN = {
         "session", "simulation", "playback", "viewer", "cli"},
     r"mutex|shared_mutex": {"session", "viewer"},
     r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
-                            "viewer", "cli"},
+                            "archive", "viewer", "benchmark", "demo", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
-    r"yaml-cpp/.*|nlohmann/.*": {"dataset", "viewer", "cli"},
+    r"yaml-cpp/.*": {"dataset", "benchmark"},
+    r"nlohmann/.*": {"assessment", "viewer", "benchmark", "cli"},
 }
 
 

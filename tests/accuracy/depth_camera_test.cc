@@ -2,6 +2,8 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
+
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -15,7 +17,7 @@ TEST(DepthCameraInFreiburg1, FollowsEveryFrameInMetresThoughFewHaveDepth) {
   const MappedRecording mapped = map_recording(*folder, {}, make_paced_executor(4), {.camera = CameraChoice::rgbd});
   EXPECT_LE(frames_without_pose(mapped), 5);
   // Of 52 mm of movement about its middle while the camera turns; its shutter rolls.
-  EXPECT_LE(position_error(mapped.final, truth_of(*folder)), 0.032);
+  EXPECT_LE(position_error(mapped.final, load_truth(*folder)), 0.032);
 }
 
 }  // namespace

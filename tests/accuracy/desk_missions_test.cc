@@ -4,6 +4,7 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/map/map_file.h"
@@ -65,7 +66,7 @@ DeskMap make_desk_map() {
   follow(session, *recording, extractor);
   session.finish_map({}, {[] { return false; }, [](const char*) {}});
   const auto error = absolute_trajectory_error(
-      associate(session.final_trajectory(), truth_of(*find_recording(kDesk)), {}), Scale::free);
+      associate(session.final_trajectory(), load_truth(*find_recording(kDesk)), {}), Scale::free);
   Similarity truth_from_map = error.value().truth_from_estimate;
   StoredMap stored;
   stored.map = scaled_copy(offline_copy(session.map().online()), truth_from_map.scale);
@@ -117,7 +118,7 @@ class DeskMissions : public testing::Test {
   }
 
   static const Trajectory& truth() {
-    static const Trajectory read = truth_of(*find_recording(kTurns));
+    static const Trajectory read = load_truth(*find_recording(kTurns));
     return read;
   }
   static const DeskMap& desk() {

@@ -2,6 +2,8 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -25,7 +27,7 @@ class EurocMh01 : public testing::Test {
  protected:
   void SetUp() override {
     if (!find_recording(kRecordingName)) GTEST_SKIP() << missing(kRecordingName);
-    truth_ = truth_of(*find_recording(kRecordingName));
+    truth_ = load_truth(*find_recording(kRecordingName));
   }
 
   // The run that most tests judge, made once.

@@ -2,6 +2,8 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -34,7 +36,7 @@ TEST_F(Kitti00, EveryFrameHasAPose) {
 // although the images show the car accelerating from 0.68 m a frame, and it jumps at frames 39 to 45.
 TEST_F(Kitti00, FinalTrajectoryIsTrueToCentimetresWhereTheTruthIsSmooth) {
   ASSERT_EQ(frames_without_pose(inline_run()), 0);
-  EXPECT_LE(position_error(part(inline_run().final, 17, 38), truth_of(*find_recording(kSequence))), 0.03);
+  EXPECT_LE(position_error(part(inline_run().final, 17, 38), load_truth(*find_recording(kSequence))), 0.03);
 }
 
 }  // namespace

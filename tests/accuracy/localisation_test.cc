@@ -5,6 +5,7 @@
 
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_fit.h"
+#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/map/map_file.h"
@@ -51,7 +52,7 @@ struct PosedFrames {
 PosedFrames posed_frames(const char* name, const FrameRange& range) {
   limit_image_threads(1);
   const auto recording = open_recording(*find_recording(name), range);
-  const Trajectory truth = truth_of(*find_recording(name));
+  const Trajectory truth = load_truth(*find_recording(name));
   Extractor extractor(recording->calibration(), {});
   PosedFrames result{extractor.rig(), {}};
   for (int i = 0; i < recording->size(); ++i) {
@@ -150,7 +151,7 @@ TEST(LocalisationInMh01, FindsTheSecondHalfOfAFlightInTheFirst) {
   EXPECT_GE(static_cast<double>(found.size()), 0.99 * static_cast<double>(wanted.frames.size()));
 
   // The map is aligned to the truth by its own keyframes, once, and not by what was found in it.
-  const Trajectory truth = truth_of(*find_recording(kHall));
+  const Trajectory truth = load_truth(*find_recording(kHall));
   Trajectory keyframes;
   for (const KeyframeId id : place.stored.map.keyframe_ids()) {
     const Keyframe& keyframe = *place.stored.map.find_keyframe(id);

@@ -6,6 +6,7 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
 #include "byre/slam/finishing.h"
@@ -62,7 +63,7 @@ int run(const char* map_file, const char* truth_file, int seeds) {
   const Map map = online_copy(stored.map);
   const PlaceIndex places = index_of(map, vocabulary);
   const std::filesystem::path path(truth_file);
-  const Trajectory truth = std::filesystem::is_directory(path) ? truth_of(path) : read_trajectory(path);
+  const Trajectory truth = load_truth(path);
   int wrong = 0;
   for (int seed = 0; seed <= seeds; ++seed) {
     wrong += count_false_loops(map, places, truth, static_cast<std::uint64_t>(seed));

@@ -2,7 +2,6 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 #include "byre/trajectory_file.h"
 
@@ -48,13 +47,6 @@ MappedRecording map_recording(const fs::path& folder, const FrameRange& range, s
 int frames_without_pose(const MappedRecording& mapped) {
   const Coverage coverage = coverage_of_frames(mapped.final, mapped.frame_times);
   return coverage.expected - coverage.with_pose;
-}
-
-Trajectory truth_of(const fs::path& folder) {
-  const std::optional<fs::path> file = find_ground_truth(folder);
-  if (!file) throw InputError(folder.string(), "is a recording without ground truth");
-  if (guess_trajectory_format(*file) == TrajectoryFormat::kitti) return read_kitti_poses(*file, folder / "times.txt");
-  return read_trajectory(*file);
 }
 
 double position_error(const Trajectory& estimate, const Trajectory& truth, const AssociationOptions& options) {

@@ -27,9 +27,6 @@ MappedRecording map_recording(const std::filesystem::path& folder, const FrameRa
 // Frames that have no final pose.
 int frames_without_pose(const MappedRecording& mapped);
 
-// The ground truth of a recording. Throws InputError when there is none.
-Trajectory truth_of(const std::filesystem::path& folder);
-
 // Root mean square of the position error after rigid alignment, metres; infinite when the estimate cannot be aligned.
 double position_error(const Trajectory& estimate, const Trajectory& truth, const AssociationOptions& options = {});
 

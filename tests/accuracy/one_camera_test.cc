@@ -3,6 +3,7 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
 #include "byre/place/map_words.h"
 #include "byre/place/vocabulary.h"
@@ -55,7 +56,7 @@ TEST(OneCameraInMh01, BeginsWithinTwoSecondsAndFollowsEveryFrameToMillimetres) {
   const auto first = std::ranges::find(posed, true);
   EXPECT_LE(static_cast<double>(first - posed.begin()) / kFrameRateHz, 2.0);
   EXPECT_EQ(std::count(first, posed.end(), false), 0);
-  Trajectory truth = truth_of(*folder);
+  Trajectory truth = load_truth(*folder);
   for (StampedPose& sample : truth) sample.world_from_body = sample.world_from_body * body_from_camera;
   const auto error = absolute_trajectory_error(associate(session.final_trajectory(), truth, {}), Scale::free);
   ASSERT_TRUE(error);

@@ -3,6 +3,7 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_trajectory.h"
 
@@ -37,7 +38,7 @@ TEST_F(RenderedRoomRecording, EveryFrameHasAPose) {
 }
 
 TEST_F(RenderedRoomRecording, TrajectoriesAreTrueToMillimetres) {
-  const Trajectory truth = truth_of(folder_);
+  const Trajectory truth = load_truth(folder_);
   EXPECT_LE(position_error(mapped_.final, truth), 0.0035);
   EXPECT_LE(position_error(mapped_.causal, truth), 0.0035);
 }

@@ -1,6 +1,6 @@
 // A map to a COLMAP model, through COLMAP's own programs, and back to a map.
 
-#include "byre/cli/program_fixture.h"
+#include "byre/cli/shared/program_fixture.h"
 #include "byre/dataset/colmap_model.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"

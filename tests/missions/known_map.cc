@@ -2,13 +2,16 @@
 
 #include "mapped_recording.h"
 
+#include "byre/dataset/trajectory_input.h"
+#include "byre/evaluation/map_frame_error.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
+#include "byre/map/keyframe_path.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/session/session.h"
 #include "byre/slam/map_from_poses.h"
+#include "byre/system/engine.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -68,14 +71,16 @@ struct MadeMap {
 
 MadeMap map_by_session(Recording& recording, const Imperfection& imperfection) {
   MapFrames frames(recording, imperfection);
-  Session session(frames.rig(), {}, make_inline_executor(), mission_vocabulary());
-  session.refine_calibration(told_calibration(recording.calibration(), imperfection), {});
+  EngineOptions options;
+  options.pace = Pace::same_thread;
+  options.vocabulary = mission_vocabulary();
+  Engine engine(told_calibration(recording.calibration(), imperfection), options);
   for (int i = 0; i < recording.size(); ++i) {
-    if (const auto frame = frames.read(i)) session.process(*frame);
+    if (const auto frame = frames.read(i)) engine.process(*frame);
   }
-  session.finish();
-  session.finish_map({}, {[] { return false; }, [](const char*) {}});
-  return {session.map().online(), session.self_calibration()};
+  engine.finish();
+  engine.finish_map({}, {[] { return false; }, [](const char*) {}});
+  return {engine.online(), engine.calibration()};
 }
 
 MadeMap map_by_true_poses(Recording& recording, const Trajectory& truth, const Imperfection& imperfection) {
@@ -129,16 +134,10 @@ StoredMap load_or_make(const MapRecipe& recipe) {
   return stored;
 }
 
-Similarity align_to_truth(const Map& map, const Trajectory& truth) {
-  Trajectory keyframes;
-  for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_keyframe(id);
-    const Pose& body_from_camera = map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera;
-    keyframes.push_back({keyframe.frame.time, inverse(body_from_camera * keyframe.camera_from_world)});
-  }
-  const auto error = absolute_trajectory_error(associate(keyframes, truth, {}), Scale::fixed);
-  if (!error) throw InputError("map", "cannot be aligned to the truth of its recording");
-  return error->truth_from_estimate;
+Similarity truth_from(const Map& map, const Trajectory& truth) {
+  const MapAlignment alignment = align_to_truth(keyframe_path(map), Scale::fixed, truth);
+  if (alignment.poses == 0) throw InputError("map", "cannot be aligned to the truth of its recording");
+  return alignment.truth_from_map;
 }
 
 KnownMap with(Map map, const KnownMap& known) {
@@ -169,7 +168,7 @@ std::string name_of(const MapRecipe& recipe) {
 }
 
 Trajectory truth_of(const RecordingName& name) {
-  Trajectory truth = truth_of(folder_of(name));
+  Trajectory truth = load_truth(folder_of(name));
   for (StampedPose& pose : truth) pose.time += name.truth_offset;
   return truth;
 }
@@ -181,7 +180,7 @@ const Vocabulary& mission_vocabulary() {
 
 KnownMap make_known_map(const MapRecipe& recipe) {
   StoredMap stored = load_or_make(recipe);
-  const Similarity truth_from_map = align_to_truth(stored.map, truth_of(recipe.recording));
+  const Similarity truth_from_map = truth_from(stored.map, truth_of(recipe.recording));
   return {std::make_shared<const OfflineMap>(std::move(stored.map), mission_vocabulary(), std::move(stored.recordings)),
           truth_from_map};
 }

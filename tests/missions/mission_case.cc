@@ -1,10 +1,9 @@
 #include "mission_case.h"
 
-#include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/system/engine.h"
 
-#include <array>
-#include <cstdio>
 #include <utility>
 
 namespace byre {
@@ -14,24 +13,19 @@ namespace {
 std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Imperfection& imperfection,
                               const Trajectory& truth, std::shared_ptr<const OfflineMap> map) {
   limit_image_threads(1);
-  const Calibration told = told_calibration(recording.calibration(), imperfection);
-  const auto known = map ? known_calibration(map->recordings(), told) : std::nullopt;
-  Extractor extractor(known ? known->calibration : told, {});
   const Degradation cameras = imperfect_cameras(imperfection);
-  Session session(extractor.rig(), {}, make_inline_executor(), mission_vocabulary(), std::move(map));
-  if (known) {
-    session.refine_readout(*known);
-  } else {
-    session.refine_calibration(told, {});
-  }
+  EngineOptions options;
+  options.pace = Pace::same_thread;
+  options.vocabulary = mission_vocabulary();
+  options.offline = std::move(map);
+  Engine engine(told_calibration(recording.calibration(), imperfection), options);
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = recording.read(step.frame);
     if (!recorded) continue;
     ImageFrame images = cameras(step.disturb ? step.disturb(*recorded) : *recorded, step.frame);
     images.time = step.time;
-    frames.push_back({session.process(extractor.extract(images).frame),
-                      pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
+    frames.push_back({engine.process(images).report, pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
   }
   return frames;
 }
@@ -43,12 +37,6 @@ std::optional<Similarity> truth_from_own_map(const std::vector<MissionFrame>& fr
     return Similarity{1.0, *frame.true_world_from_body * inverse(*frame.report.map_from_body)};
   }
   return std::nullopt;
-}
-
-std::string formatted(const char* format, double value) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
 }
 
 }  // namespace
@@ -107,7 +95,7 @@ std::vector<std::string> broken_demands(const MissionCase& mission_case, const M
                      formatted(", the worst is off by %.2f m", score.worst_trusted_error));
   }
   if (mission_case.demand.is_never_wrong && score.wrongly_trusted > 0) {
-    broken.push_back(formatted("%.0f frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
+    broken.push_back(formatted("%d frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
                      formatted(", the worst by %.2f m", score.worst_trusted_error));
   }
   if (mission_case.demand.doubt && score.time_to_doubt.value_or(1e9) > kMaxTimeToDoubt) {

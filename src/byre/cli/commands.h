@@ -3,7 +3,9 @@
 #include <functional>
 #include <iosfwd>
 
-#include <CLI/App.hpp>
+namespace CLI {
+class App;
+}
 
 namespace byre::cli {
 
@@ -17,7 +19,7 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 // Declares all commands; the one on the command line becomes the action when that is parsed.
 void declare_commands(CLI::App& app, Action& action);
 
-// Each declares the options of a command, and lives in a file of the command's name. The action is to be called once
+// Each declares the options of a command, and lives in a folder of its name. The action is to be called once
 // the command line is parsed.
 Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);

@@ -1,6 +1,6 @@
 // What is left of a run that is interrupted or killed, or that cannot write.
 
-#include "byre/cli/program_fixture.h"
+#include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/trajectory_file.h"

@@ -1,6 +1,6 @@
 #include "byre/cli/commands.h"
-#include "byre/cli/file_arguments.h"
-#include "byre/cli/interrupt.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
 #include "byre/input_error.h"
 
 #include <exception>

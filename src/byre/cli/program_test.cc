@@ -1,6 +1,6 @@
 // Runs the program as a user does: exit codes, and what it says on which stream.
 
-#include "byre/cli/program_fixture.h"
+#include "byre/cli/shared/program_fixture.h"
 
 #include <algorithm>
 #include <string>

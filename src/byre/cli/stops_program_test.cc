@@ -1,6 +1,6 @@
 // Stops at random moments: what "byre map" and "byre run" leave must be whole. BYRE_STOPS=1000 does so many of them.
 
-#include "byre/cli/program_fixture.h"
+#include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/trajectory_file.h"

@@ -1,5 +1,6 @@
 // A picture as SVG. Thousands of equal symbols are one path, so that a map of a building stays a small file.
 
+#include "byre/input/markup.h"
 #include "byre/viewer/fixed_point.h"
 #include "byre/viewer/picture_shapes.h"
 
@@ -66,18 +67,6 @@ string hex(const Colour& colour) {
 
 string opacity_text(double opacity) {
   return opacity < 1.0 ? fixed_point(opacity, 2) : "";
-}
-
-string escaped(std::string_view text) {
-  constexpr std::string_view kSpecial = "&<>\"";
-  constexpr std::array<std::string_view, 4> kNames = {"&amp;", "&lt;", "&gt;", "&quot;"};
-  string safe;
-  for (const char c : text) {
-    const std::size_t found = kSpecial.find(c);
-    if (found == std::string_view::npos) safe += c;
-    if (found != std::string_view::npos) safe += kNames[found];
-  }
-  return safe;
 }
 
 string base64(const std::vector<unsigned char>& bytes) {
@@ -181,7 +170,7 @@ string path_of(const PictureSymbols& mark, double rim, const Colour& colour) {
 string svg_of(const PictureSymbols& mark) {
   if (mark.centres.empty()) return "";
   const string rims = mark.rim ? path_of(mark, kRim, *mark.rim) : "";
-  return element("g", {{"class", escaped(mark.name)}, {"opacity", opacity_text(mark.opacity)}},
+  return element("g", {{"class", markup_escaped(mark.name)}, {"opacity", opacity_text(mark.opacity)}},
                  joined({rims, path_of(mark, 0.0, mark.colour)}));
 }
 
@@ -194,7 +183,7 @@ string svg_of(const PictureText& mark) {
                   {"font-weight", mark.bold ? "bold" : ""},
                   {"text-anchor", kAnchors[static_cast<std::size_t>(mark.align)]},
                   {"fill", hex(mark.colour)}},
-                 escaped(mark.text));
+                 markup_escaped(mark.text));
 }
 
 string svg_of(const Pane& pane) {

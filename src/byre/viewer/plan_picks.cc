@@ -1,10 +1,10 @@
 #include "byre/viewer/plan_picks.h"
 
+#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/map/plan_places.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -63,9 +63,8 @@ std::vector<PlanCorrespondence> correspondences_of(const std::vector<PlanPick>& 
 std::string picks_csv(const std::vector<PlanPick>& picks) {
   std::string text = "name,point,plan_x_m,plan_y_m\n";
   for (const PlanPick& pick : picks) {
-    char line[80];
-    std::snprintf(line, sizeof(line), ",%u,%.4f,%.4f\n", pick.point, pick.point_in_plan.x(), pick.point_in_plan.y());
-    text += pick.name + line;
+    text += pick.name;
+    text += formatted(",%u,%.4f,%.4f\n", pick.point, pick.point_in_plan.x(), pick.point_in_plan.y());
   }
   return text;
 }

@@ -1,6 +1,7 @@
 #include "byre/viewer/web_map.h"
 
 #include "byre/input/binary_file.h"
+#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/viewer/plan_image.h"
 #include "byre/viewer/plan_picks.h"
@@ -8,8 +9,6 @@
 #include "byre/viewer/web_bytes.h"
 #include "byre/viewer/web_json.h"
 
-#include <array>
-#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -96,9 +95,7 @@ class MapSite : public WebSite {
     if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
     const PlanFit found = fit(picks);
     if (const double residual = residual_of(found); residual > accepted_residual(request.body)) {
-      std::array<char, 32> metres{};
-      std::snprintf(metres.data(), metres.size(), "%.2f m", residual);
-      throw InputError("picks", std::string("fit the map only to ") + metres.data(),
+      throw InputError("picks", formatted("fit the map only to %.2f m", residual),
                        "correct them, or confirm the figure");
     }
     map_.stored.plan = found.registration;

@@ -1,0 +1,232 @@
+#include "byre/archive/colmap_import.h"
+
+#include "byre/dataset/colmap_camera.h"
+#include "byre/dataset/image_file.h"
+#include "byre/input/formatted.h"
+#include "byre/input/text_file.h"
+#include "byre/input_error.h"
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// An image of the model that is to become a keyframe.
+struct NamedImage {
+  std::uint32_t id = 0;
+  std::string name;
+  Timestamp time{};
+};
+
+std::vector<NamedImage> images_by_time(const ColmapModel& model) {
+  std::vector<NamedImage> images;
+  std::vector<std::string> names;
+  for (const auto& [id, image] : model.images) {
+    images.push_back({id, image.name, {}});
+    names.push_back(image.name);
+  }
+  const std::vector<Timestamp> times = times_of_names(names);
+  for (std::size_t i = 0; i < images.size(); ++i) images[i].time = times[i];
+  std::ranges::sort(images, {}, &NamedImage::time);
+  return images;
+}
+
+// The cameras of a model that have images, in the order in which they come. What extracts features is kept for the last
+// one only: it is large, and a model may have a camera for every image.
+class Cameras {
+ public:
+  Cameras(const ColmapModel& model, const std::string& model_name, const ColmapImportOptions& options)
+      : model_(model), model_name_(model_name), options_(options) {}
+
+  int index_of(std::uint32_t id) {
+    const auto [entry, is_new] = index_of_.try_emplace(id, static_cast<int>(calibrations_.size()));
+    if (is_new) {
+      const std::string place = model_name_ + ": camera " + std::to_string(id);
+      calibrations_.push_back({camera_of(model_.cameras.at(id), place), {}, options_.body_from_camera});
+      use(entry->second);
+      rigs_.push_back(extractor_->rig());
+    }
+    return entry->second;
+  }
+
+  Frame extract(int index, const ImageFrame& image) {
+    if (index != used_) use(index);
+    return extractor_->extract(image).frame;
+  }
+
+  const std::vector<Calibration>& calibrations() const { return calibrations_; }
+  const std::vector<Rig>& rigs() const { return rigs_; }
+
+ private:
+  void use(int index) {
+    extractor_.emplace(calibrations_[static_cast<std::size_t>(index)], options_.extract);
+    used_ = index;
+  }
+
+  const ColmapModel& model_;
+  const std::string& model_name_;
+  const ColmapImportOptions& options_;
+  std::map<std::uint32_t, int> index_of_;
+  std::vector<Calibration> calibrations_;
+  std::vector<Rig> rigs_;
+  std::optional<Extractor> extractor_;  // of the camera used_
+  int used_ = -1;
+};
+
+// Empty, with a warning added, when the image is not there as the camera took it.
+std::optional<Image> read_as_taken(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
+  std::optional<Image> image = read_image(path);
+  if (!image) {
+    warnings.push_back(path.string() + ": is not a whole image, left out");
+    return std::nullopt;
+  }
+  if (image->width == camera.width && image->height == camera.height) return image;
+  warnings.push_back(path.string() + formatted(": is of %d x %d pixels, its camera of %d x %d, left out", image->width,
+                                               image->height, camera.width, camera.height));
+  return std::nullopt;
+}
+
+// The model in byre's terms, and which of COLMAP's images and points its own are.
+struct ConvertedModel {
+  SfmModel model;
+  std::vector<std::uint32_t> image_ids;
+  std::vector<std::uint64_t> point_ids;
+};
+
+void extract_images(const ColmapModel& colmap, const fs::path& folder, double scale, Cameras& cameras,
+                    const ColmapImportHooks& hooks, ConvertedModel& converted, std::vector<std::string>& warnings) {
+  int done = 0;
+  for (const NamedImage& named : images_by_time(colmap)) {
+    if (hooks.should_stop()) break;
+    const ColmapImage& image = colmap.images.at(named.id);
+    const int camera = cameras.index_of(image.camera_id);
+    std::optional<Image> pixels =
+        read_as_taken(folder / named.name, cameras.calibrations()[static_cast<std::size_t>(camera)].left, warnings);
+    if (pixels) {
+      Pose camera_from_world = image.camera_from_world;
+      camera_from_world.translation *= scale;
+      const Frame frame = cameras.extract(camera, {named.time, std::move(*pixels), std::nullopt});
+      converted.model.images.push_back({frame, camera_from_world, camera});
+      converted.image_ids.push_back(named.id);
+    }
+    hooks.after_image(++done);
+  }
+  converted.model.rigs = cameras.rigs();
+}
+
+void convert_points(const ColmapModel& colmap, double scale, ConvertedModel& converted) {
+  std::map<std::uint32_t, int> index_of;
+  for (std::size_t i = 0; i < converted.image_ids.size(); ++i) index_of[converted.image_ids[i]] = static_cast<int>(i);
+  for (const auto& [id, point] : colmap.points) {
+    ModelPoint made{scale * point.position_in_world, {}};
+    for (const ColmapTrackEntry& entry : point.track) {
+      const auto image = index_of.find(entry.image_id);
+      if (image != index_of.end()) made.images.push_back(image->second);
+    }
+    converted.model.points.push_back(std::move(made));
+    converted.point_ids.push_back(id);
+  }
+}
+
+// Pixels from where a point projects to where its features were measured. The reference is where it projects.
+std::vector<double> errors_of(const Map& map, const Keyframe& keyframe, KeyframeId id) {
+  const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+  std::vector<double> errors;
+  for (const Sighting& sighting : keyframe.sightings) {
+    if (!sighting.point) continue;
+    const MapPoint& point = *map.find_point(*sighting.point);
+    if (point.reference.keyframe == id) continue;
+    const Eigen::Vector3d point_in_camera = keyframe.camera_from_world * point.position_in_world;
+    errors.push_back((rig.project(point_in_camera).head<2>() - sighting.pixel.cast<double>()).norm());
+  }
+  return errors;
+}
+
+ImportedImage describe_image(const Map& map, KeyframeId id, const ColmapImage& image) {
+  const Keyframe& keyframe = *map.find_keyframe(id);
+  std::vector<double> errors = errors_of(map, keyframe, id);
+  std::ranges::sort(errors);
+  ImportedImage described{image.name, keyframe.frame.features->size()};
+  described.points_in_model = static_cast<int>(std::ranges::count_if(
+      image.keypoints, [](const ColmapKeypoint& keypoint) { return keypoint.point_id.has_value(); }));
+  described.points_attached = static_cast<int>(
+      std::ranges::count_if(keyframe.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); }));
+  if (!errors.empty()) described.median_error = quantile(errors, 0.5);
+  return described;
+}
+
+// A recording for each camera that has images, so that each keeps its lens.
+void add_recordings(const std::vector<Calibration>& calibrations, const SfmModel& model, const std::string& model_name,
+                    StoredMap& stored) {
+  for (std::size_t camera = 0; camera < calibrations.size(); ++camera) {
+    const auto is_its_own = [camera](const PosedFrame& image) { return image.rig == static_cast<int>(camera); };
+    SourceRecording source{model_name, calibrations[camera], {}, {}};
+    const auto first = std::ranges::find_if(model.images, is_its_own);
+    if (first != model.images.end()) source.first_time = source.last_time = first->frame.time;
+    for (const PosedFrame& image : model.images) {
+      if (is_its_own(image)) source.last_time = std::max(source.last_time, image.frame.time);
+    }
+    stored.recordings.push_back(source);
+  }
+}
+
+void require_content(const ColmapModel& model, const std::string& name) {
+  const char* const remedy = "name the folder of a finished reconstruction";
+  if (model.images.empty()) throw InputError(name, "is a model without images, so no map can be made of it", remedy);
+  if (model.points.empty()) throw InputError(name, "is a model without points, so no map can be made of it", remedy);
+}
+
+}  // namespace
+
+ColmapImport import_colmap(const ColmapModel& model, const std::string& model_name, const fs::path& images_folder,
+                           const ColmapImportOptions& options, const ColmapImportHooks& hooks) {
+  require_content(model, model_name);
+  const double scale = options.metres_per_unit.value_or(1.0);
+  Cameras cameras(model, model_name, options);
+  ColmapImport result;
+  ConvertedModel converted;
+  extract_images(model, images_folder, scale, cameras, hooks, converted, result.warnings);
+  if (converted.image_ids.empty()) {
+    throw InputError(images_folder.string(), "holds none of the model's images as its cameras took them",
+                     "name the folder that was given to colmap as its image path");
+  }
+  convert_points(model, scale, converted);
+  const ModelMap made = map_from_model(converted.model, options.map);
+  result.stored.map = offline_copy(made.map);
+  result.stored.scale = options.metres_per_unit ? MapScale::metric : MapScale::unknown;
+  result.stored.pose_source = PoseSource::imported;
+  add_recordings(cameras.calibrations(), converted.model, model_name, result.stored);
+  result.points_in_model = static_cast<int>(model.points.size());
+  for (const int point : made.model_points)
+    result.colmap_ids.push_back(converted.point_ids[static_cast<std::size_t>(point)]);
+  for (std::size_t i = 0; i < converted.image_ids.size(); ++i) {
+    const KeyframeId id{Origin::offline, static_cast<std::uint32_t>(i)};
+    result.images.push_back(describe_image(result.stored.map, id, model.images.at(converted.image_ids[i])));
+  }
+  return result;
+}
+
+std::vector<Timestamp> times_of_names(const std::vector<std::string>& names) {
+  std::set<Timestamp> distinct;
+  std::vector<Timestamp> times;
+  for (const std::string& name : names) {
+    const auto time = parse_nanoseconds(fs::path(name).stem().string());
+    if (!time || !distinct.insert(*time).second) break;
+    times.push_back(*time);
+  }
+  if (times.size() == names.size()) return times;
+  times.clear();
+  for (const std::string& name : names) {
+    const auto before = std::ranges::count_if(names, [&name](const std::string& other) { return other < name; });
+    times.push_back(std::chrono::seconds(before));
+  }
+  return times;
+}
+
+}  // namespace byre

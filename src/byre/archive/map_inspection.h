@@ -1,0 +1,61 @@
+#pragma once
+
+#include "byre/map/map_file.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+struct MapCounts {
+  int keyframes = 0;
+  int keyframes_with_words = 0;
+  std::vector<int> keyframes_of_recordings;
+  int points = 0;
+  int features = 0;
+  int observations = 0;
+  int patches = 0;
+};
+
+// Percentiles are interpolated between their neighbours; all zero for none.
+struct Distribution {
+  int count = 0;
+  double mean = 0.0;
+  double p50 = 0.0;
+  double p95 = 0.0;
+  double p99 = 0.0;
+  double max = 0.0;
+};
+
+// How far observations are from where their points are projected to.
+struct ReprojectionErrors {
+  Distribution pixel;      // pixels, of all observations
+  Distribution disparity;  // pixels, of those that have one
+  int behind_camera = 0;   // observations of a point that is not in front of its camera; in neither of them
+};
+
+struct BoundingBox {
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+};
+
+struct PartSize {
+  std::string name;
+  std::size_t bytes = 0;
+};
+
+struct MapInspection {
+  MapCounts counts;
+  std::vector<std::string> cameras_of_recordings;  // stereo, rgbd or mono
+  Distribution observations_per_point;
+  ReprojectionErrors errors;
+  std::optional<BoundingBox> points_in_world;  // none without points
+  double path_length = 0.0;                    // of the body from keyframe to keyframe, over all recordings
+  std::vector<PartSize> memory;                // of the map once it is loaded, by what is kept
+  std::vector<std::string> faults;
+};
+
+MapInspection inspect(const StoredMap& stored);
+
+}  // namespace byre

@@ -1,0 +1,116 @@
+#include "byre/archive/register_map.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+#include "byre/map/scaled_copy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace byre {
+namespace {
+
+double largest_sigma(const PlanRegistration& registration, const std::vector<Eigen::Vector3d>& path_in_map) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& position : path_in_map) {
+    largest = std::max(largest, plan_covariance_at(registration, position).trace());
+  }
+  return std::sqrt(largest);
+}
+
+bool is_stereo(const StoredMap& stored) {
+  return std::ranges::any_of(stored.map.rigs(), &Rig::is_stereo);
+}
+
+bool has_scale_of_baseline(const StoredMap& stored) {
+  return stored.scale == MapScale::metric && stored.pose_source == PoseSource::slam && is_stereo(stored);
+}
+
+void require_scale_of_baseline(const StoredMap& stored, const std::string& map) {
+  if (has_scale_of_baseline(stored)) return;
+  if (stored.scale != MapScale::metric) {
+    throw InputError(map, "has no metric scale that could be mended",
+                     "leave --fix-scale out, and its scale is found; byre scale makes it metric");
+  }
+  if (!is_stereo(stored)) {
+    throw InputError(map, "was made by one camera, so it has no baseline that could be mended",
+                     "use byre scale with a distance that is known");
+  }
+  throw InputError(map, "has the scale of poses that came from elsewhere, not of a baseline",
+                   "mend the scale of these poses, and make the map anew");
+}
+
+void require_scale_known(const PlanScale& scale, const std::string& picks) {
+  if (!scale.doubt) return;
+  throw InputError(picks, "does not tell the scale: " + std::string(to_string(*scale.doubt)),
+                   "without --fix-scale the map keeps its scale");
+}
+
+// A position is of the map that it was picked in. Before a second correction nobody knows which of the two that was.
+void require_unambiguous(const StoredMap& stored, const std::filesystem::path& picks) {
+  if (!gives_positions(picks)) return;
+  for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
+    const double factor = baseline_factor(stored, i);
+    if (factor == 1.0) continue;
+    throw InputError(picks.string(),
+                     formatted("gives positions, and the map has been scaled by %.6g since it was made: they may be of "
+                               "the map before",
+                               factor),
+                     "name points, times or pixels of the map");
+  }
+}
+
+}  // namespace
+
+Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
+                         const std::filesystem::path& picks, const RegisterOptions& options) {
+  const std::optional<DrivingPlane> plane = fit_driving_plane(stored.map);
+  if (!plane) {
+    throw InputError(map.string(), "does not tell which way is up: its keyframes are none, or held in all directions",
+                     "map a recording of a camera that stays upright");
+  }
+  Registering result;
+  result.correspondences = read_plan_correspondences(picks, plan, stored, options.picks);
+  const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
+  std::optional<PlanFit> fit = register_on_plan(result.correspondences, *plane, scale, options.registration);
+  if (!fit) {
+    throw InputError(picks.string(), "has not two points that lie apart, so the map cannot be placed on the plan",
+                     "pick three or more, far apart");
+  }
+  result.fit = std::move(*fit);
+  result.fit.registration.plan = plan.name;
+  result.largest_path_sigma = largest_sigma(result.fit.registration, plane->path_in_map);
+  if (scale == Scale::fixed)
+    result.measured_scale = measure_scale(result.correspondences, *plane, options.registration);
+  result.has_baseline = has_scale_of_baseline(stored);
+  return result;
+}
+
+MendedMap mend_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
+                     const std::filesystem::path& picks, const RegisterOptions& options) {
+  require_scale_of_baseline(stored, map.string());
+  MendedMap mended{std::move(stored), {}, 1.0};
+  mended.registering = register_map(mended.stored, map, plan, picks, options);
+  const PlanScale measured = mended.registering.measured_scale.value();
+  require_scale_known(measured, picks.string());
+  if (!measured.differs_from_one()) return mended;
+
+  require_unambiguous(mended.stored, picks);
+  mended.factor = measured.plan_from_map;
+  mended.stored = scaled_copy(mended.stored, mended.factor);
+  RegisterOptions of_scaled = options;
+  of_scaled.picks.positions_scale *= mended.factor;
+  mended.registering = register_map(mended.stored, map, plan, picks, of_scaled);
+  mended.registering.measured_scale = measured;
+  return mended;
+}
+
+std::string describe_origin(const PlanRegistration& registration) {
+  const Eigen::Vector3d& origin = registration.plan_from_map.target_from_source.translation;
+  return registration.plan + formatted(": the map's origin is at x %.3f, y %.3f, %.3f m above its floor", origin.x(),
+                                       origin.y(), origin.z());
+}
+
+}  // namespace byre

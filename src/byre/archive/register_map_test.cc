@@ -1,0 +1,131 @@
+#include "byre/archive/register_map.h"
+
+#include "byre/archive/register_scene.h"
+#include "byre/input_error.h"
+#include "byre/map/scaled_copy.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+class RegisterMap : public testing::Test {
+ protected:
+  ~RegisterMap() override { std::filesystem::remove(picks_); }
+
+  Registering register_with(const StoredMap& stored, const std::vector<PlanCorrespondence>& correspondences) const {
+    std::ofstream(picks_) << picks_csv(correspondences);
+    return register_map(stored, "barn.byre", plan_, picks_, {});
+  }
+
+  MendedMap mend_with(const StoredMap& stored, const std::string& picks) const {
+    std::ofstream(picks_) << picks;
+    return mend_scale(stored, "barn.byre", plan_, picks_, {});
+  }
+
+  MendedMap mend(const StoredMap& stored, const std::vector<PlanCorrespondence>& correspondences) const {
+    return mend_with(stored, picks_csv(correspondences));
+  }
+
+  FloorPlan plan_{"plan.yaml", "plan.png", 420, 140, Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero()};
+  std::filesystem::path picks_ =
+      std::filesystem::path(testing::TempDir()) / ("register_" + std::to_string(getpid()) + ".csv");
+};
+
+TEST_F(RegisterMap, KnowsThePlaceOfThePathBetterWithSmallerResiduals) {
+  FloorPlanScene scene;
+  const StoredMap stored = driven_barn(scene);
+  const Registering exact = register_with(stored, scene.correspondences(12));
+  const Registering noisy = register_with(stored, scene.correspondences(12, 0.2));
+  EXPECT_THAT(exact.correspondences, SizeIs(12));
+  EXPECT_LT(exact.largest_path_sigma, 0.02);
+  EXPECT_GT(noisy.largest_path_sigma, 3.0 * exact.largest_path_sigma);
+}
+
+TEST_F(RegisterMap, FindsAScaleOnlyForAMapWithoutOne) {
+  FloorPlanScene scene(1, 2.0);
+  StoredMap stored = driven_barn(scene);
+  stored.scale = MapScale::unknown;
+  const Registering registering = register_with(stored, scene.correspondences(6));
+  EXPECT_NEAR(registering.fit.registration.plan_from_map.scale, 2.0, 1e-6);
+  EXPECT_FALSE(registering.measured_scale.has_value());
+}
+
+TEST_F(RegisterMap, LaysAMetricMapOnItsPlanAsItIs) {
+  FloorPlanScene scene(1, 1.0 / 1.016);
+  const Registering registering = register_with(driven_barn(scene), scene.correspondences(8, 0.03));
+  EXPECT_EQ(registering.fit.registration.plan_from_map.scale, 1.0);
+  ASSERT_TRUE(registering.measured_scale.has_value());
+  EXPECT_TRUE(registering.has_baseline);
+}
+
+TEST_F(RegisterMap, MendsTheScaleAndLaysTheMendedMapOnThePlan) {
+  FloorPlanScene scene(1, 1.0 / 1.016);
+  const auto correspondences = scene.correspondences(8, 0.03);
+  const MendedMap mended = mend(driven_barn(scene), correspondences);
+  EXPECT_NEAR(mended.factor * 1.016, 1.0, 3.0 * mended.registering.measured_scale->sigma);
+  EXPECT_EQ(mended.registering.fit.registration.plan_from_map.scale, 1.0);
+  EXPECT_LT(mended.registering.fit.rms, 0.05);
+  EXPECT_DOUBLE_EQ(mended.stored.map.rigs()[0].baseline, mended.factor * 0.11);
+  EXPECT_DOUBLE_EQ(baseline_factor(mended.stored, 0), mended.factor);
+}
+
+// Picks that name keyframes stay what they are when the map is scaled; those that give positions do not.
+TEST_F(RegisterMap, FindsNothingToMendTheSecondTime) {
+  FloorPlanScene scene(1, 1.0 / 1.016);
+  const StoredMap stored = driven_barn(scene);
+  const std::string picks = keyframe_picks_csv(scene, stored);
+  const MendedMap once = mend_with(stored, picks);
+  EXPECT_NEAR(once.factor * 1.016, 1.0, 0.001);
+  const MendedMap twice = mend_with(once.stored, picks);
+  EXPECT_EQ(twice.factor, 1.0);
+  EXPECT_LT(std::abs(twice.registering.measured_scale->excess()), 0.001);
+  EXPECT_EQ(twice.stored.map.rigs()[0].baseline, once.stored.map.rigs()[0].baseline);
+  const std::string positions = picks_csv(scene.correspondences(8, 0.03));
+  EXPECT_THAT([&] { mend_with(once.stored, positions); },
+              ThrowsMessage<InputError>(HasSubstr("gives positions, and the map has been scaled by 0.98")));
+}
+
+TEST_F(RegisterMap, MendsNoScaleThatIsNotThatOfABaseline) {
+  FloorPlanScene scene(1, 1.0 / 1.016);
+  const auto correspondences = scene.correspondences(8);
+  const auto refusal_of = [&](const StoredMap& stored, const std::string& reason) {
+    EXPECT_THAT([&] { mend(stored, correspondences); }, ThrowsMessage<InputError>(HasSubstr(reason)));
+  };
+  StoredMap stored = driven_barn(scene);
+  stored.scale = MapScale::unknown;
+  refusal_of(stored, "leave --fix-scale out, and its scale is found; byre scale makes it metric");
+  stored = driven_barn(scene);
+  stored.pose_source = PoseSource::given;
+  refusal_of(stored, "has the scale of poses that came from elsewhere");
+  MapParts one_camera{stored.map.rigs(), {}, {}};
+  one_camera.rigs[0].baseline = 0.0;
+  for (const KeyframeId id : stored.map.keyframe_ids()) one_camera.keyframes.push_back(*stored.map.find_keyframe(id));
+  stored = driven_barn(scene);
+  stored.map = Map(Origin::offline, one_camera);
+  refusal_of(stored, "has no baseline that could be mended (use byre scale with a distance that is known)");
+}
+
+TEST_F(RegisterMap, MendsNoScaleThatThePicksDoNotTell) {
+  FloorPlanScene scene(1, 1.0 / 1.016);
+  const StoredMap stored = driven_barn(scene);
+  EXPECT_THAT([&] { mend(stored, scene.correspondences(3)); },
+              ThrowsMessage<InputError>(HasSubstr("does not tell the scale: fewer than four")));
+  EXPECT_THAT([&] { mend(stored, scene.correspondences(8, 2.0)); },
+              ThrowsMessage<InputError>(HasSubstr("the correspondences do not agree")));
+}
+
+TEST_F(RegisterMap, NeedsAMapThatTellsWhichWayIsUp) {
+  EXPECT_THROW(register_with(StoredMap(), FloorPlanScene().correspondences(6)), InputError);
+}
+
+}  // namespace
+}  // namespace byre

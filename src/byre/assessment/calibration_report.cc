@@ -1,0 +1,111 @@
+#include "byre/assessment/calibration_report.h"
+
+#include "byre/input/formatted.h"
+
+#include <cmath>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+// A parameter in its own unit.
+struct Row {
+  const CalibrationParameter& parameter;
+  double change = 0.0;
+  double sigma_before = 0.0;
+  double sigma_after = 0.0;
+
+  // The images have told it at least twice as well as it was known.
+  bool is_determined() const { return sigma_after < 0.5 * sigma_before; }
+};
+
+std::vector<Row> rows_of(const RefinedCalibration& refined) {
+  std::vector<Row> rows;
+  for (int i = 0; i < kCalibrationParameters; ++i) {
+    if (!has_parameter(refined.calibration, i)) continue;
+    const CalibrationParameter& parameter = calibration_parameters()[static_cast<std::size_t>(i)];
+    rows.push_back({parameter, parameter.sigma * refined.change[i], parameter.sigma * refined.sigma_before[i],
+                    parameter.sigma * refined.sigma_after[i]});
+  }
+  return rows;
+}
+
+std::string left_as_given(const std::vector<Row>& rows) {
+  std::string names;
+  for (const Row& row : rows) {
+    if (!row.is_determined()) names += (names.empty() ? "" : ", ") + std::string(row.parameter.name);
+  }
+  return names;
+}
+
+std::string describe_optics(const RefinedCalibration& refined) {
+  if (refined.keyframes == 0) return "as given, but for the length of the baseline or the shutter";
+  if (refined.was_refused()) {
+    return formatted("as given, though what %d keyframes saw is off it by %.2f px on the whole", refined.keyframes,
+                     refined.shift);
+  }
+  if (refined.change.isZero(0.0)) return formatted("as given, which explains what %d keyframes saw", refined.keyframes);
+  const std::string open = left_as_given(rows_of(refined));
+  return formatted("refined from %d keyframes, by %.2f px on the whole", refined.keyframes, refined.shift) +
+         (open.empty() ? "" : "; left as given: " + open);
+}
+
+}  // namespace
+
+std::string describe_calibration(const RefinedCalibration& refined) {
+  constexpr double kMilliseconds = 1e3;
+  const double readout_time = refined.calibration.readout_time;
+  return describe_optics(refined) +
+         (readout_time == 0.0 ? "" : formatted("; rolling shutter, %.1f ms an image", kMilliseconds * readout_time));
+}
+
+std::string calibration_row(const std::optional<RefinedCalibration>& refined) {
+  return refined ? row("calibration", describe_calibration(*refined)) : std::string();
+}
+
+std::string calibration_table(const RefinedCalibration& refined) {
+  std::string text;
+  if (refined.keyframes == 0) return text;
+  for (const Row& row : rows_of(refined)) {
+    text += formatted("  %-28s %+11.5f %-3s  known to %.5f before, %.5f now%s\n",
+                      std::string(row.parameter.name).c_str(), row.change, std::string(row.parameter.unit).c_str(),
+                      row.sigma_before, row.sigma_after, row.is_determined() ? "" : " (left as given)");
+  }
+  return text;
+}
+
+std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined) {
+  if (!refined || refined->shift < kFarOffPixels) return std::nullopt;
+  if (refined->was_refused()) {
+    return formatted(
+        "the calibration given is off by %.2f px on the whole, too far to be mended: it is used as it is; calibrate "
+        "the cameras anew",
+        refined->shift);
+  }
+  return formatted(
+      "the calibration given is off by %.2f px on the whole: calibrate the cameras anew, or go on with what "
+      "byre calibrate writes",
+      refined->shift);
+}
+
+nlohmann::ordered_json calibration_json(const RefinedCalibration& refined) {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+  for (const Row& row : rows_of(refined)) {
+    parameters.push_back({{"name", row.parameter.name},
+                          {"unit", row.parameter.unit},
+                          {"change", row.change},
+                          {"sigma_before", row.sigma_before},
+                          {"sigma_after", row.sigma_after},
+                          {"determined", row.is_determined()}});
+  }
+  return {{"readout_time_s", refined.calibration.readout_time},
+          {"keyframes", refined.keyframes},
+          {"observations", refined.observations},
+          {"shift_px", refined.shift},
+          {"refused", refined.was_refused()},
+          {"parameters", parameters}};
+}
+
+}  // namespace byre

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "byre/system/engine.h"
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace byre {
+
+// Rows for people, each a name and what is known under it.
+std::string to_text(const Finishing& finishing);
+nlohmann::ordered_json to_json(const Finishing& finishing);
+
+}  // namespace byre

@@ -1,0 +1,75 @@
+#include "byre/assessment/map_statistics.h"
+
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kMillisecondsPerSecond = 1e3;
+
+template <typename SecondsOf>
+TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsOf seconds_of) {
+  std::vector<double> seconds;
+  for (const MappedFrame& frame : frames) {
+    if (frame.report) seconds.push_back(seconds_of(frame.seconds));
+  }
+  return summarise_times(std::move(seconds));
+}
+
+void count_events(const FrameReport& report, FrameCounts& counts) {
+  counts.relocalisations += report.has(SessionEvent::relocalised) ? 1 : 0;
+  counts.loops += report.has(SessionEvent::loop_found) ? 1 : 0;
+  counts.resets += report.has(SessionEvent::restarted) ? 1 : 0;
+  counts.corrections += report.has(SessionEvent::map_corrected) ? 1 : 0;
+}
+
+}  // namespace
+
+TimeSummary summarise_times(std::vector<double> seconds) {
+  TimeSummary summary;
+  if (seconds.empty()) return summary;
+  std::ranges::sort(seconds);
+  const auto quantile_ms = [&seconds](double share) { return kMillisecondsPerSecond * quantile(seconds, share); };
+  summary.count = static_cast<int>(seconds.size());
+  summary.mean_ms = kMillisecondsPerSecond * std::accumulate(seconds.begin(), seconds.end(), 0.0) / summary.count;
+  summary.p50_ms = quantile_ms(0.5);
+  summary.p95_ms = quantile_ms(0.95);
+  summary.p99_ms = quantile_ms(0.99);
+  summary.max_ms = kMillisecondsPerSecond * seconds.back();
+  return summary;
+}
+
+TimeSummary summarise_stage(const std::vector<MappedFrame>& frames, double StageSeconds::*stage) {
+  return summarise_processed(frames, [stage](const StageSeconds& seconds) { return seconds.*stage; });
+}
+
+TimeSummary summarise_without_jobs(const std::vector<MappedFrame>& frames) {
+  return summarise_processed(frames, [](const StageSeconds& seconds) { return seconds.total - seconds.map_submit; });
+}
+
+FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
+  FrameCounts counts;
+  State state = State::initialising;
+  for (const MappedFrame& frame : frames) {
+    if (frame.report && frame.report->map_from_body && counts.with_pose == 0) counts.frames_to_first = counts.frames;
+    ++counts.frames;
+    counts.unreadable += frame.report ? 0 : 1;
+    if (!frame.report) continue;
+    counts.without_right_image += frame.has_right ? 0 : 1;
+    counts.with_depth_image += frame.has_depth ? 1 : 0;
+    count_events(*frame.report, counts);
+    if (frame.report->start_failure != TwoViewFailure::none) ++counts.refused_starts[frame.report->start_failure];
+    const State before = std::exchange(state, frame.report->state);
+    counts.with_pose += frame.report->map_from_body ? 1 : 0;
+    counts.keyframes += frame.report->keyframe_added ? 1 : 0;
+    counts.lost += has_lost_its_way(state) ? 1 : 0;
+    counts.lost_episodes += has_lost_its_way(state) && !has_lost_its_way(before) ? 1 : 0;
+  }
+  return counts;
+}
+
+}  // namespace byre

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "byre/evaluation/map_frame_error.h"
+#include "byre/playback/map_run.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// How far the poses of a run are from the truth.
+struct MissionErrors {
+  // True: in the frame of the offline map, which alone was aligned to the truth. False: of a run without one, whose
+  // causal and final trajectories were each aligned to the truth.
+  bool in_map_frame = false;
+  int alignment_poses = 0;          // of the run that made the map; zero: the truth is taken for given in its frame
+  std::vector<PoseError> causal;    // as published
+  std::vector<PoseError> trusted;   // of those, of frames reported as trusted
+  std::vector<PoseError> degraded;  // of those, of frames reported as degraded
+  std::vector<PoseError> final;     // as recomputed after the last frame
+  int wrongly_trusted = 0;          // frames trusted and yet off by more than kFarMetres
+  double longest_wrong_trust_s = 0.0;
+  std::optional<double> within_bound;  // share of causal positions within the 95 % bound of their covariance
+};
+
+inline constexpr double kFarMetres = 0.2;
+
+// Errors in the frame of a map that was aligned so.
+MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
+
+// Errors after alignment, of a run without an offline map; of one camera alone with its scale.
+MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale);
+
+}  // namespace byre

@@ -1,0 +1,159 @@
+#include "byre/assessment/mission_report.h"
+
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kListedDoubts = 3;
+
+double share(int part, int whole) {
+  return whole > 0 ? static_cast<double>(part) / whole : 0.0;
+}
+
+std::string describe_verdicts(const MissionStatistics& statistics) {
+  const auto percent = [&statistics](int frames) { return 100.0 * share(frames, statistics.frames); };
+  std::string text = formatted("trusted %.1f %%, degraded %.1f %%, untrusted %.1f %%", percent(statistics.trusted),
+                               percent(statistics.degraded), percent(statistics.untrusted));
+  if (statistics.missing > 0) text += formatted(", missing %.1f %%", percent(statistics.missing));
+  return text + formatted(" of %d frames", statistics.frames);
+}
+
+std::string describe_missing(const MissionStatistics& statistics) {
+  return formatted("%d of %d frames could not be read", statistics.missing, statistics.frames) +
+         (is_full_of_gaps(statistics) ? ": too many for the verdicts of the others to stand for the mission" : "");
+}
+
+std::string describe_doubts(const MissionStatistics& statistics) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kListedDoubts, statistics.doubts.size()); ++i) {
+    const auto& [doubt, frames] = statistics.doubts[i];
+    text += (text.empty() ? "" : ", ") + std::string(to_string(doubt)) + formatted(" %d", frames);
+  }
+  return text + " frames";
+}
+
+std::string describe_losses(const MissionStatistics& statistics) {
+  return formatted("%d times, found again %d times; %d navigation errors", statistics.losses,
+                   statistics.relocalisations, statistics.navigation_errors);
+}
+
+// Empty where the mission did not come to such places.
+std::string keyframe_row(const char* places, const KeyframeRate& rate) {
+  if (rate.minutes <= 0.0) return "";
+  return row("keyframes", formatted("%.1f a minute in %s places (%d in %.0f s)", rate.per_minute(), places,
+                                    rate.keyframes, 60.0 * rate.minutes));
+}
+
+std::string describe_inliers(const MissionStatistics& statistics) {
+  std::string text = formatted("offline median %.0f, online %.0f", statistics.offline_inliers.median,
+                               statistics.online_inliers.median);
+  if (statistics.most_suspended > 0)
+    text += formatted("; up to %d offline points suspended", statistics.most_suspended);
+  return text;
+}
+
+std::string describe_alignment(const MissionErrors& errors) {
+  if (!errors.in_map_frame) return "causal and final poses are each aligned to it";
+  if (errors.alignment_poses == 0) return "taken for given in the map's frame";
+  return formatted("the map alone is aligned to it, by %d poses of the run that made it", errors.alignment_poses);
+}
+
+std::string error_row(const char* name, const std::vector<PoseError>& errors) {
+  const ErrorStatistics position = position_statistics(errors);
+  if (position.count == 0) return row(name, "no pose with truth");
+  return row(name,
+             formatted("RMSE %.4f m and %.3f deg, median %.4f m, 95 %% within %.4f m, worst %.4f m", position.rmse,
+                       rotation_statistics(errors).rmse, position.median, position.p95, position.max));
+}
+
+std::string trust_rows(const MissionErrors& errors) {
+  std::string text = error_row("trusted", errors.trusted);
+  text += row("wrong trust", formatted("%d frames trusted but off by more than %g m, %.2f s at a time",
+                                       errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
+  if (errors.within_bound) {
+    text += row("covariance",
+                formatted("%.1f %% of causal positions within its 95 %% bound", 100.0 * *errors.within_bound));
+  }
+  return text;
+}
+
+Json to_json(const KeyframeRate& rate) {
+  return {{"keyframes", rate.keyframes}, {"minutes", rate.minutes}, {"keyframes_per_minute", rate.per_minute()}};
+}
+
+Json doubts_json(const MissionStatistics& statistics) {
+  Json doubts = Json::object();
+  for (const auto& [doubt, frames] : statistics.doubts) doubts[std::string(to_string(doubt))] = frames;
+  return doubts;
+}
+
+Json errors_json(const std::vector<PoseError>& errors) {
+  const auto statistics = [](const ErrorStatistics& of) {
+    return Json{{"rmse", of.rmse}, {"median", of.median}, {"p95", of.p95}, {"max", of.max}};
+  };
+  return {{"count", errors.size()},
+          {"position_m", statistics(position_statistics(errors))},
+          {"rotation_deg", statistics(rotation_statistics(errors))}};
+}
+
+}  // namespace
+
+std::string to_text(const MissionStatistics& statistics) {
+  std::string text = row("verdicts", describe_verdicts(statistics));
+  if (statistics.missing > 0) text += row("missing", describe_missing(statistics));
+  if (!statistics.doubts.empty()) text += row("doubts", describe_doubts(statistics));
+  text += row("lost", describe_losses(statistics));
+  text += keyframe_row("known", statistics.in_known_places);
+  text += keyframe_row("changed or new", statistics.in_changed_or_new);
+  text += row("inliers", describe_inliers(statistics));
+  return text;
+}
+
+std::string to_text(const MissionErrors& errors) {
+  std::string text = row("truth", describe_alignment(errors));
+  text += error_row("causal", errors.causal);
+  text += error_row("final", errors.final);
+  if (errors.in_map_frame) text += trust_rows(errors);
+  return text;
+}
+
+Json to_json(const MissionStatistics& statistics) {
+  const std::optional<double>& first = statistics.seconds_to_first_pose;
+  return {{"frames_missing", statistics.missing},
+          {"is_full_of_gaps", is_full_of_gaps(statistics)},
+          {"frames_trusted", statistics.trusted},
+          {"frames_degraded", statistics.degraded},
+          {"frames_untrusted", statistics.untrusted},
+          {"trusted_share", share(statistics.trusted, statistics.frames)},
+          {"doubts", doubts_json(statistics)},
+          {"seconds_to_first_pose", first ? Json(*first) : Json()},
+          {"losses", statistics.losses},
+          {"relocalisations", statistics.relocalisations},
+          {"navigation_errors", statistics.navigation_errors},
+          {"in_known_places", to_json(statistics.in_known_places)},
+          {"in_changed_or_new_places", to_json(statistics.in_changed_or_new)},
+          {"offline_inliers_median", statistics.offline_inliers.median},
+          {"online_inliers_median", statistics.online_inliers.median},
+          {"most_suspended", statistics.most_suspended}};
+}
+
+Json to_json(const MissionErrors& errors) {
+  return {{"of", errors.in_map_frame ? "poses in the map's frame" : "poses after alignment"},
+          {"alignment_poses", errors.alignment_poses},
+          {"causal", errors_json(errors.causal)},
+          {"causal_trusted", errors_json(errors.trusted)},
+          {"causal_degraded", errors_json(errors.degraded)},
+          {"final", errors_json(errors.final)},
+          {"trusted_off_by_more_than_0.2m", errors.wrongly_trusted},
+          {"longest_wrong_trust_s", errors.longest_wrong_trust_s},
+          {"share_within_95_percent_bound", errors.within_bound ? Json(*errors.within_bound) : Json()}};
+}
+
+}  // namespace byre

@@ -1,0 +1,247 @@
+#include "byre/assessment/run_report.h"
+
+#include "byre/assessment/calibration_report.h"
+#include "byre/assessment/finish_report.h"
+#include "byre/assessment/map_statistics.h"
+#include "byre/input/formatted.h"
+#include "byre/system/stored_map.h"
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace byre {
+namespace {
+
+std::string describe_poses(const FrameCounts& counts) {
+  std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
+  if (counts.lost_episodes > 0) text += formatted(", lost %d times for %d frames", counts.lost_episodes, counts.lost);
+  if (counts.resets > 0) text += formatted(", begun anew %d times", counts.resets);
+  if (counts.unreadable > 0) text += formatted("; %d could not be read", counts.unreadable);
+  return text;
+}
+
+std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  return formatted(protocol.extended.empty() ? "%d keyframes, of %d made; %d points"
+                                             : "%d keyframes, of those before and %d made; %d points",
+                   run.map.keyframe_count(), counts.keyframes, run.map.point_count());
+}
+
+// The most frequent reason first; empty where there is none.
+std::string describe_refusals(const FrameCounts& counts) {
+  std::vector<std::pair<int, TwoViewFailure>> ranked;
+  for (const auto& [failure, frames] : counts.refused_starts) ranked.emplace_back(-frames, failure);
+  std::ranges::sort(ranked);
+  std::string text;
+  for (const auto& [frames, failure] : ranked) {
+    text += (text.empty() ? "" : ", ") + std::string(to_string(failure)) + formatted(" %d", -frames);
+  }
+  return text.empty() ? text : text + " frames";
+}
+
+// How one camera came to a map of its own; empty for other runs.
+std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  if (protocol.is_metric) return "";
+  std::string begun = "never";
+  if (!run.causal.empty()) {
+    const double seconds = to_seconds(run.causal.front().time - run.frames.front().time);
+    begun = formatted("%.2f s after the first frame, at frame %d", seconds, counts.frames_to_first.value_or(0));
+  }
+  const std::string refusals = describe_refusals(counts);
+  if (!refusals.empty()) begun += "; refused before: " + refusals;
+  return row("begun", begun) + row("scale", "of the map's own; \"byre scale\" makes it metres");
+}
+
+std::string describe_loops(const FrameCounts& counts) {
+  std::string text =
+      formatted("%d found on the way, %d corrections of the whole map", counts.loops, counts.corrections);
+  if (counts.relocalisations > 0) text += formatted("; found again %d times", counts.relocalisations);
+  return text;
+}
+
+// Empty for a map that goes on with no other.
+std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  if (protocol.extended.empty()) return "";
+  const std::string found = counts.frames_to_first ? formatted(", found in it after %d frames", *counts.frames_to_first)
+                                                   : std::string(", never found in it");
+  std::string text = row("extended", protocol.extended + found);
+  const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    text += row("of", protocol.recordings[i] + formatted(", %d keyframes", keyframes[i]));
+  }
+  return text;
+}
+
+std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
+  std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
+  if (protocol.camera == CameraChoice::rgbd) {
+    text += formatted(", %d of them with depth", count_frames(run.frames).with_depth_image);
+  } else if (protocol.camera != CameraChoice::stereo) {
+    text += formatted(" of the %s camera", to_string(protocol.camera).data());
+  }
+  const auto frames = static_cast<int>(run.frames.size());
+  if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
+  return text;
+}
+
+std::string describe(const TimeSummary& times) {
+  return formatted("mean %.1f ms, p99 %.1f ms", times.mean_ms, times.p99_ms);
+}
+
+std::string describe_frame_time(const MapRun& run, Pace pace) {
+  const std::string total = describe(summarise_stage(run.frames, &StageSeconds::total));
+  if (pace != Pace::same_thread) return total;
+  return total + "; without mapping jobs " + describe(summarise_without_jobs(run.frames));
+}
+
+std::string describe_mapping(const MapRun& run) {
+  const TimeSummary jobs = summarise_times(run.job_seconds);
+  return formatted("%d jobs, mean %.1f ms, max %.1f ms", jobs.count, jobs.mean_ms, jobs.max_ms);
+}
+
+std::string describe_late(const MapRun& run) {
+  const TimeSummary late = summarise_times(run.lateness);
+  if (late.count == 0) return "no frame";
+  return formatted("%d frames, by up to %.1f ms", late.count, late.max_ms);
+}
+
+std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
+  const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
+  const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
+  return formatted("%.1f s, in %.1f s of wall time: %.1f frames/s", resources.cpu_seconds, run.wall_seconds, rate);
+}
+
+std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
+  std::string text = formatted("%.0f MB at most", resources.peak_memory_mb);
+  if (run.frames.empty()) return text;
+  return text + formatted("; %.0f MB after the first frame, %.0f MB after the last", run.frames.front().memory_mb,
+                          run.frames.back().memory_mb);
+}
+
+std::string listing(const std::vector<std::string>& files) {
+  std::string text;
+  for (const std::string& file : files) text += (text.empty() ? "" : ", ") + file;
+  return text;
+}
+
+std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
+  return row("recording", describe_recording(run, protocol)) + row("pace", std::string(name_of(protocol.options.pace)));
+}
+
+std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
+  if (run.finishing) return calibration_row(run.calibration) + to_text(*run.finishing);
+  if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
+  if (run.causal.empty()) return row("finishing", "left out, as there is no map");
+  return row("finishing", "left out; \"byre refine\" does it");
+}
+
+std::string cost_rows(const MapRun& run, Pace pace, const ResourceUse& resources) {
+  std::string text = row("frame time", describe_frame_time(run, pace));
+  text += row("mapping", describe_mapping(run));
+  if (pace == Pace::live) text += row("late", describe_late(run));
+  text += row("CPU time", describe_processor(run, resources));
+  text += row("memory", describe_memory(run, resources));
+  return text;
+}
+
+std::string closing_rows(const MapRun& run, const std::vector<std::string>& files) {
+  std::string text;
+  if (!run.warnings.empty()) {
+    text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
+  }
+  if (!files.empty()) text += row("written", listing(files));
+  return text;
+}
+
+std::string describe_offline(const MapProtocol& protocol) {
+  const Map& map = protocol.options.offline->map();
+  return protocol.offline + formatted(", %d keyframes, %d points", map.keyframe_count(), map.point_count()) +
+         (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)") +
+         (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
+}
+
+// What "byre map" is about.
+std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
+  const FrameCounts counts = count_frames(run.frames);
+  std::string text = row("poses", describe_poses(counts));
+  text += scale_rows(run, protocol, counts);
+  text += row("map", describe_map(run, protocol, counts));
+  text += extension_rows(run, protocol, counts);
+  if (protocol.options.vocabulary) text += row("loops", describe_loops(counts));
+  text += finishing_rows(run, protocol);
+  return text;
+}
+
+std::string describe_coverage(const MapRun& run, const MissionStatistics& statistics) {
+  const FrameCounts counts = count_frames(run.frames);
+  std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
+  if (!statistics.seconds_to_first_pose) return text;
+  return text + formatted(", the first after %.2f s", *statistics.seconds_to_first_pose);
+}
+
+// Without the offline points that its keyframes see.
+std::string describe_online(const MapRun& run, const FrameCounts& counts) {
+  if (run.frames.empty()) return "none";
+  return formatted("%d keyframes, of %d made; %d points", run.frames.back().keyframes, counts.keyframes,
+                   run.frames.back().points);
+}
+
+std::string describe_mission_finishing(const MapRun& run) {
+  if (!run.mission_finishing_seconds) return "left out";
+  return formatted("%.1f s: the online map adjusted as a whole, around the offline one",
+                   *run.mission_finishing_seconds);
+}
+
+// What "byre run" is about, with an offline map or without.
+std::string mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol) {
+  const FrameCounts counts = count_frames(run.frames);
+  const bool has_map = protocol.options.offline != nullptr;
+  std::string text;
+  if (has_map) text += row("offline map", describe_offline(protocol));
+  text += row("poses", describe_coverage(run, mission.statistics));
+  text += scale_rows(run, protocol, counts);
+  text += to_text(mission.statistics);
+  if (protocol.options.session.map_online) {
+    text += has_map ? row("online map", describe_online(run, counts)) : row("map", describe_map(run, protocol, counts));
+    text += row("loops", describe_loops(counts));
+  }
+  if (!has_map) text += finishing_rows(run, protocol);
+  if (has_map && protocol.options.session.map_online) text += row("finishing", describe_mission_finishing(run));
+  if (mission.errors) text += to_text(*mission.errors);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+                    const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission) {
+  std::string text = recording_rows(run, protocol);
+  text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
+  text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
+                                protocol.is_metric ? "m" : "units", run.final.size()));
+  text += cost_rows(run, protocol.options.pace, resources);
+  text += closing_rows(run, files);
+  return text;
+}
+
+void require_poses(const MapRun& run, const MapProtocol& protocol) {
+  if (!run.causal.empty()) return;
+  const FrameCounts counts = count_frames(run.frames);
+  if (2 * counts.unreadable > counts.frames) {
+    throw std::runtime_error(formatted("no frame got a pose: %d of %d could not be read; the warnings say why",
+                                       counts.unreadable, counts.frames));
+  }
+  const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;
+  if (!before.empty()) {
+    throw std::runtime_error("no frame was found in " + before +
+                             ": the recording may be of another place, or too different in light or viewpoint");
+  }
+  const std::string refusals = describe_refusals(counts);
+  if (!refusals.empty()) {
+    throw std::runtime_error("no frame got a pose, for one camera begins a map by moving sideways: " + refusals);
+  }
+  throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
+}
+
+}  // namespace byre

@@ -1,0 +1,297 @@
+#include "byre/benchmark/benchmark_run.h"
+
+#include "byre/benchmark/peak_memory.h"
+#include "byre/dataset/trajectory_input.h"
+#include "byre/evaluation/trajectory_output.h"
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
+#include "byre/system/resources.h"
+#include "byre/system/stored_map.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A recording that is there, with its truth.
+struct Source {
+  fs::path folder;
+  FrameRange range;
+  OpenOptions open;
+  Trajectory truth;
+
+  ScaledRecording open_frames(bool has_map) const { return open_scaled(folder, range, open, has_map); }
+};
+
+using Sources = std::map<std::string, Source>;  // by the recording's name
+
+std::vector<std::string> recordings_of(const BenchmarkCase& benchmark_case) {
+  std::vector<std::string> names = {benchmark_case.recording};
+  if (benchmark_case.map) names.push_back(*benchmark_case.map);
+  return names;
+}
+
+std::vector<BenchmarkCase> chosen_cases(const BenchmarkProtocol& protocol, const std::vector<std::string>& only) {
+  if (only.empty()) return protocol.cases;
+  std::vector<BenchmarkCase> chosen;
+  for (const std::string& name : only) {
+    const auto found = std::ranges::find(protocol.cases, name, &BenchmarkCase::name);
+    if (found == protocol.cases.end()) {
+      std::string names;
+      for (const BenchmarkCase& known : protocol.cases) names += (names.empty() ? "" : ", ") + known.name;
+      throw InputError("--only " + name, "is no case of " + protocol.name, "its cases are " + names);
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+// Why a case cannot be run; empty when nothing is missing.
+std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, const BenchmarkProtocol& protocol,
+                                        const fs::path& data) {
+  for (const std::string& name : recordings_of(benchmark_case)) {
+    const fs::path folder = data / protocol.recording(name).folder;
+    if (!fs::exists(folder)) return SkippedCase{benchmark_case.name, folder.string() + " is not there"};
+  }
+  return std::nullopt;
+}
+
+Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
+  Source source{data / recording.folder, recording.range, recording.open, {}};
+  if (recording.open.calibration) source.open.calibration = data / *recording.open.calibration;
+  source.open_frames(false);  // what is wrong with it is told now
+  source.truth = load_truth(recording.truth ? data / *recording.truth : source.folder);
+  for (StampedPose& sample : source.truth) sample.time += recording.truth_offset;
+  return source;
+}
+
+// A mission needs metres.
+void require_metric(const Source& source) {
+  if (source.open_frames(false).is_metric) return;
+  throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
+                   "make the map of a stereo recording, by both cameras, or of one with depth");
+}
+
+Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkProtocol& protocol, const fs::path& data) {
+  Sources sources;
+  for (const BenchmarkCase& benchmark_case : cases) {
+    for (const std::string& name : recordings_of(benchmark_case)) {
+      if (!sources.contains(name)) sources.emplace(name, open_source(protocol.recording(name), data));
+    }
+    if (benchmark_case.map) require_metric(sources.at(*benchmark_case.map));
+  }
+  return sources;
+}
+
+Trajectory truth_during(const Trajectory& truth, const Recording& recording) {
+  Trajectory part;
+  for (const StampedPose& sample : truth) {
+    if (sample.time >= recording.times().front() && sample.time <= recording.times().back()) part.push_back(sample);
+  }
+  return part;
+}
+
+// A run with what its cost was.
+struct TimedRun {
+  MapRun run;
+  CostMeasures cost;
+};
+
+TimedRun run_and_time(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks) {
+  const bool is_reset = reset_peak_memory();
+  const double cpu_before = resources_used_so_far().cpu_seconds;
+  TimedRun timed;
+  timed.run = run_map(recording, options, hooks);
+  timed.cost.cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  if (is_reset) timed.cost.peak_memory_mb = peak_memory_mb();
+  return timed;
+}
+
+class BenchmarkRunner {
+ public:
+  BenchmarkRunner(const BenchmarkProtocol& protocol, const BenchmarkOptions& options, const Vocabulary& vocabulary,
+                  const BenchmarkHooks& hooks)
+      : protocol_(protocol), options_(options), vocabulary_(vocabulary), hooks_(hooks) {}
+
+  BenchmarkResult run() {
+    std::vector<BenchmarkCase> cases = chosen_cases(protocol_, options_.only);
+    std::erase_if(cases, [this](const BenchmarkCase& candidate) { return skip_without_data(candidate); });
+    if (cases.empty()) {
+      throw InputError(options_.data.string(), "holds none of the recordings of " + protocol_.name,
+                       "name the folder in which they lie (--data), or get them: see docs/benchmark.md");
+    }
+    sources_ = open_sources(cases, protocol_, options_.data);
+    for (const BenchmarkCase& benchmark_case : cases) run_case(benchmark_case);
+    result_.stopped = hooks_.should_stop();
+    return std::move(result_);
+  }
+
+ private:
+  bool skip_without_data(const BenchmarkCase& candidate) {
+    const std::optional<SkippedCase> missing = missing_data(candidate, protocol_, options_.data);
+    if (missing) skip(*missing);
+    return missing.has_value();
+  }
+
+  void skip(const SkippedCase& skipped) {
+    result_.skipped.push_back(skipped);
+    hooks_.on_skipped(skipped);
+  }
+
+  void run_case(const BenchmarkCase& benchmark_case) {
+    if (hooks_.should_stop()) return;
+    const MadeMap* const map = benchmark_case.map ? map_of(*benchmark_case.map) : nullptr;
+    if (hooks_.should_stop()) return;
+    if (benchmark_case.map && map == nullptr) {
+      return skip({benchmark_case.name, "no map could be made of " + *benchmark_case.map + ": no frame got a pose"});
+    }
+    const Source& source = sources_.at(benchmark_case.recording);
+    const auto recording = source.open_frames(map != nullptr).recording;
+    result_.cases.push_back({benchmark_case,
+                             {},
+                             guess_format(source.folder),
+                             truth_during(source.truth, *recording),
+                             camera_of(*recording, source.open)});
+    for (const Arm arm : benchmark_case.arms) run_arm(benchmark_case, arm, arm == Arm::no_map ? nullptr : map);
+  }
+
+  void run_arm(const BenchmarkCase& benchmark_case, Arm arm, const MadeMap* map) {
+    const Source& source = sources_.at(benchmark_case.recording);
+    const ScaledRecording opened = source.open_frames(map != nullptr);
+    Recording& recording = *opened.recording;
+    const Trajectory true_path = opened.path_of(source.truth);
+    RunTruth truth{true_path, {}, opened.is_metric ? Scale::fixed : Scale::free};
+    if (map != nullptr) truth.map = map->alignment;
+    const std::string what = benchmark_case.name + " " + std::string(name_of(arm));
+    ArmResult result;
+    result.arm = arm;
+    for (int i = 0; i < protocol_.runs; ++i) {
+      EngineOptions run_options = options_for(arm, i);
+      if (map != nullptr) run_options.offline = load_offline_map(map->file, vocabulary_);
+      hooks_.before_run(what + formatted(", run %d of %d", i + 1, protocol_.runs), recording.size());
+      const TimedRun timed = run_and_time(recording, run_options, run_hooks());
+      if (hooks_.should_stop()) return;
+      write_trajectories(timed.run, file_name_of(benchmark_case.name) + "." + std::string(name_of(arm)), i);
+      if (i == 0) {
+        result.final_trace = trace_of(timed.run.final, truth);
+        result.causal_trace = trace_of(timed.run.causal, truth);
+      }
+      RunMeasures measures = judge(timed.run, truth);
+      measures.cost.peak_memory_mb = timed.cost.peak_memory_mb;
+      measures.cost.cpu_seconds = timed.cost.cpu_seconds;
+      result.runs.push_back({protocol_.seed_of_run(i), measures, timed.run.warnings});
+      keep(result);
+    }
+  }
+
+  // The arm as far as it has come.
+  void keep(const ArmResult& result) {
+    std::vector<ArmResult>& arms = result_.cases.back().arms;
+    if (result.runs.size() > 1) arms.pop_back();
+    arms.push_back(result);
+    hooks_.after_run(result_);
+  }
+
+  // Made at the first call; null when that failed or was stopped.
+  const MadeMap* map_of(const std::string& name) {
+    const auto made = std::ranges::find(result_.maps, name, &MadeMap::recording);
+    if (made != result_.maps.end()) return &*made;
+    if (!failed_maps_.contains(name)) make_map(name);
+    const auto now = std::ranges::find(result_.maps, name, &MadeMap::recording);
+    return now != result_.maps.end() ? &*now : nullptr;
+  }
+
+  void make_map(const std::string& name) {
+    const Source& source = sources_.at(name);
+    const auto recording = source.open_frames(false).recording;
+    hooks_.before_run("map of " + name, recording->size());
+    MapRun run = run_map(*recording, options_for(Arm::no_map, 0), run_hooks());
+    if (hooks_.should_stop()) return;
+    if (run.causal.empty()) {
+      failed_maps_.insert(name);
+      return;
+    }
+    MadeMap made{name,
+                 options_.output / (file_name_of(name) + ".byre"),
+                 run.map.keyframe_count(),
+                 run.map.point_count(),
+                 align_to_truth(run.final, Scale::fixed, source.truth),
+                 run.wall_seconds};
+    StoredMap stored;
+    stored.recordings.push_back(describe_source(source.folder, *recording, run.calibration));
+    stored.map = std::move(run.map);
+    save_for_use(std::move(stored), vocabulary_, "", made.file);
+    write_trajectories(run, file_name_of(name) + ".map", 0);
+    result_.maps.push_back(std::move(made));
+  }
+
+  EngineOptions options_for(Arm arm, int run) const {
+    EngineOptions run_options;
+    run_options.pace = options_.pace;
+    run_options.vocabulary = vocabulary_;
+    run_options.session.map_online = arm != Arm::localise_only;
+    run_options.session.relocalise.ransac.seed = protocol_.seed_of_run(run);
+    return run_options;
+  }
+
+  MapRunHooks run_hooks() const {
+    MapRunHooks hooks;
+    hooks.should_stop = hooks_.should_stop;
+    hooks.after_frame = hooks_.after_frame;
+    return hooks;
+  }
+
+  void write_trajectories(const MapRun& run, const std::string& name, int index) const {
+    const fs::path folder = options_.output / "trajectories";
+    fs::create_directories(folder);
+    const std::string run_name = name + formatted(".%d", index + 1);
+    write_whole(folder / (run_name + ".final.txt"), run.final);
+    write_whole(folder / (run_name + ".causal.txt"), run.causal);
+  }
+
+  // Constant after construction; borrowed.
+  const BenchmarkProtocol& protocol_;
+  const BenchmarkOptions& options_;
+  const Vocabulary& vocabulary_;
+  const BenchmarkHooks& hooks_;
+
+  Sources sources_;
+  std::set<std::string> failed_maps_;
+  BenchmarkResult result_;
+};
+
+}  // namespace
+
+std::vector<RunMeasures> ArmResult::measures() const {
+  std::vector<RunMeasures> measures;
+  for (const BenchmarkRunResult& run : runs) measures.push_back(run.measures);
+  return measures;
+}
+
+BenchmarkResult run_benchmark(const BenchmarkProtocol& protocol, const BenchmarkOptions& options,
+                              const Vocabulary& vocabulary, const BenchmarkHooks& hooks) {
+  return BenchmarkRunner(protocol, options, vocabulary, hooks).run();
+}
+
+std::string file_name_of(const std::string& name) {
+  std::string result;
+  for (const char character : name) {
+    if (character == '*') {
+      result += "-star";
+    } else {
+      const bool is_plain = std::isalnum(static_cast<unsigned char>(character)) != 0 || character == '_';
+      result += is_plain ? character : '-';
+    }
+  }
+  return result;
+}
+
+}  // namespace byre

@@ -1,0 +1,86 @@
+#include "byre/benchmark/plots.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // between poses; more is a gap in the line
+
+const char* colour_of(Arm arm) {
+  switch (arm) {
+    case Arm::no_map:
+      return "#0072b2";
+    case Arm::localise_only:
+      return "#e69f00";
+    case Arm::hybrid:
+      return "#c7322e";
+  }
+  return "";
+}
+
+// Pixels; the later is drawn on top, and both are seen where they coincide.
+double width_of(Arm arm) {
+  return arm == Arm::localise_only ? 3.4 : 1.6;
+}
+
+std::string shown_name(Arm arm) {
+  std::string name(name_of(arm));
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+// The horizontal axes of the truth: EuRoC's z points up, KITTI's y points down.
+Eigen::Vector2d from_above(const Eigen::Vector3d& position, RecordingFormat format) {
+  return {position.x(), format == RecordingFormat::kitti ? position.z() : position.y()};
+}
+
+std::string about(const CaseResult& result) {
+  std::string text = result.what.recording;
+  if (result.what.map) text += " on the map of " + *result.what.map;
+  return text;
+}
+
+}  // namespace
+
+Chart path_chart(const CaseResult& result) {
+  Chart chart;
+  chart.title = result.what.name + ": path from above";
+  chart.subtitle = about(result) + "; final poses; no map: aligned to the truth, else in the frame of the offline map";
+  chart.x_label = "x [m]";
+  chart.y_label = result.format == RecordingFormat::kitti ? "z [m]" : "y [m]";
+  chart.equal_scales = true;
+  const auto of_truth = [&result](const StampedPose& sample) {
+    return from_above(sample.world_from_body.translation, result.format);
+  };
+  const auto of_trace = [&result](const TracePoint& point) {
+    return from_above(point.position_in_truth, result.format);
+  };
+  chart.series.push_back({"truth", kTruthColour, kTruthWidth, line_through(result.truth, kLongestStep, of_truth)});
+  for (const ArmResult& arm : result.arms) {
+    chart.series.push_back({shown_name(arm.arm), colour_of(arm.arm), width_of(arm.arm),
+                            line_through(arm.final_trace, kLongestStep, of_trace)});
+  }
+  return chart;
+}
+
+Chart error_chart(const CaseResult& result) {
+  constexpr double kMillimetres = 1e3;
+  Chart chart;
+  chart.title = result.what.name + ": error of position over time";
+  chart.subtitle = about(result) + "; causal poses; no map: after alignment, else in the frame of the offline map";
+  chart.x_label = "time [s]";
+  chart.y_label = "error [mm]";
+  chart.log_y = true;
+  const Timestamp begin = result.truth.empty() ? Timestamp{0} : result.truth.front().time;
+  const auto of_trace = [begin](const TracePoint& point) {
+    return Eigen::Vector2d(to_seconds(point.time - begin), kMillimetres * point.error);
+  };
+  for (const ArmResult& arm : result.arms) {
+    chart.series.push_back({shown_name(arm.arm), colour_of(arm.arm), width_of(arm.arm),
+                            line_through(arm.causal_trace, kLongestStep, of_trace)});
+  }
+  return chart;
+}
+
+}  // namespace byre

@@ -1,0 +1,206 @@
+#include "byre/benchmark/protocol.h"
+
+#include "byre/benchmark/yaml_value.h"
+#include "byre/dataset/recording_words.h"
+#include "byre/input/data_file.h"
+#include "byre/input_error.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kArms = {Arm::no_map, Arm::localise_only, Arm::hybrid};
+constexpr double kLargestOffset = 1e6;  // seconds
+
+template <typename Range, typename NameOf>
+std::string listed(const Range& range, NameOf name) {
+  std::string text;
+  for (const auto& entry : range) text += (text.empty() ? "" : ", ") + std::string(name(entry));
+  return text;
+}
+
+Arm read_arm(const YamlValue& value) {
+  const std::string text = value.text();
+  const auto* const arm = std::ranges::find(kArms, text, [](Arm candidate) { return name_of(candidate); });
+  if (arm != kArms.end()) return *arm;
+  value.fail("\"" + text + "\" is no arm", "use " + listed(kArms, [](Arm known) { return name_of(known); }));
+}
+
+FrameRange read_frames(const YamlValue& value) {
+  const std::optional<FrameRange> range = parse_frames(value.text());
+  if (!range) value.fail("\"" + value.text() + "\" is no range of frames", "write it as \"0:150\", the end exclusive");
+  return *range;
+}
+
+CameraChoice read_camera(const YamlValue& value) {
+  const std::optional<CameraChoice> camera = parse_camera(value.text());
+  if (!camera) value.fail("\"" + value.text() + "\" is no choice of cameras", "use stereo, left, right or rgbd");
+  return *camera;
+}
+
+OpenOptions read_open_options(const YamlValue& recording) {
+  OpenOptions options;
+  if (const auto camera = recording.find("camera")) options.camera = read_camera(*camera);
+  if (const auto calibration = recording.find("calibration")) options.calibration = calibration->text();
+  if (const auto rate = recording.find("fps")) {
+    options.frame_rate_hz = rate->number(kLowestFrameRate, kHighestFrameRate);
+  }
+  return options;
+}
+
+BenchmarkRecording read_recording(const YamlValue& value) {
+  value.require_fields({"name", "folder", "frames", "camera", "calibration", "fps", "truth", "truth_offset_s"});
+  BenchmarkRecording recording;
+  recording.name = value["name"].text();
+  recording.folder = value["folder"].text();
+  if (const auto frames = value.find("frames")) recording.range = read_frames(*frames);
+  recording.open = read_open_options(value);
+  if (const auto truth = value.find("truth")) recording.truth = truth->text();
+  if (const auto offset = value.find("truth_offset_s")) {
+    recording.truth_offset = from_seconds(offset->number(-kLargestOffset, kLargestOffset));
+  }
+  return recording;
+}
+
+std::vector<Arm> read_arms(const YamlValue& value) {
+  std::vector<Arm> arms;
+  for (const YamlValue& entry : value.entries()) {
+    const Arm arm = read_arm(entry);
+    if (std::ranges::count(arms, arm) > 0) entry.fail("the arm is named twice", "name it once");
+    arms.push_back(arm);
+  }
+  return arms;
+}
+
+void require_map_for(const BenchmarkCase& benchmark_case, const YamlValue& value) {
+  const bool needs_map = std::ranges::any_of(benchmark_case.arms, [](Arm arm) { return arm != Arm::no_map; });
+  if (needs_map && !benchmark_case.map) {
+    value.fail("localise_only and hybrid need a map", "name the recording it is to be made of (map: mh_01)");
+  }
+}
+
+BenchmarkCase read_case(const YamlValue& value, const BenchmarkProtocol& protocol) {
+  value.require_fields({"name", "recording", "map", "arms"});
+  const auto declared = [&protocol](const YamlValue& name) {
+    if (std::ranges::count(protocol.recordings, name.text(), &BenchmarkRecording::name) > 0) return name.text();
+    name.fail("the recording \"" + name.text() + "\" is not declared",
+              "the protocol has " + listed(protocol.recordings, [](const auto& recording) { return recording.name; }));
+  };
+  BenchmarkCase result;
+  result.name = value["name"].text();
+  result.recording = declared(value["recording"]);
+  if (const auto map = value.find("map")) result.map = declared(*map);
+  result.arms = result.map ? std::vector<Arm>(kArms.begin(), kArms.end()) : std::vector<Arm>{Arm::no_map};
+  if (const auto arms = value.find("arms")) result.arms = read_arms(*arms);
+  require_map_for(result, value);
+  return result;
+}
+
+TrajectoryMeasures read_figures(const YamlValue& value) {
+  using Known = Measure<TrajectoryMeasures>;
+  constexpr double kLargestFigure = 1e6;
+  TrajectoryMeasures figures;
+  for (const auto& [key, figure] : value.fields()) {
+    const auto known = std::ranges::find(trajectory_measures(), key.text(), &Known::key);
+    if (known == trajectory_measures().end()) {
+      key.fail("\"" + key.text() + "\" is no figure",
+               "use " + listed(trajectory_measures(), [](const Known& measure) { return measure.key; }));
+    }
+    figures.*known->figure = figure.number(0.0, kLargestFigure);
+  }
+  return figures;
+}
+
+PublishedFigures read_published(const YamlValue& value, const BenchmarkProtocol& protocol) {
+  value.require_fields({"name", "note", "cases"});
+  PublishedFigures published;
+  published.name = value["name"].text();
+  if (const auto note = value.find("note")) published.note = note->text();
+  for (const auto& [name, figures] : value["cases"].fields()) {
+    if (std::ranges::count(protocol.cases, name.text(), &BenchmarkCase::name) == 0) {
+      name.fail("there is no case \"" + name.text() + "\"", "declare it under cases, or leave its figures out");
+    }
+    published.of_case[name.text()] = read_figures(figures);
+  }
+  return published;
+}
+
+// The entries of a list, each read by read(entry), under names that differ.
+template <typename Read>
+auto read_named(const YamlValue& list, Read read) {
+  std::vector<decltype(read(list))> result;
+  std::set<std::string> names;
+  for (const YamlValue& entry : list.entries()) {
+    result.push_back(read(entry));
+    if (!names.insert(result.back().name).second) entry.fail("the name is used twice", "choose another");
+  }
+  return result;
+}
+
+void read_runs(const YamlValue& root, BenchmarkProtocol& protocol) {
+  constexpr int kMostRuns = 1000, kLargestSeed = 1'000'000'000;
+  if (const auto runs = root.find("runs")) protocol.runs = runs->whole_number(1, kMostRuns);
+  const auto seeds = root.find("seeds");
+  if (!seeds) return;
+  for (const YamlValue& seed : seeds->entries()) {
+    protocol.seeds.push_back(static_cast<std::uint64_t>(seed.whole_number(0, kLargestSeed)));
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(Arm arm) {
+  switch (arm) {
+    case Arm::no_map:
+      return "no_map";
+    case Arm::localise_only:
+      return "localise_only";
+    case Arm::hybrid:
+      return "hybrid";
+  }
+  return "";
+}
+
+const BenchmarkRecording& BenchmarkProtocol::recording(const std::string& recording_name) const {
+  return *std::ranges::find(recordings, recording_name, &BenchmarkRecording::name);
+}
+
+std::uint64_t BenchmarkProtocol::seed_of_run(int run) const {
+  const auto index = static_cast<std::size_t>(run);
+  if (seeds.empty()) return index;
+  return index < seeds.size() ? seeds[index] : seeds.back() + (index - seeds.size() + 1);
+}
+
+fs::path find_benchmark_protocol(const std::string& file_or_name) {
+  const fs::path path = file_or_name;
+  if (path.has_extension() || path.has_parent_path() || fs::is_regular_file(path)) return path;
+  return find_data_file(fs::path("protocols") / (file_or_name + ".yaml"),
+                        "name a file, or one that comes with byre: euroc, twin or mh_short");
+}
+
+BenchmarkProtocol read_benchmark_protocol(const fs::path& path) {
+  const YamlValue root = YamlValue::load(path);
+  root.require_fields({"title", "about", "runs", "seeds", "recordings", "cases", "published"});
+  BenchmarkProtocol protocol;
+  protocol.name = path.stem().string();
+  protocol.title = protocol.name;
+  if (const auto title = root.find("title")) protocol.title = title->text();
+  if (const auto about = root.find("about")) protocol.about = about->text();
+  read_runs(root, protocol);
+  protocol.recordings = read_named(root["recordings"], read_recording);
+  protocol.cases =
+      read_named(root["cases"], [&protocol](const YamlValue& entry) { return read_case(entry, protocol); });
+  if (const auto published = root.find("published")) {
+    protocol.published =
+        read_named(*published, [&protocol](const YamlValue& entry) { return read_published(entry, protocol); });
+  }
+  return protocol;
+}
+
+}  // namespace byre

@@ -1,0 +1,92 @@
+#include "byre/benchmark/yaml_value.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input/regular_file.h"
+#include "byre/input/text_file.h"
+#include "byre/input_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+namespace byre {
+
+namespace fs = std::filesystem;
+
+YamlValue YamlValue::load(const fs::path& path) {
+  refuse_pipe(path);
+  std::ifstream file(path);
+  if (!file || fs::is_directory(path)) {
+    throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+  }
+  try {
+    const YamlValue root(path, YAML::Load(file));
+    if (!root.node_.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
+    return root;
+  } catch (const YAML::Exception& error) {
+    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
+  }
+}
+
+std::string YamlValue::text() const {
+  if (!node_.IsScalar() || node_.Scalar().empty()) fail("is no text", "write a word or a text in quotes");
+  return node_.Scalar();
+}
+
+double YamlValue::number(double least, double most) const {
+  const std::optional<double> value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
+  if (value && *value >= least && *value <= most) return *value;
+  fail(formatted("is no number from %g to %g", least, most), "write such a number");
+}
+
+int YamlValue::whole_number(int least, int most) const {
+  const double value = number(least, most);
+  if (value != std::floor(value)) fail("is no whole number", "write it without a fraction");
+  return static_cast<int>(value);
+}
+
+std::vector<YamlValue> YamlValue::entries() const {
+  if (!node_.IsSequence() || node_.size() == 0) fail("is no list, or an empty one", "list at least one entry");
+  std::vector<YamlValue> entries;
+  for (const YAML::Node& entry : node_) entries.push_back({path_, entry});
+  return entries;
+}
+
+std::vector<std::pair<YamlValue, YamlValue>> YamlValue::fields() const {
+  if (!node_.IsMap()) fail("holds no named fields", "write them as \"name: value\"");
+  std::vector<std::pair<YamlValue, YamlValue>> fields;
+  for (const auto& field : node_) fields.push_back({YamlValue(path_, field.first), YamlValue(path_, field.second)});
+  return fields;
+}
+
+YamlValue YamlValue::operator[](const std::string& name) const {
+  const std::optional<YamlValue> value = find(name);
+  if (!value) fail("\"" + name + "\" is missing", "add it");
+  return *value;
+}
+
+std::optional<YamlValue> YamlValue::find(const std::string& name) const {
+  const YAML::Node value = node_[name];
+  if (!value) return std::nullopt;
+  return YamlValue(path_, value);
+}
+
+void YamlValue::require_fields(std::initializer_list<std::string_view> names) const {
+  std::set<std::string> seen;
+  for (const auto& [name, value] : fields()) {
+    const std::string text = name.text();
+    if (std::ranges::find(names, text) == names.end()) {
+      std::string known;
+      for (const std::string_view candidate : names) known += (known.empty() ? "" : ", ") + std::string(candidate);
+      name.fail("there is no field \"" + text + "\" here", "the fields are " + known);
+    }
+    if (!seen.insert(text).second) name.fail("\"" + text + "\" is given twice", "give it once");
+  }
+}
+
+void YamlValue::fail(const std::string& reason, const std::string& remedy) const {
+  throw InputError(path_.string() + ":" + std::to_string(node_.Mark().line + 1), reason, remedy);
+}
+
+}  // namespace byre

@@ -1,0 +1,154 @@
+#include "byre/benchmark/benchmark_run.h"
+#include "byre/benchmark/plots.h"
+#include "byre/benchmark/report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/output_file.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchmarkCommandOptions {
+  std::string protocol;
+  BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .pace = Pace::paced};
+  std::optional<int> runs;
+  std::optional<fs::path> vocabulary;
+  bool quiet = false;
+};
+
+constexpr const char* kBenchmarkFooter = R"(Examples:
+  byre benchmark euroc --data ~/recordings/euroc
+  byre benchmark mh_short --data ~/recordings/euroc --runs 1 -o out
+  byre benchmark my_barn.yaml --data /data --only "tuesday*" monday --pace live
+
+Each case of the protocol is run with each of its arms: no_map (plain SLAM), localise_only (on the map of another
+recording, nothing mapped) and hybrid (on that map, with an online one beside it). Maps are made once. Into the folder
+go benchmark.md (the tables that are printed), benchmark.json, plots as SVG, the maps, and every run's trajectories,
+for "byre evaluate". Cases whose recordings are not there are skipped. Ctrl-C keeps what was measured until then, then
+the exit code is 130. docs/benchmark.md explains the protocol and the figures.)";
+
+// The plots of the cases, as Markdown that shows them.
+std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
+  std::string markdown;
+  for (const CaseResult& one : result.cases) {
+    if (one.arms.empty()) continue;
+    const std::string name = file_name_of(one.what.name);
+    write_whole(folder / (name + "_path.svg"), to_svg(path_chart(one)));
+    write_whole(folder / (name + "_error.svg"), to_svg(error_chart(one)));
+    markdown += "\n![Path of " + one.what.name + "](" + name + "_path.svg)\n";
+    markdown += "\n![Error of " + one.what.name + "](" + name + "_error.svg)\n";
+  }
+  return markdown;
+}
+
+void write_results(const BenchmarkResult& result, const BenchmarkProtocol& protocol, const BenchmarkSetting& setting,
+                   const fs::path& folder) {
+  const std::string plots = write_plots(result, folder);
+  write_whole(folder / "benchmark.md", to_markdown(result, protocol, setting) + plots);
+  write_whole(folder / "benchmark.json", to_json(result, protocol, setting));
+}
+
+// Tells on the standard error stream what is run, and how far it is.
+class BenchmarkProgress {
+ public:
+  explicit BenchmarkProgress(bool quiet) : style_(progress_style(quiet)) {}
+
+  void begin(const std::string& what, int frames) {
+    end();
+    watch_ = Stopwatch();
+    say(what);
+    progress_.emplace(std::cerr, style_, frames);
+  }
+  void update(int done, const MappedFrame& frame) {
+    const bool is_read = frame.report.has_value();
+    progress_->update(done, watch_.seconds(), is_read ? to_string(frame.report->state) : "unreadable frame");
+  }
+  void end() {
+    if (progress_) progress_->close();
+    progress_.reset();
+  }
+  void say(const std::string& what) const {
+    if (style_ != ProgressStyle::none) std::cerr << what << std::endl;
+  }
+
+ private:
+  const ProgressStyle style_;
+  Stopwatch watch_;
+  std::optional<Progress> progress_;
+};
+
+ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& result) {
+  const fs::path file = find_benchmark_protocol(options.protocol);
+  BenchmarkProtocol protocol = read_benchmark_protocol(file);
+  if (options.runs) protocol.runs = *options.runs;
+  if (options.run.output.empty()) options.run.output = "benchmark_" + protocol.name;
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  make_folder(options.run.output);
+  const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.pace,
+                                 static_cast<int>(std::thread::hardware_concurrency())};
+
+  limit_image_threads(1);
+  const fs::path& folder = options.run.output;
+  const InterruptCatcher interrupt({folder / "benchmark.md", folder / "benchmark.json"});
+  BenchmarkProgress progress(options.quiet);
+  BenchmarkHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.before_run = [&progress](const std::string& what, int frames) { progress.begin(what, frames); };
+  hooks.after_frame = [&progress](int done, const MappedFrame& frame) { progress.update(done, frame); };
+  hooks.after_run = [&](const BenchmarkResult& so_far) { write_results(so_far, protocol, setting, folder); };
+  hooks.on_skipped = [&progress](const SkippedCase& skipped) {
+    progress.end();
+    progress.say("skipped " + skipped.name + ": " + skipped.reason);
+  };
+  const BenchmarkResult measured = run_benchmark(protocol, options.run, vocabulary, hooks);
+  progress.end();
+  write_results(measured, protocol, setting, folder);
+  result << to_markdown(measured, protocol, setting);
+  return measured.stopped ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_benchmark(CLI::App& command) {
+  constexpr int kMostRuns = 1000;
+  const auto options = std::make_shared<BenchmarkCommandOptions>();
+  add_input(command, Input::file, "PROTOCOL", options->protocol,
+            "A protocol file, or one that comes with byre: euroc, twin, mh_short")
+      ->type_name("FILE|NAME")
+      ->required();
+  add_input(command, Input::folder, "--data", options->run.data, "Folder in which the protocol's recordings lie (.)")
+      ->type_name("FOLDER");
+  add_output(command, Output::folder, "-o,--output", options->run.output,
+             "Folder for results, made if need be (benchmark_PROTOCOL)")
+      ->type_name("FOLDER");
+  command.add_option("--runs", options->runs, "Runs of each arm, instead of the protocol's")
+      ->type_name("N")
+      ->check(between(1, kMostRuns));
+  add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...");
+  declare_pace(command, options->run.pace);
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to recognise places with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.footer(kBenchmarkFooter);
+  return [options](std::ostream& result) { return run_benchmark_command(*options, result); };
+}
+
+}  // namespace byre::cli

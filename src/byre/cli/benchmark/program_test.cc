@@ -1,0 +1,80 @@
+// "byre benchmark" as a user runs it.
+
+#include "byre/cli/shared/program_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class BenchmarkProgram : public ProgramTest {
+ protected:
+  BenchmarkProgram() {
+    const fs::path& room = RenderedFixture::shared().folder();
+    write("room.yaml", "title: A room\nrecordings:\n  - {name: room, folder: " + room.filename().string() +
+                           ", frames: \"0:8\"}\n  - {name: hall, folder: hall}\ncases:\n"
+                           "  - {name: room, recording: room}\n  - {name: hall*, recording: hall, map: room}\n");
+    data_ = "--data '" + room.parent_path().string() + "'";
+  }
+
+  std::string data_;
+};
+
+TEST_F(BenchmarkProgram, WritesTablesFiguresAndPlots) {
+  const Outcome outcome = run("benchmark room.yaml " + data_ + " -o out/first --runs 2");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("# A room"));
+  EXPECT_THAT(outcome.output, HasSubstr("| room | no map | 100.0"));
+  EXPECT_THAT(outcome.output, HasSubstr("- hall*: "));
+  EXPECT_THAT(outcome.errors, HasSubstr("skipped hall*"));
+  EXPECT_THAT(outcome.errors, HasSubstr("room no_map, run 2 of 2"));
+  EXPECT_THAT(read("out/first/benchmark.md"), HasSubstr(outcome.output));
+  EXPECT_THAT(read("out/first/benchmark.md"), HasSubstr("](room_error.svg)"));
+  const auto json = nlohmann::json::parse(read("out/first/benchmark.json"));
+  EXPECT_THAT(json["cases"][0]["arms"][0]["runs"], SizeIs(2));
+  EXPECT_THAT(read("out/first/room_path.svg"), HasSubstr("</svg>"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/first/trajectories/room.no_map.2.final.txt"));
+}
+
+TEST_F(BenchmarkProgram, RepeatsItselfQuietly) {
+  ASSERT_EQ(run("benchmark room.yaml " + data_ + " -o a --quiet").exit_code, 0);
+  const Outcome again = run("benchmark room.yaml " + data_ + " -o b --quiet");
+  EXPECT_THAT(again.errors, IsEmpty());
+  EXPECT_FALSE(read("a/trajectories/room.no_map.1.final.txt").empty());
+  EXPECT_EQ(read("a/trajectories/room.no_map.1.final.txt"), read("b/trajectories/room.no_map.1.final.txt"));
+}
+
+TEST_F(BenchmarkProgram, SaysWhatIsWrongWithItsInput) {
+  EXPECT_EQ(run("benchmark").exit_code, 2);
+  EXPECT_EQ(run("benchmark room.yaml --runs 0").exit_code, 2);
+  const Outcome unknown = run("benchmark unknown");
+  EXPECT_EQ(unknown.exit_code, 3);
+  EXPECT_THAT(unknown.errors, HasSubstr("euroc, twin or mh_short"));
+  const Outcome nothing = run("benchmark room.yaml --data .");
+  EXPECT_EQ(nothing.exit_code, 3);
+  EXPECT_THAT(nothing.errors, HasSubstr("holds none of the recordings of room"));
+  write("broken.yaml", "cases: 1\nrunz: 2\n");
+  EXPECT_THAT(run("benchmark broken.yaml").errors, HasSubstr("broken.yaml:2: there is no field \"runz\" here"));
+}
+
+TEST_F(BenchmarkProgram, KeepsWhatWasMeasuredWhenInterrupted) {
+  const pid_t process = start({"benchmark", (folder_ / "room.yaml").string(), "--data",
+                               RenderedFixture::shared().folder().parent_path().string(), "-o",
+                               (folder_ / "out").string(), "--runs", "500"});
+  ASSERT_TRUE(appears("run 3 of 500", "stderr.txt"));
+  kill(process, SIGINT);
+  EXPECT_EQ(exit_code_of(process), 130);
+  EXPECT_THAT(read("stdout.txt"), HasSubstr("stopped early"));
+  EXPECT_EQ(nlohmann::json::parse(read("out/benchmark.json"))["stopped_early"], true);
+  EXPECT_GE(nlohmann::json::parse(read("out/benchmark.json"))["cases"][0]["arms"][0]["runs"].size(), 2u);
+}
+
+}  // namespace
+}  // namespace byre::cli

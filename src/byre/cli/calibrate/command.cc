@@ -1,0 +1,101 @@
+#include "byre/assessment/calibration_report.h"
+#include "byre/calibration_file.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/system/stored_map.h"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CalibrateOptions {
+  fs::path recording;
+  OpenOptions open;
+  FrameRange range;
+  fs::path output;
+  bool json = false;
+  bool quiet = false;
+};
+
+constexpr const char* kCalibrateFooter = R"(Examples:
+  byre calibrate evening_round -o calibration.yaml
+  byre map evening_round --calibration calibration.yaml -o barn.byre
+
+Maps the recording, and refines the calibration that it holds (or --calibration) by what is seen: focal lengths,
+principal points, distortion, and how the right camera is turned. Each is told with how well it was known before and is
+known now; what the motion does not tell stays as given. Turn the camera about all axes, and look at things near and far,
+for a minute or two. The length of the baseline is never seen by images: "byre register --fix-scale" takes it from a floor
+plan. "byre map" does the same with each recording, and keeps the result in the map.)";
+
+std::string to_text(const CalibrateOptions& options, const RefinedCalibration& refined) {
+  return row("recording", options.recording.string()) + row("calibration", describe_calibration(refined)) +
+         calibration_table(refined) + row("written", options.output.string());
+}
+
+std::string to_json_text(const CalibrateOptions& options, const RefinedCalibration& refined) {
+  const nlohmann::ordered_json json = {{"program", "byre calibrate"},
+                                       {"version", BYRE_VERSION},
+                                       {"recording", options.recording.string()},
+                                       {"written", options.output.string()},
+                                       {"calibration", calibration_json(refined)}};
+  constexpr int kIndent = 2;
+  return json.dump(kIndent) + "\n";
+}
+
+ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
+  require_writable(options.output);
+  const auto [recording, is_metric, body_from_camera] =
+      open_scaled(options.recording, options.range, options.open, false);
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  EngineOptions run_options;
+  run_options.vocabulary = open_vocabulary(std::nullopt);
+  limit_image_threads(1);
+  const InterruptCatcher interrupt({options.output});
+  const MapRun run = run_with_progress(*recording, run_options, {}, interrupt, options.quiet);
+  if (interrupt.caught()) return ExitCode::interrupted;
+  if (!run.calibration) {
+    throw InputError(options.recording.string(), "shows too little to calibrate its cameras by",
+                     "record a minute or more of motion about a place with texture");
+  }
+  if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
+  Calibration calibration = run.calibration->calibration;
+  if (!is_metric) calibration.body_from_left = body_from_camera;
+  write_whole(options.output, write_calibration(calibration));
+  result << (options.json ? to_json_text(options, *run.calibration) : to_text(options, *run.calibration));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_calibrate(CLI::App& command) {
+  const auto options = std::make_shared<CalibrateOptions>();
+  add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
+  add_output(command, Output::calibration, "-o,--output", options->output, "Calibration file (Kalibr's form)")
+      ->type_name("YAML")
+      ->required();
+  declare_open_options(command, options->open);
+  declare_frame_range(command, options->range);
+  command.add_flag("--json", options->json, "Print what was found as JSON");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.footer(kCalibrateFooter);
+  return [options](std::ostream& result) { return run_calibrate(*options, result); };
+}
+
+}  // namespace byre::cli

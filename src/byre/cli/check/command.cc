@@ -1,0 +1,72 @@
+#include "byre/cli/check/report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/features/image_threads.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct CheckOptions {
+  std::filesystem::path recording;
+  OpenOptions open;
+  FrameRange range;
+  int samples = 100;
+  bool json = false;
+};
+
+constexpr const char* kCheckFooter = R"(Examples:
+  byre check evening_round
+  byre check evening_round --calibration calibration.yaml --json
+
+Looks at some frames, a few seconds' work, and tells what would spoil a mission: rate and gaps, images that are dark,
+blurred or repeated, left and right images that do not fit together, a calibration that is off or not of these cameras;
+and what to do about each. "byre map" and "byre run" print its summary when they begin.
+
+Exit codes: 0 nothing is in the way, 1 something is to be mended first, 3 the recording cannot be read.)";
+
+ExitCode run_check(const CheckOptions& options, std::ostream& result) {
+  const auto recording = open_recording(options.recording, options.range, options.open);
+  show_warnings(std::cerr, recording->warnings());
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  const RecordingCheck check = check_recording(*recording, options.samples, [&] { return interrupt.caught(); });
+  if (interrupt.caught()) return ExitCode::interrupted;
+  const std::vector<Finding> findings = findings_of(check);
+  if (options.json) {
+    nlohmann::ordered_json json = {
+        {"program", "byre check"}, {"version", BYRE_VERSION}, {"recording", options.recording.string()}};
+    json.update(check_json(check, findings));
+    constexpr int kIndent = 2;
+    result << json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  } else {
+    result << describe(check, findings);
+  }
+  return std::ranges::any_of(findings, &Finding::is_grave) ? ExitCode::failed : ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_check(CLI::App& command) {
+  const auto options = std::make_shared<CheckOptions>();
+  add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
+  command.add_option("--samples", options->samples, "Places of the recording that are looked at, two frames at each")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  declare_open_options(command, options->open);
+  declare_frame_range(command, options->range);
+  command.add_flag("--json", options->json, "Print what was found as JSON");
+  command.footer(kCheckFooter);
+  return [options](std::ostream& result) { return run_check(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,48 @@
+// "byre check" as a user runs it.
+
+#include "byre/cli/shared/program_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kRoom = RenderedFixture::shared().folder().string();
+
+class CheckProgram : public ProgramTest {};
+
+TEST_F(CheckProgram, FindsNothingInTheWayOfASoundRecording) {
+  const Outcome outcome = run("check " + kRoom + " --samples 3");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output << outcome.errors;
+  for (const char* const row : {"frames ", "left ", "right ", "pair ", "calibration ", "baseline "}) {
+    EXPECT_THAT(outcome.output, HasSubstr(row));
+  }
+}
+
+TEST_F(CheckProgram, TellsTheSameAsJson) {
+  const Outcome outcome = run("check " + kRoom + " --samples 3 --json");
+  const json told = json::parse(outcome.output);
+  EXPECT_EQ(told.at("program"), "byre check");
+  EXPECT_EQ(told.at("looked_at"), 6);
+  EXPECT_GT(told.at("pair").at("matched_percent"), 40.0);
+  EXPECT_LT(told.at("pair").at("calibration_error_px"), 0.2);
+}
+
+TEST_F(CheckProgram, OfOneCameraSaysNothingOfAPair) {
+  const json told = json::parse(run("check " + kRoom + " --camera left --samples 3 --json").output);
+  EXPECT_TRUE(told.at("pair").is_null());
+  EXPECT_EQ(told.at("without_right"), 0);
+}
+
+TEST_F(CheckProgram, ItsSummaryBeginsAMapping) {
+  const Outcome outcome = run("map " + kRoom + " --frames :4 --no-loops -o room.byre");
+  EXPECT_THAT(outcome.errors, HasSubstr("checked "));
+}
+
+}  // namespace
+}  // namespace byre::cli

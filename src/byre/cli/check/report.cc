@@ -1,0 +1,105 @@
+#include "byre/cli/check/report.h"
+
+#include "byre/cli/shared/warnings.h"
+#include "byre/input/formatted.h"
+
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string describe(const CameraCheck& camera) {
+  return formatted("brightness %.0f and contrast %.0f grey values, sharpness %.2f; %d of %d images of no use",
+                   camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
+}
+
+std::string describe(const PairCheck& pair) {
+  return formatted("%.0f %% of the features found in the right image, %.2f px off their row", 100.0 * pair.matched,
+                   pair.row_error);
+}
+
+Json to_json(const CameraCheck& camera) {
+  Json faults;
+  for (std::size_t i = 1; i < camera.by_fault.size(); ++i) {
+    faults[std::string(to_string(static_cast<ImageFault>(i)))] = camera.by_fault[i];
+  }
+  return {{"images", camera.images},
+          {"brightness", camera.brightness},
+          {"contrast", camera.contrast},
+          {"sharpness", camera.sharpness},
+          {"of_no_use", faults}};
+}
+
+}  // namespace
+
+std::string summary_of(const RecordingCheck& check) {
+  std::string text = formatted("%.1f Hz, %d gaps; %.0f features", check.rate_hz, check.gaps, check.features);
+  if (!check.pair) return text;
+  return text + formatted(", %.0f %% of them in both images, %.2f px off their row", 100.0 * check.pair->matched,
+                          check.pair->row_error);
+}
+
+std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings) {
+  std::string text = row("frames", formatted("%d at %.1f Hz, %d gaps, the longest %.2f s", check.frames, check.rate_hz,
+                                             check.gaps, check.longest_gap_s));
+  text += row("looked at", formatted("%d; %d unreadable, %d without a right image, %d the same as the one before",
+                                     check.looked_at, check.unreadable, check.without_right, check.repeated));
+  text += row("left", describe(check.left));
+  if (check.right) text += row("right", describe(*check.right));
+  if (check.pair) text += row("pair", describe(*check.pair));
+  if (check.pair) {
+    text +=
+        row("calibration", formatted("off by about %.2f px, by the rows of the pair", check.pair->calibration_error));
+  }
+  text += row("features", formatted("%.0f in an image", check.features));
+  text += row("view", formatted("%.0f degrees wide", check.field_of_view_deg));
+  if (check.baseline_m > 0.0) text += row("baseline", formatted("%.4f m", check.baseline_m));
+  for (const Finding& finding : findings) {
+    text += row(finding.is_grave ? "TO MEND" : "to see to", finding.what) + row("", finding.remedy);
+  }
+  if (findings.empty()) text += row("found", "nothing that needs seeing to");
+  return text;
+}
+
+Json check_json(const RecordingCheck& check, const std::vector<Finding>& findings) {
+  Json json = {{"frames", check.frames},
+               {"rate_hz", check.rate_hz},
+               {"gaps", check.gaps},
+               {"longest_gap_s", check.longest_gap_s},
+               {"looked_at", check.looked_at},
+               {"unreadable", check.unreadable},
+               {"without_right", check.without_right},
+               {"repeated", check.repeated},
+               {"features", check.features},
+               {"field_of_view_deg", check.field_of_view_deg},
+               {"baseline_m", check.baseline_m},
+               {"left", to_json(check.left)},
+               {"right", check.right ? to_json(*check.right) : Json()},
+               {"pair", nullptr},
+               {"findings", Json::array()}};
+  if (check.pair) {
+    json["pair"] = {{"pairs", check.pair->pairs},
+                    {"matched_percent", 100.0 * check.pair->matched},
+                    {"row_error_px", check.pair->row_error},
+                    {"calibration_error_px", check.pair->calibration_error}};
+  }
+  for (const Finding& finding : findings) {
+    json["findings"].push_back({{"grave", finding.is_grave}, {"what", finding.what}, {"remedy", finding.remedy}});
+  }
+  return json;
+}
+
+void show_check(std::ostream& stream, Recording& recording) {
+  constexpr int kSamples = 5;
+  const RecordingCheck check = check_recording(recording, kSamples);
+  stream << row("checked", summary_of(check));
+  std::vector<std::string> warnings;
+  for (const Finding& finding : findings_of(check)) warnings.push_back(finding.what + ": " + finding.remedy);
+  show_warnings(stream, warnings);
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "byre/dataset/recording_check.h"
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace byre::cli {
+
+// "20.0 Hz, 2 gaps; 1000 features, 56 % of them in both images, 0.25 px off their row"
+std::string summary_of(const RecordingCheck& check);
+
+// Rows of a report, then what was found, each with what to do about it.
+std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings);
+
+nlohmann::ordered_json check_json(const RecordingCheck& check, const std::vector<Finding>& findings);
+
+// Looks at a few frames before long work begins: a line of summary, and a warning for each thing found.
+void show_check(std::ostream& stream, Recording& recording);
+
+}  // namespace byre::cli

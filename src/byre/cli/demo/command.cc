@@ -1,0 +1,99 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/render_with_progress.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/demo/demo_run.h"
+#include "byre/demo/page.h"
+#include "byre/demo/table.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoCommandOptions {
+  DemoOptions demo;
+  bool quiet = false;
+};
+
+constexpr const char* kDemoFooter = R"(Examples:
+  byre demo
+  byre demo -o ~/demo --seed 7
+
+Shows the main job on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the first is
+mapped and its map laid on the floor plan, and the second is run on it in three ways. FOLDER gets index.html, one page
+that needs neither server nor network, and beside it the recordings, the map, the trajectories and both pictures.
+Ctrl-C leaves what is done until then, but no page. docs/demo.md explains what the page shows.)";
+
+void make_new_folder(const fs::path& folder) {
+  make_folder(folder);
+  if (fs::exists(folder / "first_visit" / "mav0") || fs::exists(folder / "second_visit" / "mav0")) {
+    throw InputError(folder.string(), "already holds a demonstration", "name another folder, or remove that one first");
+  }
+}
+
+ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& result) {
+  make_new_folder(options.demo.output);
+  const fs::path& folder = options.demo.output;
+  const fs::path page = folder / "index.html";
+  const InterruptCatcher interrupt({page});
+  DemoHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.before_stage = [&](const std::string& stage) {
+    if (!options.quiet) std::cerr << stage << std::endl;
+  };
+  hooks.render = [&](const CowshedRecordingOptions& visit, const fs::path& visit_folder) {
+    return render_with_progress(visit, visit_folder, interrupt, options.quiet);
+  };
+  hooks.run = [&](Recording& recording, const EngineOptions& engine, const MapRunHooks& more) {
+    return run_with_progress(recording, engine, more, interrupt, options.quiet);
+  };
+  const std::optional<DemoFindings> findings = run_demo(options.demo, hooks);
+  if (!findings) return ExitCode::interrupted;
+  write_whole(folder / "plan.svg", findings->plan_picture);
+  if (findings->camera_s) write_whole(folder / "camera.svg", findings->camera_picture);
+  write_whole(page, demo_page(*findings));
+  result << to_text(demo_table(findings->arms), findings->arms) << "\n" << row("page", page.string());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_demo(CLI::App& command) {
+  const auto options = std::make_shared<DemoCommandOptions>();
+  add_output(command, Output::folder, "-o,--output", options->demo.output,
+             "Folder for the page and what it is made of (byre_demo)")
+      ->type_name("FOLDER");
+  command.add_option("--seed", options->demo.seed, "Which barn")->type_name("N")->capture_default_str();
+  command.add_option("--duration", options->demo.duration_s, "Of the first visit; the second takes a quarter longer")
+      ->type_name("SECONDS")
+      ->check(between(1.0, 3600.0))
+      ->capture_default_str();
+  command.add_option("--rate", options->demo.frame_rate_hz, "Stereo pairs in a second")
+      ->type_name("HZ")
+      ->check(between(1.0, 60.0))
+      ->capture_default_str();
+  command.add_option("--divide", options->demo.image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
+      ->type_name("N")
+      ->check(between(1, 8))
+      ->capture_default_str();
+  add_input(command, Input::file, "--vocabulary", options->demo.vocabulary,
+            "Vocabulary to recognise places with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.footer(kDemoFooter);
+  return [options](std::ostream& result) { return run_demo_command(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,135 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/draw/mission.h"
+#include "byre/cli/draw/options.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/dataset/trajectory_input.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+#include "byre/system/stored_map.h"
+#include "byre/viewer/camera_picture.h"
+#include "byre/viewer/mission_input.h"
+
+#include <algorithm>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+StoredMap load_map_to_draw(const DrawOptions& options) {
+  StoredMap stored = load_map(options.map_file());
+  if (stored.map.keyframe_count() == 0) {
+    throw InputError(options.map_file().string(), "holds no keyframes, so there is nothing to draw",
+                     "map a recording first");
+  }
+  if (options.plan && !stored.plan) {
+    throw InputError(options.map_file().string(), "lies on no floor plan, so it cannot be drawn on one",
+                     "see \"byre register\"");
+  }
+  if (options.map && stored.scale != MapScale::metric) {
+    throw InputError(options.map_file().string(), "has no metric scale, so no mission can run on it",
+                     "give it one: byre scale");
+  }
+  return stored;
+}
+
+PlanScene scene_without_mission(const DrawOptions& options, const StoredMap& stored) {
+  PlanScene scene;
+  scene.title = options.map_file().stem().string();
+  const std::optional<FloorPlan> plan = options.plan ? std::optional(read_floor_plan(*options.plan)) : std::nullopt;
+  scene.ground = ground_of(stored, plan);
+  scene.map = scene_of(stored.map);
+  for (const fs::path& file : options.trajectories) {
+    scene.paths.push_back({file.stem().string(), load_trajectory(file, {}), {}});
+  }
+  for (const fs::path& file : options.missions) {
+    scene.paths.push_back(load_mission(file));
+    if (options.missions.size() > 1) scene.paths.back().name = file.stem().string();
+  }
+  return scene;
+}
+
+void write_picture(const Picture& picture, const fs::path& file) {
+  if (file.extension() == ".svg" || file.extension() == ".SVG") return write_whole(file, to_svg(picture));
+  const std::vector<std::byte> png = to_png(picture);
+  write_whole(file, std::string(reinterpret_cast<const char*>(png.data()), png.size()));
+}
+
+void write_plan_picture(const PlanScene& scene, const DrawOptions& options) {
+  PlanPictureOptions picture;
+  picture.width = options.width;
+  picture.heights = options.heights;
+  write_picture(plan_picture(scene, picture), *options.plan_picture);
+}
+
+void add_mission(const DrawnMission& mission, PlanScene& scene) {
+  std::ranges::copy(mission.online.points, std::back_inserter(scene.map.points));
+  std::ranges::copy(mission.online.keyframes, std::back_inserter(scene.map.keyframes));
+  scene.paths.push_back(mission.way);
+  if (!mission.frame || !mission.frame->report.map_from_body) return;
+  scene.camera = plan_camera(*mission.frame->report.map_from_body, *mission.rig);
+}
+
+std::string story_of(const DrawnMission& mission, const DrawOptions& options) {
+  std::string text = row("mission", formatted("%zu poses", mission.way.map_from_body.size()));
+  if (mission.frame_s && options.camera_picture) text += row("camera at", formatted("%.2f s", *mission.frame_s));
+  if (!options.video) return text;
+  const char* const codec = mission.plays_in_browsers ? "H.264" : "MPEG-4, which browsers do not play";
+  return text + row("video", formatted("%d frames, %s", mission.video_frames, codec));
+}
+
+void require_frames(const DrawnMission& mission, const DrawOptions& options) {
+  const bool lacks_camera_picture = options.camera_picture && !mission.frame;
+  const bool lacks_video = options.video && mission.video_frames == 0;
+  if (lacks_camera_picture || lacks_video) throw std::runtime_error("no frame of the recording was read");
+}
+
+void write_camera_picture(const DrawnMission& mission, const fs::path& file) {
+  CameraPictureOptions picture;
+  picture.title = formatted("%.2f s", *mission.frame_s);
+  write_picture(camera_picture(*mission.frame, picture), file);
+}
+
+ExitCode run_and_draw(const DrawOptions& options, StoredMap stored, PlanScene scene, std::ostream& result) {
+  const DrawnMission mission = draw_mission(options, std::move(stored), scene);
+  if (!options.quiet) show_warnings(std::cerr, mission.warnings);
+  require_frames(mission, options);
+  result << story_of(mission, options);
+  if (options.camera_picture) write_camera_picture(mission, *options.camera_picture);
+  add_mission(mission, scene);
+  if (options.plan_picture) write_plan_picture(scene, options);
+  return mission.stopped ? interrupted : done;
+}
+
+ExitCode draw(const DrawOptions& options, std::ostream& result) {
+  for (const fs::path& output : options.outputs()) require_writable(output);
+  StoredMap stored = load_map_to_draw(options);
+  PlanScene scene = scene_without_mission(options, stored);
+  result << row("map", options.map_file().string() + formatted(", %d keyframes, %d points", stored.map.keyframe_count(),
+                                                               stored.map.point_count()));
+  ExitCode code = done;
+  if (options.map) {
+    code = run_and_draw(options, std::move(stored), std::move(scene), result);
+  } else {
+    write_plan_picture(scene, options);
+  }
+  for (const fs::path& output : options.outputs()) result << row("written", output.string());
+  return code;
+}
+
+}  // namespace
+
+Action declare_draw(CLI::App& command) {
+  const auto options = std::make_shared<DrawOptions>();
+  declare_draw_options(command, *options);
+  return [options](std::ostream& result) { return draw(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,62 @@
+#include "byre/cli/draw/mission.h"
+
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+#include "byre/place/map_words.h"
+#include "byre/system/stored_map.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+// Nothing after the moment of the camera picture is needed for that one alone.
+FrameRange needed_range(const DrawOptions& options) {
+  constexpr double kBeyond = 1e-6;  // seconds: the end is exclusive
+  FrameRange range = options.range;
+  if (!options.at_s || options.plan_picture || options.video) return range;
+  range.end_s = std::min(range.end_s.value_or(*options.at_s + kBeyond), *options.at_s + kBeyond);
+  return range;
+}
+
+EngineOptions run_options(const DrawOptions& options, StoredMap stored) {
+  EngineOptions run;
+  run.vocabulary = open_vocabulary(options.vocabulary);
+  add_words(stored, *run.vocabulary);
+  run.offline = std::make_shared<const OfflineMap>(std::move(stored.map), *run.vocabulary);
+  return run;
+}
+
+MapScene scene_beside(const Map& mapped) {
+  MapScene online = scene_of(mapped);
+  for (ScenePoint& point : online.points) point.origin = Origin::online;
+  for (SceneKeyframe& keyframe : online.keyframes) keyframe.origin = Origin::online;
+  return online;
+}
+
+}  // namespace
+
+DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const PlanScene& background) {
+  const Timestamp first = open_recording(options.input, {}, options.open)->times().front();
+  const std::unique_ptr<Recording> recording = open_recording(options.input, needed_range(options), options.open);
+  if (options.at_s && first + from_seconds(*options.at_s) < recording->times().front()) {
+    throw InputError(options.input.string(), formatted("has no frame up to %g s in the range to run", *options.at_s),
+                     "start earlier, or have --at later");
+  }
+  const MissionPainting painting{options.camera_picture.has_value(), options.at_s, options.video, options.speed,
+                                 options.heights};
+  MissionPainter painter(painting, *recording, first, background);
+  MapRunHooks hooks;
+  hooks.look = [&painter](const RunView& run) { painter.look(run); };
+  limit_image_threads(1);
+  const InterruptCatcher interrupt(options.outputs());
+  MapRun run = run_with_progress(*recording, run_options(options, std::move(stored)), hooks, interrupt, options.quiet);
+  return {painter.finish(), scene_beside(run.map), std::move(run.warnings), interrupt.caught()};
+}
+
+}  // namespace byre::cli

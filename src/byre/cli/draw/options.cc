@@ -1,0 +1,152 @@
+#include "byre/cli/draw/options.h"
+
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/recording_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDrawFooter = R"(Examples:
+  byre draw barn.byre -o barn.svg
+  byre draw barn-plan.byre --plan plan.yaml --mission stats.json -o mission.svg
+  byre draw barn.byre --trajectory morning.txt --trajectory evening.txt -o rounds.png
+  byre draw evening_round --map barn.byre --end 30 --at 12.5 --camera-picture shot.png -o where.svg
+  byre draw evening_round --map barn-plan.byre --plan plan.yaml --video round.mp4 --speed 4
+
+Of a map alone, its picture from above: points, keyframes, and the ways given by trajectories or by the statistics that
+"byre run --stats" wrote, which tell how far each pose was to be trusted. Of a recording, which is run on --map as "byre
+run" does it, also what the camera saw with the map points found in it, and a video of both. --at is the moment of the
+camera picture, whose place and direction the plan picture shows. A plan is drawn below maps that "byre register" found
+on it. Exit code 1 when no frame of the recording could be read. docs/pictures.md explains the signs.)";
+
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+std::optional<HeightBand> parse_heights(std::string_view text) {
+  HeightBand heights;
+  const char* const end = text.data() + text.size();
+  const auto [colon, error] = std::from_chars(text.data(), end, heights.low);
+  if (error != std::errc() || colon == end || *colon != ':') return std::nullopt;
+  const auto [last, second_error] = std::from_chars(colon + 1, end, heights.high);
+  if (second_error != std::errc() || last != end || !(heights.low < heights.high) ||
+      !std::isfinite(heights.high - heights.low))
+    return std::nullopt;
+  return heights;
+}
+
+CLI::Option* declare_heights(CLI::App& command, HeightBand& heights) {
+  const auto parse = [&heights](const CLI::results_t& texts) {
+    const std::optional<HeightBand> parsed = parse_heights(texts.front());
+    if (!parsed) throw CLI::ValidationError("--heights", texts.front() + " is not LOW:HIGH in metres, such as 0.1:2.5");
+    heights = *parsed;
+    return true;
+  };
+  return command
+      .add_option("--heights", parse, "Draw map points from so high to so high above the floor, metres (0.1:2.5)")
+      ->type_name("LOW:HIGH")
+      ->expected(1);
+}
+
+void declare_inputs(CLI::App& command, DrawOptions& options) {
+  add_input(command, Input::recording, "INPUT", options.input, "A map file; or a recording to run on the map of --map")
+      ->type_name("MAP|RECORDING")
+      ->required();
+  add_input(command, Input::file, "--map", options.map, "The offline map that the recording is run on")
+      ->type_name("MAP");
+  add_input(command, Input::plan, "--plan", options.plan,
+            "The floor plan the map lies on: a map_server YAML file, or an image with a world file")
+      ->type_name("FILE");
+  add_input(command, Input::file, "--trajectory", options.trajectories,
+            "A way to draw, in the map's frame; may be given again")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_input(command, Input::file, "--mission", options.missions,
+            "Statistics of a mission on the map, to draw its way; may be given again")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+}
+
+void declare_outputs(CLI::App& command, DrawOptions& options) {
+  CLI::Option* const map = command.get_option("--map");
+  add_output(command, Output::picture, "-o,--plan-picture", options.plan_picture,
+             "The map from above, with the ways: .svg or .png")
+      ->type_name("FILE");
+  add_output(command, Output::picture, "--camera-picture", options.camera_picture,
+             "What the camera saw, with the map points found and the health: .svg or .png")
+      ->type_name("FILE")
+      ->needs(map);
+  command
+      .add_option("--at", options.at_s, "Moment of the camera picture, from the recording's first frame (the last one)")
+      ->type_name("SECONDS")
+      ->check(from(0.0))
+      ->needs(map);
+  add_output(command, Output::video, "--video", options.video, "Both pictures of every frame: .mp4")
+      ->type_name("FILE")
+      ->needs(map);
+  command.add_option("--speed", options.speed, "Of the video, in times of the recording's own (1)")
+      ->type_name("FACTOR")
+      ->check(between(0.01, 1000.0));
+  command.add_option("--width", options.width, "Of the plan picture (1200)")
+      ->type_name("PIXELS")
+      ->check(between(200, 8000));
+}
+
+void require_extension(const std::optional<fs::path>& file, const char* option,
+                       const std::vector<std::string_view>& extensions) {
+  if (!file || std::ranges::count(extensions, extension_of(*file)) > 0) return;
+  std::string known;
+  for (const std::string_view extension : extensions) known += (known.empty() ? "" : " or ") + std::string(extension);
+  throw CLI::ValidationError(option, file->string() + " is to end in " + known);
+}
+
+void require_consistent(const DrawOptions& options) {
+  require_sense(options.range);
+  if (options.outputs().empty()) {
+    throw CLI::ValidationError("draw", "name a file to draw: --plan-picture (-o), --camera-picture or --video");
+  }
+  require_extension(options.plan_picture, "--plan-picture", {".svg", ".png"});
+  require_extension(options.camera_picture, "--camera-picture", {".svg", ".png"});
+  require_extension(options.video, "--video", {".mp4"});
+}
+
+}  // namespace
+
+std::vector<fs::path> DrawOptions::outputs() const {
+  std::vector<fs::path> files;
+  for (const auto& file : {plan_picture, camera_picture, video}) {
+    if (file) files.push_back(*file);
+  }
+  return files;
+}
+
+void declare_draw_options(CLI::App& command, DrawOptions& options) {
+  declare_inputs(command, options);
+  declare_outputs(command, options);
+  declare_heights(command, options.heights);
+  declare_open_options(command, options.open);
+  declare_frame_range(command, options.range);
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  check_when_parsed(command, [&options] { require_consistent(options); });
+  command.footer(kDrawFooter);
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,78 @@
+#include "byre/archive/colmap_export.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+
+#include <memory>
+#include <optional>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportCommandOptions {
+  fs::path map;
+  fs::path model;
+  std::vector<fs::path> recordings;
+  OpenOptions open;  // how to take those
+  bool text = false;
+  bool binary = false;  // the default, said
+};
+
+constexpr const char* kExportColmapFooter = R"(Examples:
+  byre export-colmap barn.byre -o model
+  byre export-colmap barn.byre -o model --text --images-of MH_01_easy
+
+The model is of the left images as the camera took them, with its lens; in COLMAP's programs name the folder that holds
+them as the image path (mav0/cam0/data of an EuRoC recording). Such a model has no place for disparities, and so for
+points that are known by their disparity in one image alone, nor for descriptors and covariances.)";
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder)) throw InputError(folder.string(), "cannot be made", "name a folder");
+}
+
+ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
+  const StoredMap stored = load_map(options.map);
+  ImageNames names;
+  for (const fs::path& recording : options.recordings) names.merge(names_of_images(recording, options.open));
+  const ColmapModel model = colmap_model_of(stored, names);
+  make_folder(options.model);
+  write_colmap_model(model, options.model, options.text ? ColmapFormat::text : ColmapFormat::binary);
+  result << formatted("written      %zu cameras, %zu images, %zu points to ", model.cameras.size(), model.images.size(),
+                      model.points.size())
+         << options.model.string() << "\n"
+         << formatted("left out     %zu points that one image alone sees\n",
+                      stored.map.point_count() - model.points.size());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_export_colmap(CLI::App& command) {
+  const auto options = std::make_shared<ExportCommandOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_output(command, Output::colmap_model, "-o,--output", options->model,
+             "Folder for cameras, images and points3D; made when it is not there")
+      ->type_name("MODEL_DIR")
+      ->required();
+  add_input(command, Input::recording, "--images-of", options->recordings,
+            "Recordings whose files name the images (else they are called <nanoseconds>.png)")
+      ->type_name("FOLDER...");
+  declare_open_options(command, options->open);
+  auto* const text = command.add_flag("--text", options->text, "Write the text format");
+  command.add_flag("--binary", options->binary, "Write the binary format (the default)")->excludes(text);
+  command.footer(kExportColmapFooter);
+  return [options](std::ostream& result) { return run_export(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,136 @@
+#include "byre/archive/colmap_import.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/recording.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportCommandOptions {
+  fs::path model;
+  fs::path images;
+  fs::path map;
+  std::optional<double> scale;
+  std::optional<fs::path> body_of;
+  OpenOptions open;  // how to take that recording
+  std::optional<fs::path> vocabulary;
+  std::string site;
+  bool model_points_only = false;
+  bool quiet = false;
+};
+
+constexpr const char* kImportColmapFooter = R"(Examples:
+  byre import-colmap sparse/0 images -o site.byre
+  byre import-colmap sparse/0 images -o site.byre --scale 0.25 --site "Barn 2"
+
+Every image of the model becomes a keyframe with the pose it has there. Corners of the images become features, and each
+point of the model gets those that lie where it projects and look alike; points with fewer than two are left out.
+Corners that are none of the model's points become points of their own. The map has the model's own unit until --scale
+tells how many metres that is.)";
+ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOptions& options,
+                               const InterruptCatcher& interrupt) {
+  Progress progress(std::cerr, progress_style(options.quiet), static_cast<int>(model.images.size()));
+  const Stopwatch watch;
+  ColmapImportHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_image = [&](int done) { progress.update(done, watch.seconds(), "extracting"); };
+  ColmapImportOptions import_options;
+  import_options.metres_per_unit = options.scale;
+  import_options.map.add_own_points = !options.model_points_only;
+  if (options.body_of)
+    import_options.body_from_camera = open_recording(*options.body_of, {}, options.open)->calibration().body_from_left;
+  const std::string name = fs::weakly_canonical(options.model).string();
+  ColmapImport imported = import_colmap(model, name, options.images, import_options, hooks);
+  progress.close();
+  return imported;
+}
+
+std::string to_text(const ColmapImport& imported) {
+  std::vector<double> attached, errors;
+  for (const ImportedImage& image : imported.images) {
+    attached.push_back(image.points_attached);
+    errors.push_back(image.median_error);
+  }
+  std::ranges::sort(attached);
+  std::ranges::sort(errors);
+  const Map& map = imported.stored.map;
+  std::string text = formatted("keyframes          %d\n", map.keyframe_count());
+  text += formatted("points             %zu of the model's %d, and %zu of byre's own\n", imported.colmap_ids.size(),
+                    imported.points_in_model, map.point_count() - imported.colmap_ids.size());
+  if (attached.empty()) return text;
+  text += formatted("points per image   median %.0f, least %.0f\n", quantile(attached, 0.5), attached.front());
+  text += formatted("error per image    median %.2f pixels, largest %.2f\n", quantile(errors, 0.5), errors.back());
+  text += imported.stored.scale == MapScale::metric ? "scale              metres\n"
+                                                    : "scale              the model's own (--scale makes it metres)\n";
+  return text;
+}
+
+ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
+  require_writable(options.map);
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  const ColmapModel model = read_colmap_model(options.model);
+
+  limit_image_threads(1);
+  const InterruptCatcher interrupt({options.map});
+  const ColmapImport imported = run_with_progress(model, options, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, imported.warnings);
+  if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
+  save_for_use(imported.stored, vocabulary, options.site, options.map);
+  result << to_text(imported) << "map                " << options.map.string() << "\n";
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_import_colmap(CLI::App& command) {
+  const auto options = std::make_shared<ImportCommandOptions>();
+  add_input(command, Input::colmap_model, "MODEL", options->model,
+            "Folder with cameras, images and points3D, .bin or .txt, of COLMAP")
+      ->type_name("MODEL_DIR")
+      ->required();
+  add_input(command, Input::images, "IMAGES", options->images,
+            "Folder that the names of the model's images are relative to")
+      ->type_name("IMAGES_DIR")
+      ->required();
+  add_output(command, Output::map, "-o,--output", options->map, "The map")->type_name("FILE")->required();
+  auto* const scale =
+      command
+          .add_option("--scale", options->scale, "Length of the model's unit; without it the map has no metric scale")
+          ->type_name("METRES")
+          ->check(between(1e-9, 1e9));
+  add_input(command, Input::recording, "--body-of", options->body_of,
+            "Recording whose calibration says where the camera sits in the body (body and camera are one)")
+      ->type_name("FOLDER")
+      ->needs(scale);
+  declare_open_options(command, options->open);
+  command.add_flag("--model-points-only", options->model_points_only,
+                   "Add no points for corners that are none of the model's points");
+  add_text(command, "--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary of the map's words (the one that comes with byre)")
+      ->type_name("FILE");
+  command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
+  command.footer(kImportColmapFooter);
+  return [options](std::ostream& result) { return run_import(*options, result); };
+}
+
+}  // namespace byre::cli

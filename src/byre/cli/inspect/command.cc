@@ -1,0 +1,60 @@
+#include "byre/archive/point_cloud.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/inspect/report.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InspectOptions {
+  fs::path map;
+  std::optional<fs::path> points;
+  bool json = false;
+};
+
+constexpr const char* kInspectFooter = R"(Examples:
+  byre inspect barn.byre
+  byre inspect barn.byre --json
+  byre inspect barn.byre --points points.ply
+
+Errors are distances in the rectified image between where a keyframe measured a point and where the map says it is.)";
+
+ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
+  if (options.points) require_writable(*options.points);
+  const std::string name = options.map.string();
+  const std::vector<std::byte> bytes = read_file(options.map);
+  const StoredMap stored = read_map(bytes, name);
+  if (options.points) replace_file(*options.points, point_cloud(stored.map));
+  const MapInspection inspection = inspect(stored);
+  const InspectedFile file{name, bytes.size(), section_sizes(bytes, name)};
+  result << (options.json ? to_json(stored, inspection, file) : to_text(stored, inspection, file));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_inspect(CLI::App& command) {
+  const auto options = std::make_shared<InspectOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  command.add_flag("--json", options->json, "Print the same as JSON, sizes in bytes, lengths in the map's unit");
+  add_output(command, Output::point_cloud, "--points", options->points,
+             "Also write the points, coloured by their observations. PLY format")
+      ->type_name("FILE");
+  command.footer(kInspectFooter);
+  return [options](std::ostream& result) { return run_inspect(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "byre/archive/map_inspection.h"
+
+#include <string>
+#include <vector>
+
+namespace byre::cli {
+
+struct InspectedFile {
+  std::string name;
+  std::size_t bytes = 0;
+  std::vector<SectionSize> sections;
+};
+
+// A page for people, and the same for programs.
+std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
+std::string to_json(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
+
+}  // namespace byre::cli

@@ -1,0 +1,196 @@
+#include "byre/calibration_file.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/localise/report.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/dataset/frame_selection.h"
+#include "byre/dataset/trajectory_input.h"
+#include "byre/evaluation/trajectory_output.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+#include "byre/place/map_words.h"
+#include "byre/playback/localise_run.h"
+#include "byre/playback/run_on_plan.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LocaliseCommandOptions {
+  fs::path map;
+  std::vector<fs::path> inputs;
+  FrameRange range;
+  OpenOptions open;
+  PoseFrame frame = PoseFrame::map;
+  std::optional<fs::path> truth;
+  std::optional<fs::path> map_truth;
+  std::optional<fs::path> trajectory;
+  std::optional<fs::path> vocabulary;
+  bool json = false;
+  bool quiet = false;
+};
+
+constexpr const char* kLocaliseFooter = R"(Examples:
+  byre localise barn.byre evening_round --truth evening_round
+  byre localise barn.byre MH_01_easy --frames 150:300 --trajectory found.txt
+  byre localise barn.byre evening_round --camera right
+  byre localise barn.byre walk.mp4 --calibration phone.yaml --stride 30
+  byre localise barn.byre photo1.png photo2.png --json
+
+Each frame is looked for in the whole map, without tracking and without a guess. Images are taken for the left camera's
+of the map's first recording, unless --camera or --calibration say otherwise. With truth, errors are those in the map's
+frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
+another recording name that one's truth too (--map-truth). An image has the time that its name says, nanoseconds or
+seconds with a point; where one says none, they are a second apart. Exit code 0 also when no frame is found.)";
+
+bool is_recording(const fs::path& input) {
+  return fs::is_directory(input) || is_video_file(input);
+}
+
+// One recording, or images that exist.
+void require_inputs(const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    if (!fs::exists(input)) throw InputError(input.string(), "does not exist", "name a recording, or image files");
+    if (inputs.size() > 1 && is_recording(input)) {
+      throw InputError(input.string(), "is a recording, and was named together with something else",
+                       "localise one recording at a time, or image files alone");
+    }
+  }
+}
+
+Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
+  if (!stored.recordings.empty()) return stored.recordings.front().calibration;
+  throw InputError(path.string(), "does not say with which camera it was made, so images cannot be localised in it",
+                   "name the calibration of their camera (--calibration FILE)");
+}
+
+// The camera that took single images: that of the calibration named, or one like the map's.
+Calibration camera_of_images(const LocaliseCommandOptions& options, const StoredMap& stored) {
+  const fs::path source = options.open.calibration.value_or(options.map);
+  const Calibration calibration =
+      options.open.calibration ? read_calibration(source) : calibration_of_map(stored, options.map);
+  return choose_calibration({calibration, source.string(), source.string()}, {}, options.open.camera, source).cameras;
+}
+
+struct Work {
+  LocaliseRun run;
+  LocaliseProtocol protocol;
+};
+
+Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored, const Vocabulary& vocabulary,
+                  const InterruptCatcher& interrupt) {
+  const SearchableMap map(stored, vocabulary);
+  std::unique_ptr<Recording> recording;
+  if (is_recording(options.inputs.front())) {
+    recording = open_recording(options.inputs.front(), options.range, options.open);
+    if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  }
+  const int frames = recording ? recording->size() : static_cast<int>(options.inputs.size());
+  Progress progress(std::cerr, progress_style(options.quiet), frames);
+  const Stopwatch watch;
+  LocaliseHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_frame = [&](int done, const LocalisedFrame& frame) {
+    const bool is_found = frame.world_from_body.has_value();
+    progress.update(done, watch.seconds(), is_found ? "found" : to_string(frame.localisation.failure),
+                    is_found ? Tone::good : Tone::bad);
+  };
+  LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
+                              : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);
+  progress.close();
+  LocaliseProtocol protocol{options.map.string(), recording ? options.inputs.front().string() : "images", frames};
+  if (options.frame == PoseFrame::plan) protocol.plan = stored.plan;
+  return {std::move(run), std::move(protocol)};
+}
+
+std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, const LocaliseRun& run,
+                                        const StoredMap& stored) {
+  if (!options.truth) return std::nullopt;
+  const Trajectory truth = load_truth(*options.truth);
+  return errors_in_map(run, stored, options.map_truth ? load_truth(*options.map_truth) : truth, truth);
+}
+
+// In the order of their times, in which images need not have been named; of one time the first.
+void write_found(const Work& work, const fs::path& path) {
+  Trajectory found;
+  for (const LocalisedFrame& frame : work.run.frames) {
+    if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
+  }
+  std::ranges::stable_sort(found, {}, &StampedPose::time);
+  const auto repeated = std::ranges::unique(found, {}, &StampedPose::time);
+  found.erase(repeated.begin(), repeated.end());
+  write_whole(path, work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found);
+}
+
+ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
+  require_inputs(options.inputs);
+  if (options.trajectory) require_writable(*options.trajectory);
+  StoredMap stored = load_map(options.map);
+  if (options.frame == PoseFrame::plan) require_plan(stored.plan, options.map);
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  add_words(stored, vocabulary);
+
+  limit_image_threads(1);
+  std::vector<fs::path> outputs;
+  if (options.trajectory) outputs.push_back(*options.trajectory);
+  const InterruptCatcher interrupt(outputs);
+  const Work work = localise_all(options, stored, vocabulary, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
+  if (options.trajectory) write_found(work, *options.trajectory);
+  const std::optional<LocalisationErrors> errors = judge(options, work.run, stored);
+  result << (options.json ? to_json(work.run, work.protocol, errors) : to_text(work.run, work.protocol, errors));
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
+void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
+  add_input(command, Input::file, "MAP", options.map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_input(command, Input::recording, "INPUT", options.inputs,
+            "A recording (EuRoC, KITTI odometry, TUM RGB-D, images, a video), or image files")
+      ->type_name("RECORDING|IMAGES...")
+      ->required();
+  declare_open_options(command, options.open);
+  declare_frame_range(command, options.range);
+  declare_pose_frame(command, options.frame);
+  add_input(command, Input::recording, "--truth", options.truth,
+            "True poses of the frames: a trajectory or the recording that holds it")
+      ->type_name("FILE|FOLDER");
+  add_input(command, Input::recording, "--map-truth", options.map_truth,
+            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+      ->type_name("FILE|FOLDER")
+      ->needs("--truth");
+}
+
+}  // namespace
+
+Action declare_localise(CLI::App& command) {
+  const auto options = std::make_shared<LocaliseCommandOptions>();
+  declare_inputs(command, *options);
+  add_output(command, Output::trajectory, "--trajectory", options->trajectory, "Write the poses found. TUM format")
+      ->type_name("FILE");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  check_when_parsed(command, [options] { require_sense(options->range); });
+  command.footer(kLocaliseFooter);
+  return [options](std::ostream& result) { return run_localise(*options, result); };
+}
+
+}  // namespace byre::cli

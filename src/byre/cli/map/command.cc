@@ -1,0 +1,156 @@
+#include "byre/assessment/calibration_report.h"
+#include "byre/assessment/run_report.h"
+#include "byre/cli/check/report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/map/options.h"
+#include "byre/cli/map/posed_map.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/output_file.h"
+#include "byre/map/map_file.h"
+#include "byre/playback/autosave.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
+#include "byre/slam/online_copy.h"
+#include "byre/system/stored_map.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is kept with a map, and where; all but the map itself.
+struct MapRecord {
+  StoredMap about;
+  std::optional<Vocabulary> vocabulary;  // empty when no map is kept
+  std::string site;
+  fs::path path;
+};
+
+void save(Map offline, const std::optional<RefinedCalibration>& calibration, const MapRecord& record) {
+  StoredMap stored = record.about;
+  if (calibration) stored.recordings.back().refined = calibration;
+  stored.map = std::move(offline);
+  save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
+}
+
+MapRun run_and_autosave(Recording& recording, const EngineOptions& run_options, const MapOptions& options,
+                        const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
+  Autosave autosave(options.autosave_s.value_or(0.0),
+                    [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {
+                      save(offline_copy(online), calibration, record);
+                    });
+  MapRunHooks hooks;
+  if (options.autosave_s) {
+    hooks.offer_map = [&autosave](const Map& online, const std::optional<RefinedCalibration>& calibration) {
+      autosave.offer(online, calibration);
+    };
+  }
+  MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet, std::move(before));
+  autosave.finish();
+  run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
+  return run;
+}
+
+void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
+                   const ResourceUse& resources, OutputWriter& outputs) {
+  outputs.attempt(options.trajectory, run.final, options.trajectory_format);
+  outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
+  outputs.attempt([&] {
+    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
+  });
+}
+
+// The map that is gone on with, out of which its record takes all but the map.
+std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
+  if (!options.extended) return std::nullopt;
+  record.about = load_for_mapping(*options.extended, *record.vocabulary);
+  record.about.pose_source = PoseSource::slam;
+  Map online = online_copy(record.about.map);
+  record.about.map = Map(Origin::offline);
+  return online;
+}
+
+// A recording that was given the same calibration as an earlier one of the map is rectified by the same refined one.
+void take_known_calibration(std::vector<SourceRecording>& recordings) {
+  recordings.back().refined = known_calibration(recordings, recordings.back().calibration);
+}
+
+MapRecord record_of(const MapOptions& options) {
+  MapRecord record;
+  // Found to be missing now, not after an hour of mapping.
+  if (options.map || !options.no_loops) record.vocabulary = open_vocabulary(options.vocabulary);
+  record.site = options.site;
+  if (options.map) record.path = *options.map;
+  return record;
+}
+
+MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, const Recording& recording) {
+  MapProtocol protocol;
+  protocol.recording = options.recording.string();
+  protocol.format = guess_format(options.recording);
+  protocol.camera = camera_of(recording, options.open);
+  protocol.range = options.range;
+  protocol.frames_in_range = recording.size();
+  protocol.options.pace = options.pace;
+  protocol.options.extract.refinement = options.refinement;
+  protocol.options.self_calibrate = !options.no_self_calibration;
+  protocol.options.known = record.about.recordings.back().refined;
+  protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
+  if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
+  if (options.extended) protocol.extended = options.extended->string();
+  for (const SourceRecording& source : record.about.recordings) protocol.recordings.push_back(source.name);
+  return protocol;
+}
+
+ExitCode run_map_command(MapOptions options, std::ostream& result) {
+  for (const fs::path& output : options.outputs()) require_writable(output);
+  if (options.given_poses) return run_posed_map(options, result);
+  MapRecord record = record_of(options);
+  const auto [recording, is_metric, body_from_camera] =
+      open_scaled(options.recording, options.range, options.open, options.extended.has_value());
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  std::optional<Map> extended = take_extended(options, record);
+  record.about.recordings.push_back(describe_source(options.recording, *recording));
+  take_known_calibration(record.about.recordings);
+  record.about.scale = is_metric ? MapScale::metric : MapScale::unknown;
+  MapProtocol protocol = protocol_of(options, record, *recording);
+  protocol.is_metric = is_metric;
+
+  limit_image_threads(1);
+  if (!options.quiet) show_check(std::cerr, *recording);
+  const InterruptCatcher interrupt(options.outputs());
+  const MapRun run = run_and_autosave(*recording, protocol.options, options, record, std::move(extended), interrupt);
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+  if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
+  const ResourceUse resources = resources_used_so_far();
+  if (run.causal.empty()) options.map.reset();  // there is nothing to keep
+  OutputWriter outputs;
+  outputs.attempt([&] {
+    if (options.map) save(run.map, run.calibration, record);
+  });
+  write_results(options, run, protocol, resources, outputs);
+  outputs.require_written();
+  result << to_text(run, protocol, resources, names_of(options.outputs()));
+  if (interrupt.caught()) return ExitCode::interrupted;
+  require_poses(run, protocol);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_map(CLI::App& command) {
+  const auto options = std::make_shared<MapOptions>();
+  declare_map_options(command, *options);
+  return [options](std::ostream& result) { return run_map_command(*options, result); };
+}
+
+}  // namespace byre::cli

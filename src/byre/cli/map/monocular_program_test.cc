@@ -1,0 +1,71 @@
+// Recordings of one camera as a user maps them, and missions by one camera on a map that two have made.
+
+#include "byre/cli/shared/program_fixture.h"
+#include "byre/map/map_file.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Along a bend, so that walls do not fill the image; of twice the resolution of the other tests.
+const std::string& room() {
+  static const Calibration calibration = euroc_like_calibration(2);
+  static const RenderedFixture recording("byre_cli_mono_room", calibration,
+                                         circling_trajectory(40, 20.0, 2.0, 0.25, calibration.body_from_left));
+  static const std::string quoted = "'" + recording.folder().string() + "'";
+  return quoted;
+}
+
+class MonocularProgram : public ProgramTest {};
+
+TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn) {
+  const Outcome outcome =
+      run("map " + room() + " --camera left -o mono.byre --trajectory mono.txt --stats s.json --quiet");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("of the left camera"), HasSubstr("s after the first frame, at frame"),
+                                    HasSubstr("of the map's own; \"byre scale\" makes it metres")));
+  EXPECT_EQ(json::parse(read("s.json"))["protocol"]["scale"], "unknown");
+  const StoredMap stored = load_map(folder_ / "mono.byre");
+  EXPECT_EQ(stored.scale, MapScale::unknown);
+  EXPECT_FALSE(stored.map.rigs().front().is_stereo());
+  const Outcome judged = run("evaluate --estimate mono.txt --truth " + room() + " --frames-of " + room() +
+                             " --camera left --estimate-of camera --alignment sim3 --json");
+  ASSERT_EQ(judged.exit_code, 0) << judged.errors;
+  EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.02);
+}
+
+TEST_F(MonocularProgram, TakesAMissionOnceTheMapHasItsSize) {
+  ASSERT_EQ(run("map " + room() + " --camera left -o mono.byre --quiet").exit_code, 0);
+  const Outcome refused = run("run " + room() + " --camera left --map mono.byre --quiet");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("has no metric scale"), HasSubstr("byre scale")));
+  const Outcome scaled = run("scale mono.byre --between 0,0,0 0,0,1 --metres 3 -o metric.byre");
+  ASSERT_EQ(scaled.exit_code, 0) << scaled.errors;
+  EXPECT_THAT(scaled.output, HasSubstr("a unit is 3 m"));
+  EXPECT_EQ(run("run " + room() + " --camera left --map metric.byre --quiet").exit_code, 0);
+}
+
+TEST_F(MonocularProgram, RunsOnAMapThatTwoCamerasHaveMadeWithItsScale) {
+  ASSERT_EQ(run("map " + room() + " -o stereo.byre --quiet").exit_code, 0);
+  for (const std::string camera : {"left", "right"}) {
+    const Outcome outcome = run("run " + room() + " --camera " + camera + " --map stereo.byre --truth " + room() +
+                                " --stats s.json --quiet");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const json mission = json::parse(read("s.json"));
+    EXPECT_EQ(mission["counts"]["coverage"], 1.0) << camera;
+    EXPECT_LT(mission["errors"]["final"]["position_m"]["rmse"], 0.02) << camera;
+  }
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,135 @@
+#include "byre/cli/map/options.h"
+
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/recording_options.h"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMapFooter = R"(Examples:
+  byre map MH_01_easy -o barn.byre
+  byre map MH_01_easy -o barn.byre --trajectory out.txt --site "Barn 2"
+  byre map kitti/sequences/00 --trajectory out.txt --causal-trajectory causal.txt --stats stats.json
+  byre map MH_02_easy --extend barn.byre -o barn2.byre
+  byre map MH_01_easy -o barn.byre --pace live --autosave 60
+  byre map MH_01_easy --trajectory out.txt --start 10 --end 25.5 --stride 2
+  byre map MH_01_easy --trajectory out.txt --pace live --quiet
+  byre map images --calibration camchain.yaml --fps 20 -o barn.byre
+
+inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
+live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
+KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
+points and redundant keyframes are removed. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
+writes all files, then the exit code is 130 or 143; "byre refine" makes up for it. A second one ends the program at once.)";
+
+void declare_files(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
+      ->type_name("FOLDER|VIDEO")
+      ->required();
+  add_output(command, Output::map, "-o,--output", options.map,
+             "The map, for \"byre localise\", \"byre inspect\" and later missions")
+      ->type_name("MAP");
+  add_output(command, Output::trajectory, "--trajectory", options.trajectory,
+             "Final poses: as recomputed after the last frame")
+      ->type_name("FILE");
+  add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
+             "Causal poses: as published when their frames came")
+      ->type_name("FILE");
+  add_output(command, Output::json, "--stats", options.stats, "Times, counts and every frame's report, as JSON")
+      ->type_name("FILE");
+}
+
+void declare_map_content(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::recording, "--poses", options.given_poses,
+            "Take the body's poses from this trajectory and hold them fixed: every frame becomes a keyframe")
+      ->type_name("FILE");
+  add_text(command, "--site", options.site, "Name of the building, kept in the map")->type_name("TEXT");
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary of the map's words (the one that comes with byre)")
+      ->type_name("FILE");
+}
+
+void declare_building(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::file, "--extend", options.extended,
+            "Go on with this map: the recording is found in it, and both are adjusted together")
+      ->type_name("MAP");
+  command
+      .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")
+      ->type_name("SECONDS")
+      ->check(between(0.1, 1e6));
+  command.add_flag("--no-loops", options.no_loops,
+                   "Recognise no places and leave out what comes after the last frame; for comparison");
+  command.add_flag("--no-self-calibration", options.no_self_calibration,
+                   "Take the calibration as it is given, instead of refining it from what is seen");
+}
+
+void require_consistent_extension(const MapOptions& options) {
+  if (!options.extended) return;
+  if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: name a file for it (-o barn2.byre)");
+  if (options.no_loops)
+    throw CLI::ValidationError("--extend", "has to recognise places, so it goes not with --no-loops");
+}
+
+void require_consistent(const MapOptions& options) {
+  require_sense(options.range);
+  if (!options.map && !options.trajectory) {
+    throw CLI::ValidationError("--output",
+                               "name a file for the map (-o barn.byre), the trajectory (--trajectory), or both");
+  }
+  if (options.given_poses && !options.map) {
+    throw CLI::ValidationError("--poses", "makes a map only: name a file for it (-o barn.byre)");
+  }
+  if (options.given_poses && (options.trajectory || options.causal_trajectory || options.stats)) {
+    throw CLI::ValidationError("--poses", "estimates no trajectory, so none can be written, nor its statistics");
+  }
+  if (options.given_poses && (options.extended || options.autosave_s || options.no_loops)) {
+    throw CLI::ValidationError("--poses", "goes with none of --extend, --autosave and --no-loops");
+  }
+  if (options.autosave_s && !options.map) {
+    throw CLI::ValidationError("--autosave", "saves the map: name a file for it (-o barn.byre)");
+  }
+  require_consistent_extension(options);
+}
+
+}  // namespace
+
+std::vector<fs::path> MapOptions::outputs() const {
+  std::vector<fs::path> files;
+  if (map) files.push_back(*map);
+  if (trajectory) files.push_back(*trajectory);
+  if (causal_trajectory) files.push_back(*causal_trajectory);
+  if (stats) files.push_back(*stats);
+  return files;
+}
+
+void declare_map_options(CLI::App& command, MapOptions& options) {
+  declare_files(command, options);
+  declare_map_content(command, options);
+  declare_building(command, options);
+  declare_open_options(command, options.open);
+  declare_frame_range(command, options.range);
+  declare_pace(command, options.pace);
+  std::map<std::string, Refinement> refinements;
+  for (const Refinement refinement : {Refinement::none, Refinement::stereo, Refinement::all}) {
+    refinements.emplace(name_of(refinement), refinement);
+  }
+  command
+      .add_option("--refine", options.refinement, "Matches refined in the image; less than all is for comparison (all)")
+      ->type_name("none|stereo|all")
+      ->transform(CLI::CheckedTransformer(refinements).description(""));
+  declare_trajectory_format(command, options.trajectory_format);
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  check_when_parsed(command, [&options] { require_consistent(options); });
+  command.footer(kMapFooter);
+}
+
+}  // namespace byre::cli

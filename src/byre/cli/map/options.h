@@ -1,0 +1,44 @@
+#pragma once
+
+#include "byre/playback/map_run.h"
+#include "byre/trajectory_file.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace byre::cli {
+
+// The command line of "byre map".
+struct MapOptions {
+  std::filesystem::path recording;
+  std::optional<std::filesystem::path> map;
+  std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> causal_trajectory;
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> given_poses;  // a trajectory of the recording; else it is estimated
+  std::optional<std::filesystem::path> vocabulary;   // else the one that comes with byre
+  std::optional<std::filesystem::path> extended;     // a map to go on with
+  std::optional<double> autosave_s;
+  std::string site;
+  FrameRange range;
+  OpenOptions open;  // how to take the recording
+  Pace pace = Pace::paced;
+  Refinement refinement = Refinement::all;
+  bool no_loops = false;
+  bool no_self_calibration = false;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  bool quiet = false;
+
+  std::vector<std::filesystem::path> outputs() const;  // those asked for
+};
+
+// The options must outlive the parsing of the command line.
+void declare_map_options(CLI::App& command, MapOptions& options);
+
+}  // namespace byre::cli

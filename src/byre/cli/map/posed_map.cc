@@ -1,0 +1,61 @@
+#include "byre/cli/map/posed_map.h"
+
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/dataset/trajectory_input.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/playback/map_from_poses_run.h"
+#include "byre/playback/source_recording.h"
+#include "byre/session/stopwatch.h"
+#include "byre/system/stored_map.h"
+
+#include <iostream>
+#include <memory>
+
+namespace byre::cli {
+namespace {
+
+PosedRun run_with_progress(Recording& recording, const MapOptions& options, const InterruptCatcher& interrupt) {
+  Progress progress(std::cerr, progress_style(options.quiet), recording.size());
+  const Stopwatch watch;
+  PosedRunOptions run_options;
+  run_options.extract.refinement = options.refinement;
+  PosedRunHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_frame = [&](int done) { progress.update(done, watch.seconds(), "poses given"); };
+  PosedRun run = run_map_from_poses(recording, load_truth(*options.given_poses), run_options, hooks);
+  progress.close();
+  return run;
+}
+
+std::string to_text(const PosedRun& run, const MapOptions& options) {
+  std::string text = "recording    " + options.recording.string() + formatted(", %d frames\n", run.frames);
+  text += "poses        given by " + options.given_poses->string() + ", not estimated";
+  if (run.without_pose > 0) text += formatted("; %d frames have none and are left out", run.without_pose);
+  text += formatted("\nmap          %d keyframes, %d points\n", run.map.keyframe_count(), run.map.point_count());
+  return text + "written      " + options.map->string() + "\n";
+}
+
+}  // namespace
+
+ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range, options.open);
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  limit_image_threads(1);
+  const InterruptCatcher interrupt(options.outputs());
+  const PosedRun run = run_with_progress(*recording, options, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+
+  StoredMap stored;
+  stored.map = run.map;
+  stored.recordings = {describe_source(options.recording, *recording)};
+  stored.pose_source = PoseSource::given;
+  save_for_use(std::move(stored), vocabulary, options.site, *options.map);
+  result << to_text(run, options);
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace byre::cli

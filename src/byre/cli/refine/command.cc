@@ -1,0 +1,87 @@
+#include "byre/assessment/finish_report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/system/refine_map.h"
+#include "byre/system/stored_map.h"
+
+#include <memory>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RefineOptions {
+  fs::path map;
+  std::optional<fs::path> output;  // else the map is replaced
+  std::optional<fs::path> vocabulary;
+  bool json = false;
+  bool quiet = false;
+
+  const fs::path& written() const { return output ? *output : map; }
+};
+
+constexpr const char* kRefineFooter = R"(Examples:
+  byre refine barn.byre
+  byre refine barn.byre -o better.byre --json
+
+Does what "byre map" ends with: looks for loops once more, adjusts all keyframes and points together, and removes weak
+points and redundant keyframes. Without -o the map is replaced, as a whole or not at all. Poses that were given or
+imported are adjusted too. Ctrl-C keeps what was reached by then, then the exit code is 130.)";
+
+std::string to_text(const RefineOptions& options, const Finishing& finishing) {
+  const MapQuality& after = finishing.report.after;
+  std::string text = "map          " + options.map.string() +
+                     formatted(": %d keyframes, %d points\n", after.keyframes, after.points) + byre::to_text(finishing);
+  return text + "written      " + options.written().string() + "\n";
+}
+
+std::string to_json(const RefineOptions& options, const Finishing& finishing) {
+  nlohmann::ordered_json json = {{"program", "byre refine"},
+                                 {"version", BYRE_VERSION},
+                                 {"map", options.map.string()},
+                                 {"written", options.written().string()}};
+  json["finishing"] = byre::to_json(finishing);
+  constexpr int kIndent = 2;
+  return json.dump(kIndent) + "\n";
+}
+
+ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
+  require_writable(options.written());
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  StoredMap stored = load_for_mapping(options.map, vocabulary);
+
+  const InterruptCatcher interrupt({options.written()});
+  const Finishing finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
+  save_for_use(std::move(stored), vocabulary, "", options.written());
+  result << (options.json ? to_json(options, finishing) : to_text(options, finishing));
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_refine(CLI::App& command) {
+  const auto options = std::make_shared<RefineOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_output(command, Output::refined_map, "-o,--output", options->output, "The refined map (it replaces the other)")
+      ->type_name("MAP");
+  add_input(command, Input::file, "--vocabulary", options->vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+  command.add_flag("--json", options->json, "Print what changed as JSON");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
+  command.footer(kRefineFooter);
+  return [options](std::ostream& result) { return run_refine(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,128 @@
+#include "byre/archive/register_map.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/register/report.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RegisterCommandOptions {
+  fs::path map;
+  fs::path plan;
+  fs::path picks;
+  std::optional<fs::path> output;
+  RegisterOptions registering;
+  std::optional<double> accepted_residual;  // metres; else kFarOffPlan
+  bool fix_scale = false;
+  bool json = false;
+};
+
+constexpr const char* kRegisterFooter = R"(Examples:
+  byre register barn.byre --plan plan.yaml --points picks.csv
+  byre register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre
+  byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
+  byre register barn.byre --plan plan.yaml --points picks.csv --fix-scale -o barn-plan.byre
+
+Finds where a map lies on a floor plan, from points picked in both: with -o a copy of the map that knows it, with which
+"byre run" and "byre localise" give poses on the plan (--frame plan). The plan is a map_server YAML file, or an image
+with a world file beside it. Which way is up, and how high the floor lies, comes from the path that was driven. A wrong
+pick is found when four or more are given, better six. A map without a metric scale gets one on the plan; of a metric
+map the plan tells whether its scale is right. A stereo map that is too large or too small has a baseline that is:
+--fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors; but a map
+that is off its plan by more than half a metre is not written unless --accept-residual says so. docs/floor_plan.md describes the
+files and the figures.)";
+
+MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
+  StoredMap stored = load_map(options.map);
+  if (options.fix_scale) return mend_scale(std::move(stored), options.map, plan, options.picks, options.registering);
+  Registering registering = register_map(stored, options.map, plan, options.picks, options.registering);
+  return {std::move(stored), std::move(registering), 1.0};
+}
+
+bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) {
+  return residual_of(fit) <= options.accepted_residual.value_or(kFarOffPlan);
+}
+
+[[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
+  const double residual = residual_of(fit);
+  throw InputError(options.picks.string(),
+                   formatted("fits the map only to %.2f m, so the map is not written: poses on the plan would be wrong "
+                             "by as much",
+                             residual),
+                   formatted("correct the picks that are off, the plan's resolution or its origin; --accept-residual "
+                             "%.2f writes it all the same",
+                             std::ceil(1e2 * residual) / 1e2));
+}
+
+ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
+  if (options.output) require_writable(*options.output);
+  const FloorPlan plan = read_floor_plan(options.plan);
+  const MendedMap registered = register_as_asked(options, plan);
+  const PlanFit& fit = registered.registering.fit;
+  const bool is_kept = options.output && is_close_enough(fit, options);
+  if (is_kept) {
+    StoredMap stored = registered.stored;
+    stored.plan = fit.registration;
+    save_map(stored, *options.output);
+  }
+  RegisterProtocol protocol{options.map.string(), plan, is_kept ? options.output->string() : "", {}};
+  if (options.fix_scale) protocol.scaled_by = registered.factor;
+  result << (options.json ? to_json(registered.registering, protocol) : to_text(registered.registering, protocol));
+  if (options.output && !is_kept) refuse_to_write(fit, options);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_register(CLI::App& command) {
+  const auto options = std::make_shared<RegisterCommandOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_input(command, Input::plan, "--plan", options->plan,
+            "The floor plan: a map_server YAML file, or an image with a world file")
+      ->type_name("FILE")
+      ->required();
+  add_input(command, Input::file, "--points", options->picks, "Points picked in the map and on the plan: a CSV file")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
+                                         "The map with its place on the plan (none is written)")
+                                  ->type_name("MAP");
+  command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")
+      ->type_name("METRES")
+      ->check(between(1e-4, 100.0));
+  command
+      .add_option("--body-height", options->registering.registration.body_height,
+                  "How high the body's origin is above the floor (0)")
+      ->type_name("METRES")
+      ->check(between(-100.0, 100.0));
+  command
+      .add_option("--accept-residual", options->accepted_residual,
+                  "Write the map although it is off its plan by up to so much (0.5)")
+      ->type_name("METRES")
+      ->check(between(0.0, 1e6))
+      ->needs(output);
+  command
+      .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
+      ->needs(output);
+  command.add_flag("--json", options->json, "Print the result as JSON");
+  command.footer(kRegisterFooter);
+  return [options](std::ostream& result) { return run_register(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,194 @@
+#include "byre/assessment/event_log.h"
+#include "byre/assessment/mission_judge.h"
+#include "byre/assessment/run_report.h"
+#include "byre/cli/check/report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/run/options.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/view_run.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/dataset/trajectory_input.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+#include "byre/playback/run_on_plan.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/playback/source_recording.h"
+#include "byre/system/stored_map.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Trajectory load_truth_later_by(const fs::path& path, Timestamp offset) {
+  Trajectory truth = load_truth(path);
+  for (StampedPose& sample : truth) sample.time += offset;
+  return truth;
+}
+
+// Read before the run and not after an hour of it.
+std::optional<MissionTruth> load_truths(const RunOptions& options) {
+  if (!options.truth) return std::nullopt;
+  const Timestamp offset = from_seconds(options.time_offset_s);
+  MissionTruth truth;
+  truth.of_frames = load_truth_later_by(*options.truth, offset);
+  truth.of_map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.of_frames;
+  if (options.map_trajectory) truth.map_run = load_trajectory(*options.map_trajectory, {});
+  if (options.align_scale) truth.map_scale = Scale::free;
+  return truth;
+}
+
+MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
+  MapProtocol protocol;
+  protocol.program = "byre run";
+  protocol.recording = options.recording.string();
+  protocol.format = guess_format(options.recording);
+  protocol.camera = camera_of(recording, options.open);
+  protocol.range = options.range;
+  protocol.frames_in_range = recording.size();
+  protocol.options.pace = options.pace;
+  protocol.options.session.map_online = !options.localise_only;
+  protocol.options.session.track = options.track;
+  protocol.options.vocabulary = open_vocabulary(options.vocabulary);
+  if (!options.map) return protocol;
+  protocol.offline = options.map->string();
+  if (options.frame == PoseFrame::plan) {
+    protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
+  }
+  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary);
+  return protocol;
+}
+
+// Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends. That they
+// cannot be written any more is told at once, for somebody may wait for them.
+class EventFile {
+ public:
+  explicit EventFile(const std::optional<fs::path>& path) : path_(path) {
+    if (!path_) return;
+    file_.open(*path_);
+    if (!file_) throw InputError(path_->string(), "cannot be written", "check that its folder exists and has space");
+  }
+
+  void note(int number, const MappedFrame& frame) {
+    if (!path_ || has_failed_) return;
+    errno = 0;
+    log_.note(number, frame);
+    has_failed_ = !file_;
+    if (has_failed_) show_warnings(std::cerr, {fault() + (errno == 0 ? "" : std::string(": ") + std::strerror(errno))});
+  }
+
+  void require_written() const {
+    if (has_failed_) throw std::runtime_error(fault());
+  }
+
+ private:
+  std::string fault() const { return path_->string() + ": events are missing, as they could not be written"; }
+
+  std::optional<fs::path> path_;  // empty: nothing is noted
+  std::ofstream file_;
+  EventLog log_{file_};
+  bool has_failed_ = false;
+};
+
+MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options, RunViewer* viewer,
+                   EventFile& events, const InterruptCatcher& interrupt) {
+  MapRunHooks hooks;
+  if (viewer != nullptr) hooks.look = shown_in(*viewer);
+  hooks.after_frame = [&](int done, const MappedFrame& frame) {
+    events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
+  };
+  return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
+}
+
+void save_online_map(const MapRun& run, const RunOptions& options, const ScaledRecording& recording,
+                     const Vocabulary& vocabulary) {
+  StoredMap stored;
+  stored.map = run.map;
+  stored.recordings = {describe_source(options.recording, *recording.recording, run.calibration)};
+  stored.scale = recording.is_metric ? MapScale::metric : MapScale::unknown;
+  save_for_use(std::move(stored), vocabulary, "", *options.online_map);
+}
+
+void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol,
+                   const MissionOutcome& mission, const ResourceUse& resources, OutputWriter& outputs) {
+  outputs.attempt(options.trajectory, run.final, options.trajectory_format);
+  outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
+  outputs.attempt(options.odometry, run.odometry, options.trajectory_format);
+  outputs.attempt([&] {
+    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
+  });
+}
+
+void require_frames(const MissionStatistics& statistics) {
+  if (!is_full_of_gaps(statistics)) return;
+  throw std::runtime_error(
+      formatted("%d of %d frames could not be read, so this was not the whole mission; the warnings "
+                "say why",
+                statistics.missing, statistics.frames));
+}
+
+ExitCode run_mission(RunOptions options, std::ostream& result) {
+  for (const fs::path& output : options.outputs()) require_writable(output);
+  const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
+  if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
+  const std::optional<MissionTruth> truth = load_truths(options);
+  MapProtocol protocol = protocol_of(options, *opened.recording);
+  protocol.is_metric = opened.is_metric;
+
+  limit_image_threads(1);
+  if (!options.quiet) show_check(std::cerr, *opened.recording);
+  const std::unique_ptr<RunViewer> viewer =
+      options.view.is_wanted
+          ? start_viewer(options.view, {options.recording, *opened.recording, options.map, protocol.options.offline})
+          : nullptr;
+  const InterruptCatcher interrupt(options.outputs());
+  EventFile events(options.events);
+  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), events, interrupt);
+  if (viewer) viewer->end_run();
+  if (options.online_map && run.map.keyframe_count() == 0) {
+    run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
+    options.online_map.reset();
+  }
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+  OutputWriter outputs;
+  outputs.attempt([&] {
+    if (options.online_map) save_online_map(run, options, opened, *protocol.options.vocabulary);
+  });
+  const ResourceUse resources = resources_used_so_far();
+  const MissionOutcome mission = judge_mission(run, protocol.options, truth, opened);
+  if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
+  write_results(options, run, protocol, mission, resources, outputs);
+  outputs.require_written();
+  result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
+  if (interrupt.caught()) return ExitCode::interrupted;
+  if (viewer) {
+    result.flush();
+    serve_after_run(options.view, interrupt, options.quiet);
+  }
+  events.require_written();
+  require_frames(mission.statistics);
+  require_poses(run, protocol);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_run(CLI::App& command) {
+  const auto options = std::make_shared<RunOptions>();
+  declare_run_options(command, *options);
+  return [options](std::ostream& result) { return run_mission(*options, result); };
+}
+
+}  // namespace byre::cli

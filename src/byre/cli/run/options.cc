@@ -1,0 +1,153 @@
+#include "byre/cli/run/options.h"
+
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/recording_options.h"
+#include "byre/input/formatted.h"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRunFooter = R"(Examples:
+  byre run evening_round --map barn.byre --events events.jsonl
+  byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
+  byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
+  byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
+  byre run evening_round --map barn.byre --camera left --events events.jsonl
+  byre run evening_round --map barn-plan.byre --frame plan --trajectory plan.txt
+  byre run evening_round --map barn.byre --pace live --view
+  byre run evening_round --truth evening_round --stats without_map.json
+
+With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
+beside them, and says of each frame how far its pose may be trusted. The map's file is only read. Poses are in the map's
+frame, those of odometry in one that begins where the robot does and never jumps. With --localise-only nothing is mapped
+beside the map; with --frame plan poses in the map become poses on the floor plan that "byre register" found it on.
+Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
+frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
+that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
+as long as --view-for says; docs/viewer.md says more.
+Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
+when no frame got a pose, more than one frame in twenty could not be read, or events could not be written. docs/mission.md
+describes the events and what health means.)";
+
+void declare_inputs(CLI::App& command, RunOptions& options) {
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
+      ->type_name("FOLDER|VIDEO")
+      ->required();
+  CLI::Option* const map =
+      add_input(command, Input::file, "--map", options.map, "The offline map of the mission (none: plain SLAM)")
+          ->type_name("MAP");
+  command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
+      ->needs(map);
+  declare_pose_frame(command, options.frame)->needs(map);
+  CLI::Option* const truth = add_input(command, Input::recording, "--truth", options.truth,
+                                       "True poses of the frames: a trajectory or the recording that holds it")
+                                 ->type_name("FILE|FOLDER");
+  add_input(command, Input::recording, "--map-truth", options.map_truth,
+            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+      ->type_name("FILE|FOLDER")
+      ->needs(truth)
+      ->needs(map);
+  add_input(command, Input::recording, "--map-trajectory", options.map_trajectory,
+            "Final poses of the run that made the map, to align it by all of them (by the map's keyframes)")
+      ->type_name("FILE")
+      ->needs(truth)
+      ->needs(map);
+  command
+      .add_flag("--align-scale", options.align_scale,
+                "Lay the map on the truth by a similarity: a baseline that errs in length, which no image tells, does "
+                "not count")
+      ->needs(truth)
+      ->needs(map);
+  command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
+      ->type_name("SECONDS")
+      ->check(between(-1e6, 1e6))
+      ->needs(truth);
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary to look places up with (the one byre comes with)")
+      ->type_name("FILE");
+}
+
+void declare_outputs(CLI::App& command, RunOptions& options) {
+  add_output(command, Output::map, "--save-online", options.online_map,
+             "What was mapped beside the offline map, as a map of its own")
+      ->type_name("MAP");
+  add_output(command, Output::json, "--events", options.events, "What happens, as it happens: JSON lines")
+      ->type_name("FILE");
+  add_output(command, Output::trajectory, "--trajectory", options.trajectory,
+             "Final poses in the map's frame: as recomputed after the last frame")
+      ->type_name("FILE");
+  add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
+             "Causal poses in the map's frame: as published when their frames came")
+      ->type_name("FILE");
+  add_output(command, Output::trajectory, "--odometry", options.odometry,
+             "Smooth poses, as published, in a frame of their own")
+      ->type_name("FILE");
+  add_output(command, Output::json, "--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
+      ->type_name("FILE");
+}
+
+void require_consistent(const RunOptions& options) {
+  require_sense(options.range);
+  if (options.localise_only && options.online_map) {
+    throw CLI::ValidationError("--localise-only", "maps nothing, so there is nothing to --save-online");
+  }
+  if (options.view.plan && !options.map) {
+    throw CLI::ValidationError("--plan", "lies under a map: name one that was found on it with --map");
+  }
+}
+
+// How points of the two maps go together; the defaults were measured.
+void declare_tracking(CLI::App& command, TrackOptions& track) {
+  std::map<std::string, OfflinePolicy> policies;
+  for (const OfflinePolicy known : {OfflinePolicy::first, OfflinePolicy::together}) {
+    policies.emplace(name_of(known), known);
+  }
+  command
+      .add_option(
+          "--offline-weight", track.offline_weight,
+          formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
+      ->type_name("FACTOR")
+      ->check(between(1e-3, 1e3));
+  command
+      .add_option(
+          "--offline-policy", track.offline_policy,
+          "Offline points first, so that their pose guides the search for online ones, or both together (first)")
+      ->type_name("first|together")
+      ->transform(CLI::CheckedTransformer(policies).description(""));
+}
+
+}  // namespace
+
+std::vector<fs::path> RunOptions::outputs() const {
+  std::vector<fs::path> files;
+  for (const auto& file : {online_map, events, trajectory, causal_trajectory, odometry, stats}) {
+    if (file) files.push_back(*file);
+  }
+  return files;
+}
+
+void declare_run_options(CLI::App& command, RunOptions& options) {
+  declare_inputs(command, options);
+  declare_outputs(command, options);
+  declare_open_options(command, options.open);
+  declare_frame_range(command, options.range);
+  declare_pace(command, options.pace);
+  declare_tracking(command, options.track);
+  declare_watching(command, options.view);
+  declare_trajectory_format(command, options.trajectory_format);
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  check_when_parsed(command, [&options] { require_consistent(options); });
+  command.footer(kRunFooter);
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/view_options.h"
+#include "byre/playback/map_run.h"
+#include "byre/trajectory_file.h"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace byre::cli {
+
+// The command line of "byre run".
+struct RunOptions {
+  std::filesystem::path recording;
+  std::optional<std::filesystem::path> map;  // the offline map; without it plain SLAM
+  bool localise_only = false;
+  PoseFrame frame = PoseFrame::map;
+  std::optional<std::filesystem::path> online_map;
+  std::optional<std::filesystem::path> events;
+  std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> causal_trajectory;
+  std::optional<std::filesystem::path> odometry;
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> truth;
+  std::optional<std::filesystem::path> map_truth;       // of the map's own recording, where that is another
+  std::optional<std::filesystem::path> map_trajectory;  // of the run that made the map
+  bool align_scale = false;    // the map is laid on the truth with its scale, which an erring baseline changes
+  double time_offset_s = 0.0;  // added to the time stamps of both
+  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  FrameRange range;
+  OpenOptions open;  // how to take the recording
+  Pace pace = Pace::paced;
+  TrackOptions track;
+  ViewOptions view;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  bool quiet = false;
+
+  std::vector<std::filesystem::path> outputs() const;  // those asked for
+};
+
+// The options must outlive the parsing of the command line.
+void declare_run_options(CLI::App& command, RunOptions& options);
+
+}  // namespace byre::cli

@@ -1,0 +1,65 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/scale/scale_by_distance.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct ScaleOptions {
+  std::filesystem::path map;
+  std::pair<std::string, std::string> between;
+  double metres = 0.0;
+  std::filesystem::path output;
+};
+
+constexpr const char* kScaleFooter = R"(Examples:
+  byre scale barn.byre --between point:1204 point:9433 --metres 4.20 -o barn_metric.byre
+  byre scale barn.byre --between time:1403636580.1 time:1403636584.6 --metres 2.5 -o barn_metric.byre
+  byre scale barn.byre --between 0.1,0.5,2.2 1.7,0.5,2.3 --metres 4.20 -o barn_metric.byre
+
+One camera alone tells everything of a building but its size. A place is a map point by its number (as in the point cloud that
+"byre inspect" writes), the camera at a time, or a position in units of the map. Choose two that are far apart: the map is as
+exact in size as the distance is. Missions then run on the map with one camera or with two.)";
+
+ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
+  require_writable(options.output);
+  const ScaledMap scaled =
+      scale_by_distance(load_map(options.map), options.between.first, options.between.second, options.metres);
+  save_map(scaled.stored, options.output);
+  result << row("before", formatted("%g units apart", scaled.distance))
+         << row("now", formatted("%g m apart: a unit is %g m", options.metres, scaled.factor))
+         << row("written", options.output.string());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_scale(CLI::App& command) {
+  const auto options = std::make_shared<ScaleOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map of one camera, as \"byre map\" writes it")
+      ->type_name("MAP")
+      ->required();
+  add_text(command, "--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
+  command.add_option("--metres", options->metres, "How far they are from each other")
+      ->type_name("METRES")
+      ->check(above_zero())
+      ->required();
+  add_output(command, Output::map, "-o,--output", options->output, "The map with lengths in metres")
+      ->type_name("MAP")
+      ->required();
+  command.footer(kScaleFooter);
+  return [options](std::ostream& result) { return run_scale(*options, result); };
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,169 @@
+#include "byre/cli/shared/file_arguments.h"
+
+#include "byre/input/regular_file.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoOverwrite = "--no-overwrite";
+
+// An option carries its declaration as the name of a validator, which help does not show.
+constexpr const char* kText = "text";
+constexpr std::array kInputs = {
+    std::pair(Input::file, "reads file"),     std::pair(Input::recording, "reads recording"),
+    std::pair(Input::plan, "reads plan"),     std::pair(Input::colmap_model, "reads model"),
+    std::pair(Input::images, "reads images"), std::pair(Input::folder, "reads folder")};
+constexpr std::array kOutputs = {std::pair(Output::map, "writes map"),
+                                 std::pair(Output::refined_map, "writes refined map"),
+                                 std::pair(Output::updated_map, "writes updated map"),
+                                 std::pair(Output::viewed_map, "writes viewed map"),
+                                 std::pair(Output::trajectory, "writes trajectory"),
+                                 std::pair(Output::json, "writes JSON"),
+                                 std::pair(Output::picture, "writes picture"),
+                                 std::pair(Output::video, "writes video"),
+                                 std::pair(Output::point_cloud, "writes point cloud"),
+                                 std::pair(Output::calibration, "writes calibration"),
+                                 std::pair(Output::vocabulary, "writes vocabulary"),
+                                 std::pair(Output::colmap_model, "writes model"),
+                                 std::pair(Output::folder, "writes folder")};
+
+template <typename Kind, std::size_t n>
+const char* name_of(const std::array<std::pair<Kind, const char*>, n>& names, Kind kind) {
+  return std::ranges::find(names, kind, &std::pair<Kind, const char*>::first)->second;
+}
+
+bool is_declared(CLI::Option& option, const char* name) {
+  try {
+    option.get_validator(name);
+    return true;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
+template <typename Kind, std::size_t n>
+std::optional<Kind> declared_as(const std::array<std::pair<Kind, const char*>, n>& names, CLI::Option& option) {
+  for (const auto& [kind, name] : names) {
+    if (is_declared(option, name)) return kind;
+  }
+  return std::nullopt;
+}
+
+CLI::Option* declare_file(CLI::Option* option, const char* name) {
+  const auto require_name = [](const std::string& path) {
+    return path.empty() ? std::string("is empty: name a file or folder (is a shell variable not set?)") : std::string();
+  };
+  return option->check(CLI::Validator(require_name, "", name));
+}
+
+// The commands that were given, one below the other, outermost first.
+std::vector<CLI::App*> given_commands(CLI::App& command) {
+  std::vector<CLI::App*> commands = {&command};
+  for (CLI::App* const below : command.get_subcommands()) {
+    for (CLI::App* const each : given_commands(*below)) commands.push_back(each);
+  }
+  return commands;
+}
+
+Arguments arguments_of(CLI::App& command) {
+  Arguments arguments;
+  for (CLI::App* const given : given_commands(command)) {
+    for (CLI::Option* const option : given->get_options()) {
+      const auto input = input_of(*option);
+      const auto output = output_of(*option);
+      for (const std::string& path : option->results()) {
+        if (input) arguments.inputs.push_back({*input, option->get_name(), path});
+        if (output) arguments.outputs.push_back({*output, option->get_name(), path});
+      }
+    }
+  }
+  return arguments;
+}
+
+bool has_no_overwrite(const CLI::App& command) {
+  const CLI::Option* const option = command.get_option_no_throw(kNoOverwrite);
+  return option != nullptr && option->count() > 0;
+}
+
+// It may stand anywhere on the command line.
+bool wants_no_overwrite(CLI::App& command) {
+  for (const CLI::App* each = command.get_parent(); each != nullptr; each = each->get_parent()) {
+    if (has_no_overwrite(*each)) return true;
+  }
+  return std::ranges::any_of(given_commands(command), [](const CLI::App* given) { return has_no_overwrite(*given); });
+}
+
+// Where no file is named for it, a refined map replaces the one that was read.
+void require_absent_map(CLI::App& command, const Arguments& arguments) {
+  for (CLI::Option* const option : command.get_options()) {
+    if (output_of(*option) != Output::refined_map || option->count() > 0) continue;
+    for (const Read& read : arguments.inputs) {
+      if (read.argument == "MAP") require_absent(read.argument, read.path);
+    }
+  }
+}
+
+void require_nothing_replaced(CLI::App& command, const Arguments& arguments) {
+  require_absent(arguments.outputs);
+  for (CLI::App* const given : given_commands(command)) require_absent_map(*given, arguments);
+}
+
+}  // namespace
+
+CLI::Option* declare(CLI::Option* option, Input input) {
+  return declare_file(option, name_of(kInputs, input));
+}
+
+CLI::Option* declare(CLI::Option* option, Output output) {
+  return declare_file(option, name_of(kOutputs, output));
+}
+
+CLI::Option* declare_text(CLI::Option* option) {
+  return option->check(CLI::Validator([](const std::string&) { return std::string(); }, "", kText));
+}
+
+std::optional<Input> input_of(CLI::Option& option) {
+  return declared_as(kInputs, option);
+}
+
+std::optional<Output> output_of(CLI::Option& option) {
+  return declared_as(kOutputs, option);
+}
+
+bool is_text(CLI::Option& option) {
+  return is_declared(option, kText);
+}
+
+void declare_no_overwrite(CLI::App& command) {
+  command.add_flag(kNoOverwrite)->description("Replace no file that is there");
+}
+
+void require_safe_files(CLI::App& command) {
+  const Arguments arguments = arguments_of(command);
+  require_not_read(arguments);
+  require_distinct(arguments.outputs);
+  if (wants_no_overwrite(command)) require_nothing_replaced(command, arguments);
+  require_same_kinds(arguments.outputs);
+}
+
+void require_files_or_folders(CLI::App& command) {
+  for (const Read& read : arguments_of(command).inputs) refuse_pipe(read.path);
+}
+
+void check_when_parsed(CLI::App& command, std::function<void()> check) {
+  command.parse_complete_callback([&command, check = std::move(check)] {
+    require_safe_files(command);
+    if (check) check();
+  });
+}
+
+}  // namespace byre::cli

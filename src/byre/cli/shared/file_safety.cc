@@ -1,0 +1,274 @@
+#include "byre/cli/shared/file_safety.h"
+
+#include "byre/dataset/file_content.h"
+#include "byre/dataset/files_read.h"
+#include "byre/viewer/web_map.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include <CLI/Error.hpp>
+#include <sys/stat.h>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file or folder by what it is, not by its name.
+struct Identity {
+  dev_t device{};
+  ino_t number{};
+
+  auto operator<=>(const Identity&) const = default;
+};
+
+std::optional<Identity> identity_of(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return std::nullopt;
+  if (!S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return std::nullopt;
+  return Identity{status.st_dev, status.st_ino};
+}
+
+// A terminal, a pipe: reading and writing it are two things.
+bool is_special(const fs::path& path) {
+  std::error_code error;
+  return fs::is_other(path, error);
+}
+
+// The file that a path stands for, also by links, whether it is there or not.
+fs::path target_of(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
+  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  return error ? path : target;
+}
+
+std::vector<fs::path> files_of(const Read& read) {
+  switch (read.input) {
+    case Input::file:
+    case Input::folder:
+      break;
+    case Input::recording:
+      return files_of_recording(read.path);
+    case Input::plan:
+      return files_of_floor_plan(read.path);
+    case Input::colmap_model:
+      return files_of_colmap_model(read.path);
+    case Input::images:
+      return images_below(read.path);
+  }
+  return {};
+}
+
+// All that is written for an output, but for what comes into folders whose content is the command's own.
+std::vector<fs::path> files_of(const Written& written) {
+  std::vector<fs::path> files;
+  switch (written.output) {
+    case Output::folder:
+      return {};
+    case Output::colmap_model:
+      for (const char* const name : {"cameras", "images", "points3D"}) {
+        for (const char* const suffix : {".bin", ".txt"}) files.push_back(written.path / (std::string(name) + suffix));
+      }
+      return files;
+    case Output::viewed_map:
+      files.push_back(picks_path(written.path));
+      [[fallthrough]];
+    default:
+      files.push_back(written.path);
+      return files;
+  }
+}
+
+// Which argument reads a file or folder: those that are there by what they are, those that were named by their name
+// too.
+struct Owners {
+  std::map<Identity, const Read*> by_identity;
+  std::map<fs::path, const Read*> by_name;
+
+  const Read* find(const fs::path& file, Output output) const {
+    const auto identity = identity_of(file);
+    const auto same = identity ? by_identity.find(*identity) : by_identity.end();
+    if (same != by_identity.end()) return same->second;
+    if (output == Output::folder) return nullptr;  // it may bear the name of a protocol that comes with byre
+    const auto named = by_name.find(target_of(file));
+    return named != by_name.end() && !is_special(file) ? named->second : nullptr;
+  }
+};
+
+Owners owners_of(const std::vector<Read>& inputs) {
+  Owners owners;
+  for (const Read& read : inputs) {
+    std::error_code error;
+    if (read.input == Input::file && fs::is_directory(read.path, error)) continue;  // no file, but a name like one
+    owners.by_name.emplace(target_of(read.path), &read);
+    std::vector<fs::path> files = files_of(read);
+    files.push_back(read.path);
+    for (const fs::path& file : files) {
+      if (const auto identity = identity_of(file)) owners.by_identity.emplace(*identity, &read);
+    }
+  }
+  return owners;
+}
+
+// A map may take the place of the map that it was made of.
+bool may_be(const Written& written, const Read& read) {
+  constexpr std::array kInPlace = {Output::refined_map, Output::updated_map, Output::viewed_map};
+  if (std::ranges::count(kInPlace, written.output) == 0) return false;
+  return read.input == Input::file && read.argument == "MAP";
+}
+
+void require_not_read(const Written& written, const fs::path& file, const Owners& owners) {
+  const Read* const owner = owners.find(file, written.output);
+  if (owner == nullptr || may_be(written, *owner)) return;
+  throw CLI::ValidationError(written.argument, file.string() + " is read, for " + owner->argument +
+                                                   ", so it may not be written: name another file");
+}
+
+void require_not_read(const Written& written, const Owners& owners) {
+  // The files of a model may be put beside those of a recording.
+  std::error_code error;
+  const bool is_shared_folder = written.output == Output::colmap_model && fs::is_directory(written.path, error);
+  if (!is_shared_folder) require_not_read(written, written.path, owners);
+  for (const fs::path& file : files_of(written)) {
+    require_not_read(written, file, owners);
+    fs::path unfinished = target_of(file);
+    unfinished += ".unfinished";  // where it is written first
+    require_not_read(written, unfinished, owners);
+  }
+}
+
+// Such as /dev/stdout, which may stand for a file that is gone on with.
+bool is_device_name(const fs::path& path) {
+  const std::string name = path.lexically_normal().string();
+  return name.starts_with("/dev/") || name.starts_with("/proc/");
+}
+
+bool is_svg(const fs::path& file) {
+  return file.extension() == ".svg" || file.extension() == ".SVG";
+}
+
+std::string_view kind_of(const Written& written, const fs::path& file) {
+  switch (written.output) {
+    case Output::viewed_map:
+      return file == written.path ? "map" : "table of picks";
+    case Output::map:
+    case Output::refined_map:
+    case Output::updated_map:
+      return "map";
+    case Output::trajectory:
+      return "trajectory";
+    case Output::json:
+      return "JSON";
+    case Output::picture:
+      return is_svg(file) ? "SVG picture" : "PNG picture";
+    case Output::video:
+      return "video";
+    case Output::point_cloud:
+      return "point cloud";
+    case Output::calibration:
+      return "calibration";
+    case Output::vocabulary:
+      return "vocabulary";
+    case Output::colmap_model:
+    case Output::folder:
+      break;
+  }
+  return "part of a model";
+}
+
+bool may_replace(const Written& written, const fs::path& file, FileContent content) {
+  switch (written.output) {
+    case Output::viewed_map:
+      return content == (file == written.path ? FileContent::map : FileContent::table);
+    case Output::map:
+    case Output::refined_map:
+    case Output::updated_map:
+      return content == FileContent::map;
+    case Output::trajectory:
+      return content == FileContent::trajectory;
+    case Output::json:
+      return content == FileContent::json;
+    case Output::picture:
+      return content == (is_svg(file) ? FileContent::svg : FileContent::png);
+    case Output::video:
+      return content == FileContent::video;
+    case Output::point_cloud:
+      return content == FileContent::point_cloud;
+    case Output::calibration:
+      return content == FileContent::yaml;
+    case Output::vocabulary:
+      return content == FileContent::vocabulary;
+    case Output::colmap_model:
+    case Output::folder:
+      break;
+  }
+  return content == FileContent::other || content == FileContent::text || content == FileContent::trajectory;
+}
+
+void require_same_kind(const Written& written, const fs::path& file) {
+  const auto content = content_of(file);
+  if (!content || *content == FileContent::nothing || may_replace(written, file, *content)) return;
+  throw CLI::ValidationError(written.argument, file.string() + " is there and is no " +
+                                                   std::string(kind_of(written, file)) +
+                                                   ": name another file, or remove that one first");
+}
+
+}  // namespace
+
+void require_not_read(const Arguments& arguments) {
+  if (arguments.outputs.empty()) return;  // nobody needs to know all that is read
+  const Owners owners = owners_of(arguments.inputs);
+  for (const Written& written : arguments.outputs) require_not_read(written, owners);
+}
+
+void require_distinct(const std::vector<Written>& outputs) {
+  std::set<fs::path> files;
+  std::set<Identity> identities;
+  const auto require_new = [](bool is_new, const fs::path& file) {
+    if (!is_new) throw CLI::ValidationError(file.string(), "is named for two outputs");
+  };
+  for (const Written& written : outputs) {
+    for (const fs::path& file : files_of(written)) {
+      fs::path unfinished = target_of(file);
+      require_new(files.insert(unfinished).second, file);
+      require_new(files.insert(unfinished += ".unfinished").second, file);
+      const auto identity = identity_of(file);
+      if (identity) require_new(identities.insert(*identity).second, file);
+    }
+  }
+}
+
+void require_same_kinds(const std::vector<Written>& outputs) {
+  for (const Written& written : outputs) {
+    if (is_device_name(written.path)) continue;
+    for (const fs::path& file : files_of(written)) require_same_kind(written, file);
+  }
+}
+
+void require_absent(const std::vector<Written>& outputs) {
+  for (const Written& written : outputs) {
+    if (is_device_name(written.path)) continue;
+    if (written.output == Output::folder) require_absent(written.argument, written.path);
+    for (const fs::path& file : files_of(written)) require_absent(written.argument, file);
+  }
+}
+
+void require_absent(const std::string& argument, const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  const bool is_full_folder = fs::is_directory(status) && !fs::is_empty(file, error);
+  if (!fs::is_regular_file(status) && !is_full_folder) return;
+  throw CLI::ValidationError(argument, file.string() + " is there, and --no-overwrite keeps what is");
+}
+
+}  // namespace byre::cli

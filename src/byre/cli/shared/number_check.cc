@@ -1,0 +1,39 @@
+#include "byre/cli/shared/number_check.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input/text_file.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+CLI::Validator number_that(std::function<bool(double)> fits, std::string what) {
+  const auto fault_of = [fits = std::move(fits), what = std::move(what)](const std::string& text) {
+    const std::optional<double> number = parse_number(text);
+    return number && fits(*number) ? std::string() : "\"" + text + "\" is no number " + what;
+  };
+  return {fault_of, ""};
+}
+
+}  // namespace
+
+CLI::Validator between(double low, double high) {
+  return number_that([=](double number) { return low <= number && number <= high; },
+                     formatted("from %.12g to %.12g", low, high));
+}
+
+CLI::Validator from(double low) {
+  return number_that([=](double number) { return low <= number; }, formatted("from %.12g on", low));
+}
+
+CLI::Validator above_zero() {
+  return number_that([](double number) { return number > 0.0; }, "above 0");
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,42 @@
+#include "byre/cli/shared/outputs.h"
+
+#include "byre/evaluation/trajectory_output.h"
+#include "byre/input_error.h"
+
+#include <system_error>
+
+namespace byre::cli {
+
+namespace fs = std::filesystem;
+
+void OutputWriter::attempt(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const std::exception&) {
+    if (!first_failure_) first_failure_ = std::current_exception();
+  }
+}
+
+void OutputWriter::attempt(const std::optional<fs::path>& path, const Trajectory& trajectory, TrajectoryFormat format) {
+  if (path) attempt([&] { write_whole(*path, trajectory, format); });
+}
+
+void OutputWriter::require_written() const {
+  if (first_failure_) std::rethrow_exception(first_failure_);
+}
+
+std::vector<std::string> names_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.string());
+  return names;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw InputError(folder.string(), "cannot be made a folder", "name another with -o");
+  }
+}
+
+}  // namespace byre::cli

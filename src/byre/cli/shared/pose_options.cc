@@ -1,0 +1,34 @@
+#include "byre/cli/shared/pose_options.h"
+
+#include "byre/input_error.h"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+
+CLI::Option* declare_pose_frame(CLI::App& command, PoseFrame& frame) {
+  const std::map<std::string, PoseFrame> frames = {{"map", PoseFrame::map}, {"plan", PoseFrame::plan}};
+  return command.add_option("--frame", frame, "Frame of the poses: the map's, or that of the plan it lies on (map)")
+      ->type_name("map|plan")
+      ->transform(CLI::CheckedTransformer(frames).description(""));
+}
+
+const PlanRegistration& require_plan(const std::optional<PlanRegistration>& plan, const std::filesystem::path& map) {
+  if (plan) return *plan;
+  throw InputError(map.string(), "lies on no floor plan, so poses cannot be given on one", "see \"byre register\"");
+}
+
+void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format) {
+  const std::map<std::string, TrajectoryFormat> formats = {
+      {"tum", TrajectoryFormat::tum}, {"euroc", TrajectoryFormat::euroc}, {"kitti", TrajectoryFormat::kitti}};
+  command
+      .add_option("--format", format,
+                  "Of the trajectories written: TUM's (default), EuRoC's with nanoseconds, or KITTI's without times")
+      ->type_name("tum|euroc|kitti")
+      ->transform(CLI::CheckedTransformer(formats).description(""));
+}
+
+}  // namespace byre::cli

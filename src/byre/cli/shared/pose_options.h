@@ -1,0 +1,29 @@
+#pragma once
+
+#include "byre/map/plan_registration.h"
+#include "byre/trajectory_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace byre::cli {
+
+// The frame that poses in a map are written in.
+enum class PoseFrame : std::uint8_t { map, plan };
+
+// The option --frame.
+CLI::Option* declare_pose_frame(CLI::App& command, PoseFrame& frame);
+
+// Where the map lies on its floor plan. Throws InputError, naming the map's file, when that is not known.
+const PlanRegistration& require_plan(const std::optional<PlanRegistration>& plan, const std::filesystem::path& map);
+
+// --format: of all trajectories that a command writes. The format must outlive the parsing of the command line.
+void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format);
+
+}  // namespace byre::cli

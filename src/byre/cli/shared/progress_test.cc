@@ -1,0 +1,65 @@
+#include "byre/cli/shared/progress.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace byre::cli {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string shown(ProgressStyle style, int total, double seconds_per_frame) {
+  std::ostringstream stream;
+  Progress progress(stream, style, total);
+  for (int done = 1; done <= total; ++done) progress.update(done, done * seconds_per_frame, "tracking");
+  progress.close();
+  return stream.str();
+}
+
+TEST(Progress, PrintsTheFirstFrameAndEachTenthAsLines) {
+  const std::string text = shown(ProgressStyle::lines, 1000, 0.01);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 11);
+  EXPECT_THAT(text, StartsWith("1 of 1000 frames, 100.0 frames/s, 0:10 left, tracking\n100 of 1000 frames, "));
+  EXPECT_THAT(text, EndsWith("1000 of 1000 frames, 100.0 frames/s, 0:00 left, tracking\n"));
+}
+
+TEST(Progress, PrintsALineAfterTenSecondsWhenFramesAreSlow) {
+  EXPECT_EQ(std::ranges::count(shown(ProgressStyle::lines, 1000, 1.0), '\n'), 101);
+}
+
+TEST(Progress, RedrawsTheBarInOneLine) {
+  const std::string text = shown(ProgressStyle::bar, 100, 0.0625);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1);
+  EXPECT_EQ(std::ranges::count(text, '\r'), 51);
+  EXPECT_THAT(text, HasSubstr("\r[............"));
+  EXPECT_THAT(text, HasSubstr("\r[############............] 51 of 100 frames"));
+  EXPECT_THAT(
+      text,
+      EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\x1b[?7h\n"));
+}
+
+std::string end_of_bar(ProgressStyle style, Tone tone) {
+  std::ostringstream stream;
+  Progress progress(stream, style, 1);
+  progress.update(1, 1.0, "tracking", tone);
+  return stream.str();
+}
+
+TEST(Progress, ColoursTheStateByHowGoodItIsWhereThereAreColours) {
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::good), HasSubstr(", \x1b[32mtracking\x1b[0m\x1b[K"));
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::doubtful), HasSubstr(", \x1b[33mtracking\x1b[0m"));
+  EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::bad), HasSubstr(", \x1b[31mtracking\x1b[0m"));
+  EXPECT_EQ(end_of_bar(ProgressStyle::coloured_bar, Tone::plain), end_of_bar(ProgressStyle::bar, Tone::bad));
+  EXPECT_EQ(end_of_bar(ProgressStyle::lines, Tone::bad), "1 of 1 frames, 1.0 frames/s, 0:00 left, tracking\n");
+}
+
+TEST(Progress, IsSilentWhenToldSo) {
+  EXPECT_EQ(shown(ProgressStyle::none, 100, 1.0), "");
+}
+
+}  // namespace
+}  // namespace byre::cli

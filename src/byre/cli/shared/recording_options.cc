@@ -1,0 +1,87 @@
+#include "byre/cli/shared/recording_options.h"
+
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/dataset/recording_words.h"
+#include "byre/input/text_file.h"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+constexpr double kLongest_s = 1e9;
+
+std::optional<double> parse_frame_rate(std::string_view text) {
+  const std::optional<double> rate = parse_number(text);
+  return rate && *rate >= kLowestFrameRate && *rate <= kHighestFrameRate ? rate : std::nullopt;
+}
+
+}  // namespace
+
+void declare_open_options(CLI::App& command, OpenOptions& options) {
+  const auto set_camera = [&options](const std::string& text) {
+    options.camera = parse_camera(text);
+    if (!options.camera)
+      throw CLI::ValidationError("--camera", "\"" + text + "\" is none of stereo, left, right and rgbd");
+  };
+  const auto set_frame_rate = [&options](const std::string& text) {
+    options.frame_rate_hz = parse_frame_rate(text);
+    if (!options.frame_rate_hz) throw CLI::ValidationError("--fps", "\"" + text + "\" is no frame rate");
+  };
+  command
+      .add_option_function<std::string>(
+          "--camera", set_camera,
+          "Take both cameras of the recording, one alone, or the colour camera with depth (all it has)")
+      ->type_name("stereo|left|right|rgbd");
+  add_input(command, Input::file, "--calibration", options.calibration,
+            "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--fps", set_frame_rate,
+          "Frame rate of images and videos, in place of the times in their names or of what the video says")
+      ->type_name("HZ");
+}
+
+void declare_frame_range(CLI::App& command, FrameRange& range) {
+  command.add_option("--start", range.start_s, "Begin so long after the recording's first frame")
+      ->type_name("SECONDS")
+      ->check(between(0.0, kLongest_s));
+  command.add_option("--end", range.end_s, "End before so long after the recording's first frame")
+      ->type_name("SECONDS")
+      ->check(between(0.0, kLongest_s));
+  const auto set_frames = [&range](const std::string& text) {
+    const std::optional<FrameRange> frames = parse_frames(text);
+    if (!frames) throw CLI::ValidationError("--frames", "\"" + text + "\" is no range of frames such as 0:150");
+    range.first = frames->first;
+    range.last = frames->last;
+  };
+  command
+      .add_option_function<std::string>(
+          "--frames", set_frames, "Frames of the recording, counted from 0, END exclusive; either may be left out")
+      ->type_name("FIRST:END");
+  command.add_option("--stride", range.stride, "Take every n-th frame of those")
+      ->type_name("N")
+      ->check(between(1, 1'000'000))
+      ->capture_default_str();
+}
+
+void require_sense(const FrameRange& range) {
+  if (range.start_s && range.end_s && *range.start_s >= *range.end_s) {
+    throw CLI::ValidationError("--start", "must be less than --end");
+  }
+}
+
+void declare_pace(CLI::App& command, Pace& pace) {
+  std::map<std::string, Pace> paces;
+  for (const Pace known : {Pace::same_thread, Pace::paced, Pace::live}) paces.emplace(name_of(known), known);
+  command.add_option("--pace", pace, "Where mapping runs and how fast frames are fed (paced)")
+      ->type_name("inline|paced|live")
+      ->transform(CLI::CheckedTransformer(paces).description(""));
+}
+
+}  // namespace byre::cli

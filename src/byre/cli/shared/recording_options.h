@@ -1,0 +1,29 @@
+#pragma once
+
+#include "byre/playback/map_run.h"
+
+namespace CLI {
+class App;
+}
+
+namespace byre::cli {
+
+// How formats of recordings are told of in the help of a command.
+inline constexpr const char* kRecordingHelp =
+    "Folder of a recording (EuRoC, KITTI odometry, TUM RGB-D, images), or a video file";
+
+// --camera, --calibration and --fps: how a command takes a recording. The options must outlive the parsing of the
+// command line.
+void declare_open_options(CLI::App& command, OpenOptions& options);
+
+// --start, --end, --frames and --stride: which frames of a recording a command works on. The range must outlive the
+// parsing of the command line.
+void declare_frame_range(CLI::App& command, FrameRange& range);
+
+// Throws CLI::ValidationError for a range that cannot hold a frame.
+void require_sense(const FrameRange& range);
+
+// --pace. The pace must outlive the parsing of the command line.
+void declare_pace(CLI::App& command, Pace& pace);
+
+}  // namespace byre::cli

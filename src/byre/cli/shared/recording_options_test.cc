@@ -1,0 +1,42 @@
+#include "byre/cli/shared/recording_options.h"
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <gtest/gtest.h>
+
+namespace byre::cli {
+namespace {
+
+OpenOptions parsed(const std::string& arguments) {
+  CLI::App command;
+  OpenOptions options;
+  declare_open_options(command, options);
+  command.parse(arguments);
+  return options;
+}
+
+TEST(OpenOptions, AreUnsetUnlessGiven) {
+  const OpenOptions options = parsed("");
+  EXPECT_FALSE(options.camera);
+  EXPECT_FALSE(options.calibration);
+  EXPECT_FALSE(options.frame_rate_hz);
+}
+
+TEST(OpenOptions, AreTakenAsGiven) {
+  const OpenOptions options = parsed("--camera right --calibration camchain.yaml --fps 20");
+  EXPECT_EQ(options.camera, CameraChoice::right);
+  EXPECT_EQ(options.calibration, "camchain.yaml");
+  EXPECT_EQ(options.frame_rate_hz, 20.0);
+}
+
+TEST(OpenOptions, AreRefusedWhereTheyMakeNoSense) {
+  for (const char* const arguments : {"--camera", "--camera middle", "--camera 1", "--camera Left", "--fps 0",
+                                      "--fps -5", "--fps fast", "--fps nan"}) {
+    EXPECT_THROW(parsed(arguments), CLI::ParseError) << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "byre/cli/shared/interrupt.h"
+#include "byre/simulation/cowshed_rendering.h"
+
+#include <filesystem>
+
+namespace byre::cli {
+
+// render_cowshed, stopped by Ctrl-C, that tells on the standard error stream how far it is unless quiet.
+Rendering render_with_progress(const CowshedRecordingOptions& options, const std::filesystem::path& folder,
+                               const InterruptCatcher& interrupt, bool quiet);
+
+}  // namespace byre::cli

@@ -1,0 +1,66 @@
+#include "byre/cli/shared/run_with_progress.h"
+
+#include "byre/cli/shared/progress.h"
+#include "byre/input/formatted.h"
+#include "byre/session/stopwatch.h"
+
+#include <iostream>
+#include <utility>
+
+namespace byre::cli {
+namespace {
+
+std::string state_after(const MappedFrame& frame, bool is_mission) {
+  if (!frame.report) return "unreadable frame";
+  std::string state(to_string(frame.report->state));
+  if (is_mission) state += ", " + std::string(to_string(frame.report->health.verdict));
+  return state + formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
+}
+
+Tone tone_after(const MappedFrame& frame, bool is_mission) {
+  if (!frame.report) return Tone::bad;
+  if (!is_mission) return Tone::plain;
+  switch (frame.report->health.verdict) {
+    case Verdict::trusted:
+      return Tone::good;
+    case Verdict::degraded:
+      return Tone::doubtful;
+    case Verdict::untrusted:
+      return Tone::bad;
+  }
+  return Tone::plain;
+}
+
+}  // namespace
+
+FinishHooks finish_hooks(const InterruptCatcher& interrupt, bool quiet) {
+  FinishHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  if (!quiet) hooks.before_step = [](const char* step) { std::cerr << "finishing: " << step << std::endl; };
+  return hooks;
+}
+
+MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
+                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+  Progress progress(std::cerr, progress_style(quiet), recording.size());
+  const Stopwatch watch;
+  const FinishHooks finishing = finish_hooks(interrupt, quiet);
+  MapRunHooks hooks;
+  hooks.should_stop = finishing.should_stop;
+  hooks.look = more_hooks.look;
+  hooks.offer_map = more_hooks.offer_map;
+  hooks.after_frame = [&](int done, const MappedFrame& frame) {
+    if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
+    const bool is_mission = options.offline != nullptr;
+    progress.update(done, watch.seconds(), state_after(frame, is_mission), tone_after(frame, is_mission));
+  };
+  hooks.before_finishing_step = [&progress, &finishing](const char* step) {
+    progress.close();
+    if (finishing.before_step) finishing.before_step(step);
+  };
+  MapRun run = run_map(recording, options, hooks, std::move(before));
+  progress.close();
+  return run;
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,57 @@
+#include "byre/cli/shared/view_options.h"
+
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+CLI::Option* declare_port(CLI::App& command, const std::string& name, int& port, const std::string& what) {
+  return command.add_option(name, port, what + " (" + std::to_string(port) + "; 0: one that is free)")
+      ->type_name("PORT")
+      ->check(between(0, 65535));
+}
+
+CLI::Option* declare_address(CLI::App& command, ViewOptions& options) {
+  return add_text(command, "--bind", options.server.address,
+                  "Address of this machine to serve at, 0.0.0.0 for all; whoever asks needs the token in the address "
+                  "that is shown (127.0.0.1: this machine alone, without a token)")
+      ->type_name("ADDRESS");
+}
+
+CLI::Option* declare_plan(CLI::App& command, ViewOptions& options, const std::string& what) {
+  return add_input(command, Input::plan, "--plan", options.plan, what)->type_name("FILE");
+}
+
+}  // namespace
+
+void declare_watching(CLI::App& command, ViewOptions& options) {
+  CLI::Option* const view =
+      declare_port(command, "--view", options.server.port, "Show the run in a browser, served at this port")
+          ->expected(0, 1)
+          ->default_str(std::to_string(options.server.port));
+  view->each([&options](const std::string&) { options.is_wanted = true; });
+  command
+      .add_option("--view-for", options.stay_s,
+                  "How long the page stays once the run is over, 0: not at all (until Ctrl-C where the program has a "
+                  "terminal, else not at all)")
+      ->type_name("SECONDS")
+      ->check(between(0.0, 1e9))
+      ->needs(view);
+  declare_address(command, options)->needs(view);
+  declare_plan(command, options, "Floor plan to show under the map, which \"byre register\" has found on it")
+      ->needs(view);
+}
+
+void declare_viewing(CLI::App& command, ViewOptions& options) {
+  options.is_wanted = true;
+  declare_port(command, "--port", options.server.port, "Port to serve the page at");
+  declare_address(command, options);
+  declare_plan(command, options, "Floor plan to pick points on: a map_server YAML file, or an image with a world file");
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,91 @@
+#include "byre/cli/shared/view_run.h"
+
+#include "byre/cli/shared/pose_options.h"
+#include "byre/input/formatted.h"
+#include "byre/map/driving_plane.h"
+#include "byre/session/stopwatch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace byre::cli {
+namespace {
+
+RunDescription describe(const ViewOptions& options, const WatchedRun& run) {
+  RunDescription description;
+  description.name = std::filesystem::absolute(run.recording).lexically_normal().filename().string();
+  description.calibration = run.opened.calibration();
+  description.frames = run.opened.size();
+  description.last_time = run.opened.times().back();
+  if (run.map) {
+    description.map_name = run.map->filename().string();
+    description.offline = scene_of({&run.offline->map(), Map(Origin::online)});
+    if (const auto plane = fit_driving_plane(run.offline->map())) description.up_in_map = plane->up_in_map;
+  }
+  if (options.plan) {
+    description.plan = read_floor_plan(*options.plan);
+    description.registration = require_plan(load_plan_registration(*run.map), *run.map);
+  }
+  return description;
+}
+
+// Somebody is there to end the program.
+bool has_terminal() {
+  return isatty(STDIN_FILENO) != 0 || isatty(STDOUT_FILENO) != 0;
+}
+
+std::string describe_stay(double stay_s, bool is_asked_for) {
+  if (stay_s == std::numeric_limits<double>::infinity()) return "goes on until Ctrl-C";
+  if (stay_s > 0.0) return formatted("goes on for %g s, or until Ctrl-C", stay_s);
+  return is_asked_for ? "ends with the run" : "ends with the run, as there is no terminal (--view-for SECONDS: stays)";
+}
+
+}  // namespace
+
+std::unique_ptr<RunViewer> start_viewer(const ViewOptions& options, const WatchedRun& run) {
+  RunViewerOptions viewer_options;
+  viewer_options.server = options.server;
+  allow_many_descriptors();
+  auto viewer = std::make_unique<RunViewer>(describe(options, run), viewer_options);
+  announce(viewer->urls());
+  return viewer;
+}
+
+std::function<void(const RunView& view)> shown_in(RunViewer& viewer) {
+  return [&viewer](const RunView& view) { viewer.show(view.images.left, *view.frame.report, view.session); };
+}
+
+void announce(const std::vector<std::string>& urls) {
+  for (const std::string& url : urls) std::cerr << "viewer: " << url << "\n";
+  std::cerr << std::flush;
+}
+
+void allow_many_descriptors() {
+  constexpr rlim_t kMany = 1024;  // select() knows no more
+  rlimit descriptors{};
+  if (getrlimit(RLIMIT_NOFILE, &descriptors) != 0 || descriptors.rlim_cur >= kMany) return;
+  descriptors.rlim_cur = std::min(kMany, descriptors.rlim_max);
+  setrlimit(RLIMIT_NOFILE, &descriptors);
+}
+
+void serve_until_interrupted(const InterruptCatcher& interrupt, bool quiet) {
+  ViewOptions options;
+  options.stay_s = std::numeric_limits<double>::infinity();
+  serve_after_run(options, interrupt, quiet);
+}
+
+void serve_after_run(const ViewOptions& options, const InterruptCatcher& interrupt, bool quiet) {
+  const double stay_s = options.stay_s.value_or(has_terminal() ? std::numeric_limits<double>::infinity() : 0.0);
+  if (!quiet) std::cerr << "viewer: " << describe_stay(stay_s, options.stay_s.has_value()) << std::endl;
+  const Stopwatch watch;
+  while (!interrupt.caught() && watch.seconds() < stay_s) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,154 @@
+#include "byre/assessment/report_json.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/render_with_progress.h"
+#include "byre/cli/simulate/imperfection_options.h"
+#include "byre/input/formatted.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  CowshedRecordingOptions recording;
+  ImperfectionOptions imperfection;
+  fs::path output;
+  bool json = false;
+  bool quiet = false;
+};
+
+constexpr const char* kSimulateFooter = R"(Examples:
+  byre simulate cowshed -o barn_1
+  byre simulate cowshed --mission 2 -o barn_2
+  byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
+  byre simulate cowshed --imperfection good -o barn_4
+  byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
+
+A feeding robot drives up and down the feed alley with a stereo camera. The same seed is the same barn; another mission
+is another visit to it: other feed, other light, cows elsewhere, a share of the buckets, pallets and barrows moved, and a
+gate open to a store that the first visit did not see.
+FOLDER gets an EuRoC recording with exact truth (mav0), and a floor plan with points to register a map of this recording
+on it (plan). Where the calibration errs, sensor.yaml has the erring one, and true_sensor.yaml beside it what rendered
+the images. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
+docs/simulation.md describes both.)";
+
+std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
+  return formatted("rendered     %d stereo pairs in %.1f s (%.1f a second), after %.1f s to build the barn\n",
+                   rendering.frames, rendering.rendering_s, rendering.frames_per_second(), rendering.preparing_s) +
+         row("recording", options.output.string()) + row("floor plan", (options.output / "plan").string());
+}
+
+nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
+  return {{"calibration_level", camera.calibration_level},
+          {"calibration_seed", camera.calibration_seed},
+          {"rolling_shutter_s", camera.rolling_shutter_s},
+          {"time_offset_s", camera.time_offset_s},
+          {"lens_blur_px", camera.lens_blur},
+          {"gain", camera.gain},
+          {"offset", camera.offset},
+          {"vignetting", camera.vignetting},
+          {"jpeg_quality", camera.jpeg_quality}};
+}
+
+std::string to_json(const SimulateOptions& options, const Rendering& rendering) {
+  return dumped({{"program", "byre simulate"},
+                 {"version", BYRE_VERSION},
+                 {"scene", "cowshed"},
+                 {"recording", options.output.string()},
+                 {"seed", options.recording.barn.seed},
+                 {"mission", options.recording.barn.mission},
+                 {"imperfection", imperfection_json(options.recording.camera)},
+                 {"frames", rendering.frames},
+                 {"preparing_s", rendering.preparing_s},
+                 {"rendering_s", rendering.rendering_s}},
+                2) +
+         "\n";
+}
+
+ExitCode run_simulate(const SimulateOptions& options, std::ostream& result) {
+  const InterruptCatcher interrupt;
+  const Rendering rendering = render_with_progress(options.recording, options.output, interrupt, options.quiet);
+  if (rendering.stopped) return ExitCode::interrupted;
+  result << (options.json ? to_json(options, rendering) : to_text(options, rendering));
+  return ExitCode::done;
+}
+
+void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
+  const std::map<std::string, BarnTime> times = {{"day", BarnTime::day}, {"dusk", BarnTime::dusk}};
+  const std::map<std::string, BarnGate> gates = {{"closed", BarnGate::closed}, {"open", BarnGate::open}};
+  CowshedOptions& barn = options.barn;
+  command.add_option("--seed", barn.seed, "Which barn")->type_name("N")->capture_default_str();
+  command.add_option("--mission", barn.mission, "Which visit to it, counted from 1")
+      ->type_name("N")
+      ->check(between(1, 1'000'000))
+      ->capture_default_str();
+  const auto add_amount = [&command](const char* name, double& value, double most, const char* meaning) {
+    command.add_option(name, value, meaning)->type_name("NUMBER")->check(between(0.0, most))->capture_default_str();
+  };
+  add_amount("--change", barn.change, 1.0, "Share of the movable things that are elsewhere than in mission 1");
+  add_amount("--dirt", options.dirt, 4.0, "On the lenses: 1 is a dozen of soft spots");
+  add_amount("--dust", barn.dust, 4.0, "In the air: with 1 half of the light is lost in 14 m");
+  command.add_option("--time", barn.time, "When (day; dusk in even missions)")
+      ->type_name("day|dusk")
+      ->transform(CLI::CheckedTransformer(times).description(""));
+  command
+      .add_option("--gate", barn.gate,
+                  "Of the feed store, into which the robot drives where it is open (closed; open later)")
+      ->type_name("open|closed")
+      ->transform(CLI::CheckedTransformer(gates).description(""));
+  command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")->type_name("N")->check(between(0, 40));
+}
+
+void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
+  command.add_option("--duration", options.duration_s, "Of the drive; a longer one goes farther, then round again")
+      ->type_name("SECONDS")
+      ->check(between(0.1, 36000.0))
+      ->capture_default_str();
+  command.add_option("--rate", options.frame_rate_hz, "Stereo pairs in a second")
+      ->type_name("HZ")
+      ->check(between(1.0, 200.0))
+      ->capture_default_str();
+  command.add_option("--divide", options.image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
+      ->type_name("N")
+      ->check(between(1, 16))
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "To render with (0: as many as the machine has)")
+      ->type_name("N")
+      ->check(between(0, 256))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Action declare_simulate(CLI::App& command) {
+  const auto options = std::make_shared<SimulateOptions>();
+  command.require_subcommand(1);
+  CLI::App& cowshed = *command.add_subcommand("cowshed", "A barn with a feed alley, fences, cubicles and cows");
+  declare_visit(cowshed, options->recording);
+  declare_camera(cowshed, options->recording);
+  declare_imperfection(cowshed, options->imperfection);
+  add_output(cowshed, Output::folder, "-o,--output", options->output, "Folder for the recording")
+      ->type_name("FOLDER")
+      ->required();
+  cowshed.add_flag("--json", options->json, "Print the report as JSON");
+  cowshed.add_flag("--quiet", options->quiet, "Show no progress");
+  cowshed.footer(kSimulateFooter);
+  return [options](std::ostream& result) {
+    options->recording.camera = asked_for(options->imperfection);
+    return run_simulate(*options, result);
+  };
+}
+
+}  // namespace byre::cli

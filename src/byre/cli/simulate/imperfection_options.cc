@@ -1,0 +1,73 @@
+#include "byre/cli/simulate/imperfection_options.h"
+
+#include "byre/cli/shared/number_check.h"
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+template <typename Number>
+void add_number(CLI::App& command, const char* name, std::optional<Number>& value, std::pair<double, double> range,
+                const char* unit, const char* meaning) {
+  command.add_option(name, value, meaning)
+      ->type_name(unit)
+      ->check(between(range.first, range.second))
+      ->group("Camera that errs");
+}
+
+// A number of one unit in another; what is there already where none is given.
+template <typename Number>
+void replace(Number& value, const std::optional<Number>& given, Number per_unit = 1) {
+  if (given) value = *given * per_unit;
+}
+
+}  // namespace
+
+void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
+  std::map<std::string, CameraCondition> conditions;
+  for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
+    conditions.emplace(to_string(condition), condition);
+  }
+  command.add_option("--imperfection", options.condition, "All of what comes with age and use (exact)")
+      ->type_name("exact|good|worn")
+      ->transform(CLI::CheckedTransformer(conditions).description(""))
+      ->group("Camera that errs");
+  add_number(command, "--calibration-level", options.calibration_level, {0.0, 10.0}, "NUMBER",
+             "How far the calibration is off: 1 as a good one is, 3 as a worn one");
+  command.add_option("--calibration-seed", options.calibration_seed, "Which error of that level (1)")
+      ->type_name("N")
+      ->group("Camera that errs");
+  add_number(command, "--rolling-shutter", options.rolling_shutter_ms, {0.0, 100.0}, "MS",
+             "Rows are exposed one after the other, all within MS milliseconds");
+  add_number(command, "--time-offset", options.time_offset_ms, {-100.0, 100.0}, "MS",
+             "The right camera is exposed MS milliseconds later");
+  add_number(command, "--lens-blur", options.lens_blur, {0.0, 5.0}, "PX",
+             "Sigma of the blur in the corners of left images; of right ones half as much again");
+  add_number(command, "--gain", options.gain, {0.25, 4.0}, "NUMBER", "Of the right camera relative to the left one");
+  add_number(command, "--offset", options.offset, {-50.0, 50.0}, "GREY",
+             "Grey values by which right images are brighter besides");
+  add_number(command, "--vignetting", options.vignetting, {0.0, 0.9}, "SHARE", "Of the light, lost in the corners");
+  add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY", "Images are kept as JPEG of this quality");
+}
+
+CameraImperfection asked_for(const ImperfectionOptions& options) {
+  constexpr double kSecondsPerMillisecond = 1e-3;
+  CameraImperfection imperfection = imperfection_of(options.condition.value_or(CameraCondition::exact));
+  replace(imperfection.calibration_level, options.calibration_level);
+  replace(imperfection.calibration_seed, options.calibration_seed);
+  replace(imperfection.rolling_shutter_s, options.rolling_shutter_ms, kSecondsPerMillisecond);
+  replace(imperfection.time_offset_s, options.time_offset_ms, kSecondsPerMillisecond);
+  replace(imperfection.lens_blur, options.lens_blur);
+  replace(imperfection.gain, options.gain);
+  replace(imperfection.offset, options.offset);
+  replace(imperfection.vignetting, options.vignetting);
+  replace(imperfection.jpeg_quality, options.jpeg_quality);
+  return imperfection;
+}
+
+}  // namespace byre::cli

@@ -1,0 +1,101 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/view_run.h"
+#include "byre/input/output_file.h"
+#include "byre/viewer/web_map.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewCommandOptions {
+  fs::path map;
+  ViewOptions view;
+  std::optional<fs::path> output;
+  bool overwrite = false;
+  double pick_sigma = PlanCorrespondence{}.sigma;  // metres
+  PlanRegistrationOptions registration;
+  bool quiet = false;
+};
+
+constexpr const char* kViewFooter = R"(Examples:
+  byre view barn.byre
+  byre view barn.byre --plan plan.yaml -o barn-plan.byre
+  byre view barn.byre --bind 0.0.0.0
+
+Shows a map in a browser, at the address that is told on the standard error stream, until Ctrl-C. With a floor plan,
+points are picked in the map and on the plan, and the page tells how well they fit; with -o it can save a copy of the
+map that knows its place on the plan, as "byre register" does it, and the picks beside it (barn-plan.picks.csv).
+docs/viewer.md describes the page.)";
+
+std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
+  if (!options.output) return {};
+  return {*options.output, picks_path(*options.output)};
+}
+
+ExitCode view(const ViewCommandOptions& options) {
+  const InterruptCatcher interrupt(outputs_of(options));
+  ViewedMap viewed;
+  viewed.name = options.map.filename().string();
+  viewed.stored = load_map(options.map);
+  if (options.view.plan) viewed.plan = read_floor_plan(*options.view.plan);
+  viewed.output = options.output;
+  for (const fs::path& output : outputs_of(options)) require_writable(output);
+  viewed.pick_sigma = options.pick_sigma;
+  viewed.registration = options.registration;
+  allow_many_descriptors();
+  const MapViewer viewer(std::move(viewed), options.view.server);
+  announce(viewer.urls());
+  serve_until_interrupted(interrupt, options.quiet);
+  return ExitCode::done;
+}
+
+// Sees through other names for a file; neither need exist.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+}
+
+void require_consistent(const ViewCommandOptions& options) {
+  if (options.output && is_same_file(*options.output, options.map) && !options.overwrite) {
+    throw CLI::ValidationError("--output", "is the map itself: name another file, or allow it with --overwrite");
+  }
+}
+
+}  // namespace
+
+Action declare_view(CLI::App& command) {
+  const auto options = std::make_shared<ViewCommandOptions>();
+  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
+      ->type_name("MAP")
+      ->required();
+  declare_viewing(command, options->view);
+  CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
+                                         "Where the page saves the map with its place on the plan")
+                                  ->type_name("MAP")
+                                  ->needs("--plan");
+  command.add_flag("--overwrite", options->overwrite, "The output may be the map itself")->needs(output);
+  command.add_option("--pick-sigma", options->pick_sigma, "How well points are picked, one sigma (0.05)")
+      ->type_name("METRES")
+      ->check(between(1e-4, 100.0));
+  command
+      .add_option("--body-height", options->registration.body_height,
+                  "How high the body's origin is above the floor (0)")
+      ->type_name("METRES")
+      ->check(between(-100.0, 100.0));
+  command.add_flag("--quiet", options->quiet, "Tell nothing but the address");
+  check_when_parsed(command, [options] { require_consistent(*options); });
+  command.footer(kViewFooter);
+  return [options](std::ostream&) { return view(*options); };
+}
+
+}  // namespace byre::cli

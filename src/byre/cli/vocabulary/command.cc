@@ -1,0 +1,174 @@
+#include "byre/place/vocabulary.h"
+
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/dataset/image_descriptors.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input/output_file.h"
+#include "byre/session/stopwatch.h"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrainOptions {
+  std::vector<fs::path> images;
+  fs::path output;
+  VocabularyOptions tree;
+  int features = 5000;  // per image, at most
+  bool quiet = false;
+};
+
+struct ImportOptions {
+  fs::path input;
+  fs::path output;
+};
+
+struct ShowOptions {
+  std::optional<fs::path> file;  // the vocabulary that comes with byre unless given
+};
+
+constexpr const char* kTrainFooter = R"(Examples:
+  byre vocabulary train photos -o my.vocabulary
+  byre vocabulary train barn/*.png office/*.png -o my.vocabulary --branching 16 --depth 4 --seed 7
+
+The same images, options and seed give the same file. BYRE_VOCABULARY=my.vocabulary makes byre use it.)";
+
+std::vector<std::vector<Descriptor>> describe_images(const TrainOptions& options) {
+  const std::vector<fs::path> files = find_images(options.images);
+  Progress progress(std::cerr, progress_style(options.quiet), static_cast<int>(files.size()), "images");
+  const Stopwatch watch;
+  ImageDescriber describer(options.features);
+  std::vector<std::vector<Descriptor>> descriptors_of_images;
+  std::vector<std::string> warnings;
+  for (int i = 0; i < static_cast<int>(files.size()); ++i) {
+    const fs::path& file = files[static_cast<std::size_t>(i)];
+    std::optional<std::vector<Descriptor>> descriptors = describer.descriptors_of(file);
+    if (descriptors) {
+      descriptors_of_images.push_back(std::move(*descriptors));
+    } else {
+      warnings.push_back(file.string() + ": cannot be read as an image, left out");
+    }
+    progress.update(i + 1, watch.seconds(), "describing");
+  }
+  progress.close();
+  if (!options.quiet) show_warnings(std::cerr, warnings);
+  return descriptors_of_images;
+}
+
+Vocabulary train_with_progress(const TrainOptions& options, const std::vector<std::vector<Descriptor>>& descriptors) {
+  constexpr int kPercent = 100;
+  Progress progress(std::cerr, progress_style(options.quiet), kPercent, "%");
+  const Stopwatch watch;
+  const auto show = [&](double share) {
+    progress.update(static_cast<int>(kPercent * share), watch.seconds(), "clustering");
+  };
+  Vocabulary vocabulary = Vocabulary::train(descriptors, options.tree, show);
+  progress.close();
+  return vocabulary;
+}
+
+std::string to_text(const Vocabulary& vocabulary, const fs::path& path) {
+  return "vocabulary   " + path.string() + "\n" +
+         formatted("words        %d\nbranching    %d\ndepth        %d\nchecksum     %016llx\n", vocabulary.word_count(),
+                   vocabulary.branching(), vocabulary.depth(), static_cast<unsigned long long>(vocabulary.checksum()));
+}
+
+void run_train(const TrainOptions& options, std::ostream& result) {
+  require_writable(options.output);
+  limit_image_threads(1);
+  const std::vector<std::vector<Descriptor>> descriptors = describe_images(options);
+  const Vocabulary vocabulary = train_with_progress(options, descriptors);
+  vocabulary.save(options.output);
+  std::size_t descriptor_count = 0;
+  for (const auto& image : descriptors) descriptor_count += image.size();
+  result << to_text(vocabulary, options.output)
+         << formatted("learnt from  %zu descriptors of %zu images\n", descriptor_count, descriptors.size());
+}
+
+void run_import(const ImportOptions& options, std::ostream& result) {
+  require_writable(options.output);
+  const Vocabulary vocabulary = Vocabulary::import_dbow2(options.input);
+  vocabulary.save(options.output);
+  result << to_text(vocabulary, options.output);
+}
+
+void run_show(const ShowOptions& options, std::ostream& result) {
+  const fs::path path = options.file ? *options.file : default_vocabulary_path();
+  result << to_text(Vocabulary::load(path), path);
+}
+
+void declare_output(CLI::App& command, fs::path& output) {
+  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary to write")->type_name("FILE")->required();
+}
+
+void declare_train(CLI::App& command, TrainOptions& options) {
+  add_input(command, Input::images, "IMAGES", options.images,
+            "Image files, and folders whose image files are all taken")
+      ->type_name("FILE|FOLDER")
+      ->required();
+  declare_output(command, options.output);
+  const auto add_number = [&command](const char* name, int& value, int min, int max, const char* meaning) {
+    command.add_option(name, value, meaning)->type_name("N")->check(between(min, max))->capture_default_str();
+  };
+  add_number("--branching", options.tree.branching, 2, 255, "Children of a node of the tree");
+  add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree; it has at most branching^depth words");
+  add_number("--features", options.features, 1, 1'000'000, "Features to take from an image at most");
+  command.add_option("--seed", options.tree.seed, "Of the random choices in clustering")
+      ->type_name("N")
+      ->check(from(0.0))
+      ->capture_default_str();
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  command.footer(kTrainFooter);
+}
+
+// Adds a subcommand that becomes the chosen action when it is on the command line.
+template <typename Options>
+CLI::App& add(CLI::App& command, const char* name, const char* summary, const std::shared_ptr<Options>& options,
+              void (*run)(const Options&, std::ostream&), const std::shared_ptr<Action>& chosen) {
+  CLI::App* const subcommand = command.add_subcommand(name, summary);
+  subcommand->callback([=] {
+    *chosen = [=](std::ostream& result) {
+      run(*options, result);
+      return ExitCode::done;
+    };
+  });
+  return *subcommand;
+}
+
+}  // namespace
+
+Action declare_vocabulary(CLI::App& command) {
+  const auto chosen = std::make_shared<Action>();
+  const auto train = std::make_shared<TrainOptions>();
+  const auto import = std::make_shared<ImportOptions>();
+  const auto show = std::make_shared<ShowOptions>();
+  command.require_subcommand(1);
+
+  declare_train(add(command, "train", "Learn a vocabulary from images", train, run_train, chosen), *train);
+  CLI::App& importing = add(command, "import", "Take over a vocabulary of DBoW2", import, run_import, chosen);
+  add_input(importing, Input::file, "INPUT", import->input, "Text file as DBoW2 writes it, of 256-bit descriptors")
+      ->type_name("FILE")
+      ->required();
+  declare_output(importing, import->output);
+  CLI::App& showing = add(command, "show", "Tell the size and the checksum of a vocabulary", show, run_show, chosen);
+  add_input(showing, Input::file, "VOCABULARY", show->file, "Unless given, the one that byre would use")
+      ->type_name("FILE");
+  return [chosen](std::ostream& result) { return (*chosen)(result); };
+}
+
+}  // namespace byre::cli

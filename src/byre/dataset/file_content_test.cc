@@ -1,0 +1,54 @@
+#include "byre/dataset/file_content.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<FileContent> content_of_bytes(const std::string& bytes) {
+  const fs::path file = fs::path(testing::TempDir()) / ("byre_content." + std::to_string(getpid()));
+  std::ofstream(file, std::ios::binary) << bytes;
+  const std::optional<FileContent> content = content_of(file);
+  fs::remove(file);
+  return content;
+}
+
+TEST(ContentOf, TellsWhatByreWrites) {
+  EXPECT_EQ(content_of_bytes("\x89"
+                             "BYRE\r\n\x1a"),
+            FileContent::map);
+  EXPECT_EQ(content_of_bytes("byrevoc\n"), FileContent::vocabulary);
+  EXPECT_EQ(content_of_bytes("\x89PNG\r\n\x1a\n"), FileContent::png);
+  EXPECT_EQ(content_of_bytes(std::string("\0\0\0 ftypisom", 12)), FileContent::video);
+  EXPECT_EQ(content_of_bytes("ply\nformat binary_little_endian 1.0\n"), FileContent::point_cloud);
+  EXPECT_EQ(content_of_bytes("<?xml version=\"1.0\"?>\n<svg width=\"1\">"), FileContent::svg);
+  EXPECT_EQ(content_of_bytes("{\"time_s\": 1}\n{}"), FileContent::json);
+  EXPECT_EQ(content_of_bytes("# timestamp tx ty tz qx qy qz qw\n1.5 0 0 0 0 0 0 1\n"), FileContent::trajectory);
+  EXPECT_EQ(content_of_bytes("# timestamp tx ty tz qx qy qz qw\n"), FileContent::trajectory);
+  EXPECT_EQ(content_of_bytes("cam0:\n  rostopic: /a\n"), FileContent::yaml);
+  EXPECT_EQ(content_of_bytes("name,point,plan_x_m,plan_y_m\n"), FileContent::table);
+  EXPECT_EQ(content_of_bytes(""), FileContent::nothing);
+}
+
+TEST(ContentOf, TellsOtherTextFromAllThat) {
+  EXPECT_EQ(content_of_bytes("Dear reader\nthis: is a letter\n"), FileContent::text);
+  EXPECT_EQ(content_of_bytes("#!/bin/sh\nrm file\n"), FileContent::text);
+  EXPECT_EQ(content_of_bytes("1 2 3 4\n"), FileContent::text);
+  EXPECT_EQ(content_of_bytes("\n\n"), FileContent::text);
+  EXPECT_EQ(content_of_bytes("#timestamp [ns],filename\n1403636579763555584,1.png\n"), FileContent::table);
+  EXPECT_EQ(content_of_bytes(std::string("\0\1\2", 3)), FileContent::other);
+}
+
+TEST(ContentOf, IsUnknownForWhatIsNoFile) {
+  EXPECT_FALSE(content_of(testing::TempDir()));
+  EXPECT_FALSE(content_of("/dev/null"));
+  EXPECT_FALSE(content_of("absent"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "byre/trajectory.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace byre {
+
+// A trajectory file in any of the formats; KITTI's poses need the file of their times. Throws InputError.
+Trajectory load_trajectory(const std::filesystem::path& path, const std::optional<std::filesystem::path>& times);
+
+// True poses: a trajectory file, or the recording that holds one, whose own times are used unless others are given.
+Trajectory load_truth(const std::filesystem::path& path, const std::optional<std::filesystem::path>& times = {});
+
+}  // namespace byre

@@ -1,0 +1,129 @@
+#include "byre/demo/table.h"
+
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace byre {
+namespace {
+
+// A row as it is made: the figure that arms are compared by, and what is shown of it.
+struct RowKind {
+  std::string measure;
+  std::function<Figure(const DemoArm&)> figure;
+  std::function<std::string(const DemoArm&)> text;  // where the figure is not empty
+  bool more_is_better = false;
+};
+
+std::string percent(double share) {
+  return formatted("%.1f", 1e2 * share);
+}
+
+// Below a metre with a decimal, above without.
+std::string centimetres(double metres) {
+  return formatted(metres < 1.0 ? "%.1f" : "%.0f", 1e2 * metres);
+}
+
+RowKind share_row(const char* measure, const std::function<Figure(const DemoArm&)>& share) {
+  return {measure, share, [share](const DemoArm& arm) { return percent(*share(arm)); }, true};
+}
+
+RowKind error_row(const char* measure, TrajectoryMeasures RunMeasures::*poses) {
+  const auto rmse = [poses](const DemoArm& arm) { return (arm.measures.*poses).map_error; };
+  return {measure, rmse, [poses](const DemoArm& arm) {
+            const TrajectoryMeasures& measures = arm.measures.*poses;
+            return centimetres(*measures.map_error) + ", at most " + centimetres(*measures.map_error_max);
+          }};
+}
+
+RowKind shape_row() {
+  return {"Shape of the path alone (ATE, RMSE), cm: published, final",
+          [](const DemoArm& arm) { return arm.measures.causal_poses.ate; },
+          [](const DemoArm& arm) {
+            const Figure final_ate = arm.measures.final_poses.ate;
+            return centimetres(*arm.measures.causal_poses.ate) + ", " + (final_ate ? centimetres(*final_ate) : "-");
+          }};
+}
+
+RowKind time_row() {
+  return {"Time per frame, ms: mean, 99 % within", [](const DemoArm& arm) { return arm.measures.cost.frame_ms_mean; },
+          [](const DemoArm& arm) {
+            const CostMeasures& cost = arm.measures.cost;
+            return formatted("%.0f, %.0f", *cost.frame_ms_mean, *cost.frame_ms_p99);
+          }};
+}
+
+// A figure of verdicts: without a map they are about a frame of the run's own, and say nothing of the place on the
+// plan.
+std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*figure) {
+  return [figure](const DemoArm& arm) { return arm.arm == Arm::no_map ? Figure() : arm.measures.behaviour.*figure; };
+}
+
+std::vector<RowKind> row_kinds() {
+  const auto wrong = on_the_plan(&BehaviourMeasures::trusted_wrong);
+  return {share_row("Frames with a position, %", [](const DemoArm& arm) { return arm.measures.causal_poses.coverage; }),
+          share_row("Frames with a position within 10 cm of the truth, %",
+                    [](const DemoArm& arm) { return Figure(arm.close_share); }),
+          error_row("Error of published positions (RMSE), cm", &RunMeasures::causal_poses),
+          error_row("Error of final positions (RMSE), cm", &RunMeasures::final_poses),
+          shape_row(),
+          share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
+          {"Trusted and yet off by more than 20 cm, frames", wrong,
+           [wrong](const DemoArm& arm) { return formatted("%.0f", *wrong(arm)); }},
+          time_row()};
+}
+
+// The best figure's arm is marked, and those that read the same.
+DemoRow row_of(const RowKind& kind, const std::vector<DemoArm>& arms) {
+  DemoRow row{kind.measure, {}};
+  const DemoArm* best = nullptr;
+  for (const DemoArm& arm : arms) {
+    const Figure figure = kind.figure(arm);
+    row.cells.push_back({figure ? kind.text(arm) : "-", false});
+    if (!figure) continue;
+    const bool is_better =
+        best == nullptr || (kind.more_is_better ? *figure > *kind.figure(*best) : *figure < *kind.figure(*best));
+    if (is_better) best = &arm;
+  }
+  if (best == nullptr) return row;
+  const std::string best_text = kind.text(*best);
+  for (DemoCell& cell : row.cells) cell.is_best = cell.text == best_text;
+  return row;
+}
+
+}  // namespace
+
+std::vector<DemoRow> demo_table(const std::vector<DemoArm>& arms) {
+  std::vector<DemoRow> rows;
+  for (const RowKind& kind : row_kinds()) rows.push_back(row_of(kind, arms));
+  return rows;
+}
+
+std::string shown_name(Arm arm) {
+  switch (arm) {
+    case Arm::no_map:
+      return "No map";
+    case Arm::localise_only:
+      return "Localise only";
+    case Arm::hybrid:
+      break;
+  }
+  return "Hybrid";
+}
+
+std::string to_text(const std::vector<DemoRow>& rows, const std::vector<DemoArm>& arms) {
+  constexpr const char* kCell = "  %18s";
+  constexpr const char* kMeasure = "%-60s";
+  std::string text = formatted(kMeasure, "");
+  for (const DemoArm& arm : arms) text += formatted(kCell, shown_name(arm.arm).c_str());
+  text += "\n";
+  for (const DemoRow& row : rows) {
+    text += formatted(kMeasure, row.measure.c_str());
+    for (const DemoCell& cell : row.cells) text += formatted(kCell, cell.text.c_str());
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace byre

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "byre/trajectory_error.h"
+
+#include <vector>
+
+namespace byre {
+
+// Where the frame of a map lies in that of the truth.
+struct MapAlignment {
+  Similarity truth_from_map;
+  int poses = 0;  // that it rests on; zero: the truth is taken for given in the map's frame
+};
+
+// By poses of the map itself, never by what is found or tracked in it: its keyframes (keyframe_path), or all frames of
+// the run that made it, which are many more. map_truth holds the truth at their times, where it does: with less than
+// three of them aligned nothing is.
+MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, const Trajectory& map_truth);
+
+// How far an estimated pose is from the truth.
+struct PoseError {
+  Timestamp time{};
+  Vector6 delta = Vector6::Zero();  // world_from_body * exp_pose(delta) is the true pose
+
+  double position() const { return delta.head<3>().norm(); }  // metres, or the unit of the truth
+  double rotation() const;                                    // degrees
+};
+
+// Errors of the poses that have truth, each as it is in the map's frame: nothing is aligned but the map.
+std::vector<PoseError> errors_in_map(const Trajectory& world_from_body, const Trajectory& truth,
+                                     const MapAlignment& alignment);
+
+// The error at that very time; nullptr when it has no truth. Precondition: errors are in order of time.
+const PoseError* find_error(const std::vector<PoseError>& errors, Timestamp time);
+
+ErrorStatistics position_statistics(const std::vector<PoseError>& errors);  // metres, or the unit of the truth
+ErrorStatistics rotation_statistics(const std::vector<PoseError>& errors);  // degrees
+
+}  // namespace byre

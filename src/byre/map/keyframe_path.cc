@@ -1,0 +1,24 @@
+#include "byre/map/keyframe_path.h"
+
+#include <algorithm>
+
+namespace byre {
+
+Pose world_from_body(const Map& map, const Keyframe& keyframe) {
+  const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+  return inverse(rig.body_from_camera * keyframe.camera_from_world);
+}
+
+Trajectory keyframe_path(const Map& map) {
+  Trajectory path;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    path.push_back({keyframe.frame.time, world_from_body(map, keyframe)});
+  }
+  std::ranges::stable_sort(path, {}, &StampedPose::time);
+  const auto repeated = std::ranges::unique(path, {}, &StampedPose::time);
+  path.erase(repeated.begin(), repeated.end());
+  return path;
+}
+
+}  // namespace byre

@@ -1,0 +1,29 @@
+#include "byre/playback/autosave.h"
+
+#include <chrono>
+#include <exception>
+
+namespace byre {
+
+bool Autosave::is_saving() const {
+  return saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+void Autosave::offer(const Map& online, const std::optional<RefinedCalibration>& calibration) {
+  if (since_last_.seconds() < interval_s_ || is_saving()) return;
+  finish();
+  since_last_ = {};
+  saving_ = std::async(std::launch::async, [this, map = online, calibration] { save_(map, calibration); });
+}
+
+void Autosave::finish() {
+  if (!saving_.valid()) return;
+  try {
+    saving_.get();
+    ++saved_;
+  } catch (const std::exception& error) {  // mapping goes on: the next try may succeed
+    failures_.emplace_back(error.what());
+  }
+}
+
+}  // namespace byre

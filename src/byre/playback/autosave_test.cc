@@ -1,0 +1,69 @@
+#include "byre/playback/autosave.h"
+
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Map map_of(int points) {
+  Map map(Origin::online);
+  for (int i = 0; i < points; ++i) map.add_point({});
+  return map;
+}
+
+TEST(Autosave, SavesTheMapAsItWasWhenOffered) {
+  std::vector<int> saved;
+  Autosave autosave(0.0, [&saved](const Map& map, const auto&) { saved.push_back(map.point_count()); });
+  Map map = map_of(1);
+  autosave.offer(map);
+  map.add_point({});
+  autosave.finish();
+  autosave.offer(map);
+  autosave.finish();
+  EXPECT_THAT(saved, ElementsAre(1, 2));
+  EXPECT_EQ(autosave.saved(), 2);
+}
+
+TEST(Autosave, WaitsForItsTime) {
+  Autosave autosave(3600.0, [](const Map&, const auto&) { FAIL() << "an hour too early"; });
+  autosave.offer(map_of(1));
+  autosave.finish();
+  EXPECT_EQ(autosave.saved(), 0);
+}
+
+TEST(Autosave, PassesOverWhatComesWhileItSaves) {
+  std::promise<void> disk;
+  Autosave autosave(0.0, [done = disk.get_future().share()](const Map&, const auto&) { done.wait(); });
+  for (int i = 0; i < 3; ++i) autosave.offer(map_of(1));
+  disk.set_value();
+  autosave.finish();
+  EXPECT_EQ(autosave.saved(), 1);
+}
+
+TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
+  bool is_full = true;
+  Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
+    if (is_full) throw std::runtime_error("the disk is full");
+  });
+  autosave.offer(map_of(1));
+  autosave.finish();
+  EXPECT_THAT(autosave.failures(), ElementsAre("the disk is full"));
+  is_full = false;
+  autosave.offer(map_of(1));
+  autosave.finish();
+  EXPECT_EQ(autosave.saved(), 1);
+}
+
+TEST(Autosave, HasNothingToWaitForBeforeTheFirst) {
+  Autosave autosave(0.0, [](const Map&, const auto&) {});
+  autosave.finish();
+  EXPECT_THAT(autosave.failures(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace byre

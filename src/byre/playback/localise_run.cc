@@ -1,0 +1,113 @@
+#include "byre/playback/localise_run.h"
+
+#include "byre/dataset/image_file.h"
+#include "byre/dataset/image_fit.h"
+#include "byre/dataset/image_names.h"
+#include "byre/input/formatted.h"
+#include "byre/playback/decode_ahead.h"
+#include "byre/session/stopwatch.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+Calibration best_calibration(const std::vector<SourceRecording>& recordings, const Calibration& given) {
+  const auto known = known_calibration(recordings, given);
+  return known ? known->calibration : given;
+}
+
+// Extracts frames of one camera and looks for each in the map.
+class Finder {
+ public:
+  Finder(const SearchableMap& map, const Calibration& given)
+      : map_(map), extractor_(best_calibration(map.recordings, given), {}) {}
+
+  LocalisedFrame find(ImageFrame images, std::string name) {
+    if (!map_.is_metric) {
+      images.right.reset();
+      images.depth.reset();
+    }
+    LocalisedFrame result;
+    result.name = std::move(name);
+    result.time = images.time;
+    const Stopwatch extraction;
+    const Frame frame = extractor_.extract(images).frame;
+    result.extract_seconds = extraction.seconds();
+    const Stopwatch search;
+    result.localisation = localise(frame, extractor_.rig(), map_.view(), map_.index, {});
+    result.localise_seconds = search.seconds();
+    if (result.localisation.tracked) {
+      result.world_from_body =
+          inverse(extractor_.rig().body_from_camera * result.localisation.tracked->camera_from_world);
+    }
+    return result;
+  }
+
+ private:
+  const SearchableMap& map_;
+  Extractor extractor_;
+};
+
+// The image as the camera would have taken it; empty, with a warning added, when it cannot be read.
+std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
+  auto [image, failure] = try_image(path);
+  if (!image) {
+    warnings.push_back(path.string() + ": " + failure);
+    return std::nullopt;
+  }
+  if (image->width == camera.width && image->height == camera.height) return std::move(image);
+  warnings.push_back(
+      path.string() +
+      formatted(": is of %d x %d pixels, the camera of %d x %d: scaled and cut, as if it were the camera's",
+                image->width, image->height, camera.width, camera.height));
+  return fit(*image, camera.width, camera.height);
+}
+
+// All as their names say or, where one of them says nothing, a second apart.
+std::vector<Timestamp> times_of(const std::vector<fs::path>& images) {
+  std::vector<Timestamp> times;
+  for (const fs::path& image : images) {
+    const std::optional<Timestamp> time = time_in_name(image);
+    if (!time) return steady_times(images.size(), 1.0);
+    times.push_back(*time);
+  }
+  return times;
+}
+
+}  // namespace
+
+LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, const LocaliseHooks& hooks) {
+  Finder finder(map, recording.calibration());
+  DecodeAhead decoder(recording);
+  LocaliseRun run;
+  int done = 0;
+  while (std::optional<DecodedFrame> decoded = decoder.next()) {
+    if (hooks.should_stop()) break;
+    run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
+    ++done;
+    if (!decoded->images) continue;
+    run.frames.push_back(finder.find(std::move(*decoded->images), formatted("%.9f", to_seconds(decoded->time))));
+    hooks.after_frame(done, run.frames.back());
+  }
+  return run;
+}
+
+LocaliseRun localise_images(const SearchableMap& map, const std::vector<fs::path>& images, const Calibration& camera,
+                            const LocaliseHooks& hooks) {
+  Finder finder(map, {.left = camera.left, .right = std::nullopt, .body_from_left = camera.body_from_left});
+  const std::vector<Timestamp> times = times_of(images);
+  LocaliseRun run;
+  for (std::size_t i = 0; i < images.size() && !hooks.should_stop(); ++i) {
+    std::optional<Image> image = read_fitted(images[i], camera.left, run.warnings);
+    if (!image) continue;
+    ImageFrame frame{times[i], std::move(*image), std::nullopt};
+    run.frames.push_back(finder.find(std::move(frame), images[i].string()));
+    hooks.after_frame(static_cast<int>(i) + 1, run.frames.back());
+  }
+  return run;
+}
+
+}  // namespace byre

@@ -1,0 +1,36 @@
+#include "byre/playback/map_from_poses_run.h"
+
+#include "byre/input_error.h"
+#include "byre/map/map_file.h"
+#include "byre/playback/decode_ahead.h"
+
+namespace byre {
+
+PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const PosedRunOptions& options,
+                            const PosedRunHooks& hooks) {
+  Extractor extractor(recording.calibration(), options.extract);
+  DecodeAhead decoder(recording);
+  PosedRun run;
+  std::vector<PosedFrame> frames;
+  while (std::optional<DecodedFrame> decoded = decoder.next()) {
+    if (hooks.should_stop()) break;
+    run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
+    ++run.frames;
+    const std::optional<Pose> pose = pose_at(world_from_body, decoded->time, options.max_gap);
+    run.without_pose += pose ? 0 : 1;
+    run.unreadable += decoded->images ? 0 : 1;
+    if (pose && decoded->images) {
+      frames.push_back({extractor.extract(*decoded->images).frame, inverse(*pose * extractor.rig().body_from_camera)});
+      run.trajectory.push_back({decoded->time, *pose});
+    }
+    hooks.after_frame(run.frames);
+  }
+  if (frames.empty() && run.without_pose > 0) {
+    throw InputError("trajectory", "has no pose for any frame of the recording",
+                     "check that both count time from the same epoch");
+  }
+  run.map = offline_copy(map_from_poses({extractor.rig()}, frames, options.map));
+  return run;
+}
+
+}  // namespace byre

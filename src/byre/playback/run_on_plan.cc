@@ -1,0 +1,25 @@
+#include "byre/playback/run_on_plan.h"
+
+#include <utility>
+
+namespace byre {
+
+Trajectory on_plan(Trajectory trajectory, const PlanRegistration& registration) {
+  for (StampedPose& sample : trajectory) sample.world_from_body = plan_from_body(registration, sample.world_from_body);
+  return trajectory;
+}
+
+MappedFrame on_plan(MappedFrame frame, const PlanRegistration& registration) {
+  if (!frame.report || !frame.report->map_from_body) return frame;
+  frame.report->map_from_body = plan_from_body(registration, *frame.report->map_from_body);
+  return frame;
+}
+
+MapRun on_plan(MapRun run, const PlanRegistration& registration) {
+  run.causal = on_plan(std::move(run.causal), registration);
+  run.final = on_plan(std::move(run.final), registration);
+  for (MappedFrame& frame : run.frames) frame = on_plan(std::move(frame), registration);
+  return run;
+}
+
+}  // namespace byre

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "byre/simulation/cowshed_recording.h"
+
+#include <filesystem>
+#include <functional>
+
+namespace byre {
+
+// What rendering a recording came to.
+struct Rendering {
+  int frames = 0;  // stereo pairs
+  double preparing_s = 0.0;
+  double rendering_s = 0.0;
+  bool stopped = false;  // by who was asked: nothing is left of it
+
+  double frames_per_second() const { return frames / rendering_s; }
+};
+
+struct RenderingHooks {
+  std::function<void(int frames)> before_frames;  // once the barn is built
+  std::function<bool()> should_stop;              // asked after each frame
+  std::function<void(int done)> after_frame;
+};
+
+// Renders a visit to the cowshed into a folder. Throws InputError when the folder holds a recording already, or cannot
+// be written.
+Rendering render_cowshed(const CowshedRecordingOptions& options, const std::filesystem::path& folder,
+                         const RenderingHooks& hooks);
+
+}  // namespace byre

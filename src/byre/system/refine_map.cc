@@ -1,0 +1,22 @@
+#include "byre/system/refine_map.h"
+
+#include "byre/session/stopwatch.h"
+#include "byre/slam/online_copy.h"
+#include "byre/system/stored_map.h"
+
+namespace byre {
+
+Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
+  const Stopwatch watch;
+  Map online = online_copy(stored.map);
+  Finishing finishing;
+  finishing.report = finish_map(online, index_of(online, vocabulary), {}, hooks);
+  finishing.cut_short = hooks.should_stop();
+  finishing.seconds = watch.seconds();
+  stored.map = offline_copy(online);
+  stored.pose_source = PoseSource::slam;
+  finishing.faults = find_faults(stored);
+  return finishing;
+}
+
+}  // namespace byre
