@@ -64,7 +64,7 @@ DeskMap make_desk_map() {
   Session session(extractor.rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary());
   refine(session, recording->calibration(), std::nullopt);
   follow(session, *recording, extractor);
-  session.finish_map({}, {[] { return false; }, [](const char*) {}});
+  session.finish_map({[] { return false; }, [](const char*) {}});
   const auto error = absolute_trajectory_error(
       associate(session.final_trajectory(), load_truth(*find_recording(kDesk)), {}), Scale::free);
   Similarity truth_from_map = error.value().truth_from_estimate;

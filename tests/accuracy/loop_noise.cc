@@ -40,7 +40,7 @@ std::optional<Pose> error_of(const LoopEdge& loop, const Map& map, const Traject
 
 int count_false_loops(const Map& map, const PlaceIndex& places, const Trajectory& truth, std::uint64_t seed) {
   FinishOptions options;
-  options.loops.noise = {0.3, seed};
+  options.noise = {0.3, seed};
   int loops = 0, wrong = 0;
   double worst = 0.0;
   for (const LoopHypothesis& loop : search_loops(map, places, options, {})) {

@@ -79,7 +79,7 @@ MadeMap map_by_session(Recording& recording, const Imperfection& imperfection) {
     if (const auto frame = frames.read(i)) engine.process(*frame);
   }
   engine.finish();
-  engine.finish_map({}, {[] { return false; }, [](const char*) {}});
+  engine.finish_map({[] { return false; }, [](const char*) {}});
   return {engine.online(), engine.calibration()};
 }
 

@@ -129,7 +129,7 @@ class Soak {
       judge(session.process(frame), visit, seen, tally);
     }
     session.finish();
-    session.finish_mission({}, {});
+    session.finish_mission({});
     tally.mapped = session.map().online().keyframe_count();
     if (tally.mapped > 0) tally.broken_maps = keep(session) ? 0 : 1;
     return tally;

@@ -39,8 +39,8 @@ Json options_json(const EngineOptions& options) {
           {"refinement", name_of(options.extract.refinement)},
           {"min_initial_points", options.session.min_initial_points},
           {"local_keyframes", options.session.local_keyframes},
-          {"movable_keyframes", options.session.mapping.window.movable},
-          {"anchor_keyframes", options.session.mapping.window.anchors},
+          {"movable_keyframes", options.session.window.movable},
+          {"anchor_keyframes", options.session.window.anchors},
           {"loops", options.vocabulary.has_value()}};
 }
 

@@ -238,7 +238,7 @@ class BenchmarkRunner {
     run_options.pace = options_.pace;
     run_options.vocabulary = vocabulary_;
     run_options.session.map_online = arm != Arm::localise_only;
-    run_options.session.relocalise.ransac.seed = protocol_.seed_of_run(run);
+    run_options.session.relocalise.seed = protocol_.seed_of_run(run);
     return run_options;
   }
 

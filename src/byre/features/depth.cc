@@ -9,6 +9,10 @@
 namespace byre {
 namespace {
 
+constexpr int kRadius = 2;         // pixels, half the side of the square that a corner's depth is taken from
+constexpr double kMinShare = 0.4;  // least share of that square that shows one surface
+constexpr double kMaxGap = 0.03;   // gap between neighbours in depth on one surface, as a share of the depth
+
 // A depth near a keypoint.
 struct Sample {
   float depth = 0.0f;                 // metres
@@ -23,13 +27,13 @@ struct Surface {
 };
 
 // All depths in the square around the pixel, the nearest first.
-std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vector<float>& depths, const Camera& camera,
-                                   const DepthOptions& options) {
+std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vector<float>& depths,
+                                   const Camera& camera) {
   const int column = static_cast<int>(std::lround(pixel.x()));
   const int row = static_cast<int>(std::lround(pixel.y()));
   std::vector<Sample> samples;
-  for (int v = std::max(0, row - options.radius); v <= std::min(camera.height - 1, row + options.radius); ++v) {
-    for (int u = std::max(0, column - options.radius); u <= std::min(camera.width - 1, column + options.radius); ++u) {
+  for (int v = std::max(0, row - kRadius); v <= std::min(camera.height - 1, row + kRadius); ++v) {
+    for (int u = std::max(0, column - kRadius); u <= std::min(camera.width - 1, column + kRadius); ++u) {
       const float depth =
           depths[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u)];
       if (depth > 0.0f) samples.push_back({depth, Eigen::Vector2d(u, v) - pixel});
@@ -40,9 +44,9 @@ std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vect
 }
 
 // The samples up to the first gap. Precondition: in the order of depth.
-std::span<const Sample> nearest_surface(const std::vector<Sample>& samples, const DepthOptions& options) {
+std::span<const Sample> nearest_surface(const std::vector<Sample>& samples) {
   const auto is_gap = [&](const Sample& near, const Sample& far) {
-    return far.depth - near.depth > options.max_gap * near.depth;
+    return far.depth - near.depth > kMaxGap * near.depth;
   };
   const auto last = std::ranges::adjacent_find(samples, is_gap);
   const auto count = last == samples.end() ? samples.size() : static_cast<std::size_t>(last - samples.begin()) + 1;
@@ -120,13 +124,13 @@ std::vector<std::optional<DepthReading>> DepthReader::read(const DepthImage& ima
                                                            const DepthOptions& options) const {
   const std::vector<float> depths = depths_in_left(image);
   const double pixels_per_inverse_depth = rig_.focal * rig_.baseline;
-  const int side = 2 * options.radius + 1;
-  const double min_samples = std::max(3.0, options.min_share * side * side);
+  const int side = 2 * kRadius + 1;
+  const double min_samples = std::max(3.0, kMinShare * side * side);
   const auto read_one = [&](const Keypoint& keypoint) -> std::optional<DepthReading> {
     const auto pixel = left_.project(rig_.ray(keypoint.pixel.cast<double>()));
     if (!pixel || !left_.contains(*pixel)) return std::nullopt;
-    const std::vector<Sample> samples = samples_around(*pixel, depths, left_, options);
-    const std::span<const Sample> nearest = nearest_surface(samples, options);
+    const std::vector<Sample> samples = samples_around(*pixel, depths, left_);
+    const std::span<const Sample> nearest = nearest_surface(samples);
     if (static_cast<double>(nearest.size()) < min_samples) return std::nullopt;
     const Surface surface = fit_surface(nearest);
     if (!(surface.inverse_depth * options.max_depth > 1.0)) return std::nullopt;

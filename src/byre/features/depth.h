@@ -13,9 +13,6 @@
 namespace byre {
 
 struct DepthOptions {
-  int radius = 2;             // pixels, of the square around a corner that its depth is taken from
-  double min_share = 0.4;     // of that square, so much must be of one surface
-  double max_gap = 0.03;      // between neighbours in depth that are of one surface, as a share of it
   double max_depth = 10.0;    // metres
   double misalignment = 1.0;  // pixels by which depths may lie beside what they are of
 };

@@ -12,6 +12,11 @@
 namespace byre {
 namespace {
 
+constexpr int kMinPoints = 80;            // matches that agree on a motion with points before both cameras
+constexpr double kMinPlanarShare = 0.40;  // homography's share of both scores, above which the scene is a plane
+constexpr double kRotationShare = 0.9;    // share of the homography's score with which a rotation explains as much
+constexpr double kRivalShare = 0.9;       // share of the best score with which another motion could be the true one
+
 using Matches = std::span<const TwoViewMatch>;
 
 struct Models {
@@ -20,13 +25,14 @@ struct Models {
   TwoViewModel<Pose> essential;
 };
 
-Models search_models(Matches matches, const TwoViewSearch& search) {
+Models search_models(Matches matches) {
+  constexpr TwoViewSearch search{};
   return {search_rotation(matches, search), search_homography(matches, search), search_essential(matches, search)};
 }
 
 // Mur-Artal et al. 2015, eq. 3. Errors are counted in sigmas of both views, which makes it 0.45 for an exact plane.
-bool is_planar(const Models& models, const TwoViewOptions& options) {
-  return models.homography.score > options.min_planar_share * (models.homography.score + models.essential.score);
+bool is_planar(const Models& models) {
+  return models.homography.score > kMinPlanarShare * (models.homography.score + models.essential.score);
 }
 
 // Motions of both models, for what one of them has missed is a rival of what the other has found. A plane's motions are
@@ -83,25 +89,24 @@ bool is_same_motion(const Pose& first, const Pose& second) {
          (first.translation - second.translation).norm() < kMaxShift;
 }
 
-bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates, double rival_share) {
+bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates) {
   return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
-    return candidate.score > rival_share * best.score &&
+    return candidate.score > kRivalShare * best.score &&
            !is_same_motion(candidate.motion.second_from_first, best.motion.second_from_first);
   });
 }
 
-TwoViewFailure reason_to_doubt(const Models& models, bool planar, const TwoViewOptions& options) {
+TwoViewFailure reason_to_doubt(const Models& models, bool planar) {
   const int inliers = planar ? models.homography.inliers : models.essential.inliers;
-  if (inliers < options.min_points) return TwoViewFailure::no_common_motion;
-  const bool turned = models.rotation.score > options.rotation_share * models.homography.score;
+  if (inliers < kMinPoints) return TwoViewFailure::no_common_motion;
+  const bool turned = models.rotation.score > kRotationShare * models.homography.score;
   return planar && turned ? TwoViewFailure::rotation_only : TwoViewFailure::none;
 }
 
-TwoViewFailure reason_to_doubt(const Candidate& best, const std::vector<Candidate>& candidates,
-                               const TwoViewOptions& options) {
-  if (best.motion.median_parallax < options.min_parallax) return TwoViewFailure::small_parallax;
-  if (has_rival(best, candidates, options.rival_share)) return TwoViewFailure::planar_ambiguity;
-  return best.motion.point_count < options.min_points ? TwoViewFailure::too_few_points : TwoViewFailure::none;
+TwoViewFailure reason_to_doubt(const Candidate& best, const std::vector<Candidate>& candidates) {
+  if (best.motion.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
+  if (has_rival(best, candidates)) return TwoViewFailure::planar_ambiguity;
+  return best.motion.point_count < kMinPoints ? TwoViewFailure::too_few_points : TwoViewFailure::none;
 }
 
 TwoViewEstimate failed(TwoViewFailure failure) {
@@ -132,16 +137,16 @@ std::string_view to_string(TwoViewFailure failure) {
   return "";
 }
 
-TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, const TwoViewOptions& options) {
-  if (static_cast<int>(matches.size()) < options.min_matches) return failed(TwoViewFailure::too_few_matches);
-  const Models models = search_models(matches, options.search);
-  const bool planar = is_planar(models, options);
-  const TwoViewFailure doubt = reason_to_doubt(models, planar, options);
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches) {
+  if (static_cast<int>(matches.size()) < kMinTwoViewMatches) return failed(TwoViewFailure::too_few_matches);
+  const Models models = search_models(matches);
+  const bool planar = is_planar(models);
+  const TwoViewFailure doubt = reason_to_doubt(models, planar);
   if (doubt != TwoViewFailure::none) return failed(doubt);
   std::vector<Candidate> candidates;
   for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
   Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
-  const TwoViewFailure failure = reason_to_doubt(best, candidates, options);
+  const TwoViewFailure failure = reason_to_doubt(best, candidates);
   if (failure != TwoViewFailure::none) return failed(failure);
   best.motion.is_planar = planar;
   return {std::move(best.motion), TwoViewFailure::none};

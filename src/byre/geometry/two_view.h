@@ -9,17 +9,8 @@
 
 namespace byre {
 
-struct TwoViewOptions {
-  int min_matches = 100;
-  int min_points = 80;           // matches that agree on a motion, and their points in front of both cameras
-  double min_parallax = 0.0175;  // radians, median over the matches that agree: a degree
-  // Share of the homography's score in its own and the essential matrix's together, above which the matches are taken
-  // for those of a plane.
-  double min_planar_share = 0.40;
-  double rotation_share = 0.9;  // a rotation with this share of the homography's score explains the matches as well
-  double rival_share = 0.9;     // another motion with this share of the best one's score makes the choice ambiguous
-  TwoViewSearch search;
-};
+inline constexpr int kMinTwoViewMatches = 100;  // matches from which a motion is looked for
+inline constexpr double kMinParallax = 0.0175;  // radians, median over the matches that agree: a degree
 
 struct TwoViewMotion {
   Pose second_from_first;  // translation of unit length
@@ -39,6 +30,6 @@ struct TwoViewEstimate {
 // scores compared (Mur-Artal et al. 2015, eq. 2 and 3), which tells a turn on the spot. Of the motions that both stand
 // for the one is chosen that explains most matches in front of both cameras. Believed only when the parallax is enough
 // and no other motion explains the matches nearly as well.
-TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, const TwoViewOptions& options);
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches);
 
 }  // namespace byre

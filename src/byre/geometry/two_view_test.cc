@@ -15,13 +15,13 @@ namespace byre {
 namespace {
 
 TwoViewFailure failure_of(const std::vector<TwoViewMatch>& matches) {
-  return estimate_two_view_motion(matches, {}).failure;
+  return estimate_two_view_motion(matches).failure;
 }
 
 TEST(EstimateTwoViewMotion, IsExactOnCleanMatches) {
   const Pose truth = sideways_motion(0.4);
   const auto matches = matches_of(truth, room_depth, {});
-  const auto found = estimate_two_view_motion(matches, {}).motion;
+  const auto found = estimate_two_view_motion(matches).motion;
   ASSERT_TRUE(found);
   EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1e-6);
   EXPECT_LT(angle_between(found->second_from_first.rotation, truth.rotation), 1e-6);
@@ -33,7 +33,7 @@ TEST(EstimateTwoViewMotion, IsExactOnCleanMatches) {
 TEST(EstimateTwoViewMotion, PutsPointsAtTheirDepthsInUnitsOfTheTranslation) {
   const auto constant = [](const Eigen::Vector3d&, double random) { return random < 0.5 ? 3.0 : 6.0; };
   const auto matches = matches_of(sideways_motion(0.4), constant, {});
-  const auto found = estimate_two_view_motion(matches, {}).motion;
+  const auto found = estimate_two_view_motion(matches).motion;
   ASSERT_TRUE(found);
   for (const auto& point : found->points_in_first) {
     ASSERT_TRUE(point);
@@ -47,7 +47,7 @@ TEST(EstimateTwoViewMotion, WithstandsNoiseAndOutliers) {
     const Pose truth = sideways_motion(0.5);
     const auto matches =
         matches_of(truth, room_depth, {.count = 300, .pixel_sigma = 0.5, .outlier_ratio = 0.3, .seed = seed});
-    const auto found = estimate_two_view_motion(matches, {}).motion;
+    const auto found = estimate_two_view_motion(matches).motion;
     ASSERT_TRUE(found) << "seed " << seed;
     EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.5 * kDegree) << "seed " << seed;
     EXPECT_LT(angle_between(found->second_from_first.rotation, truth.rotation), 0.2 * kDegree) << "seed " << seed;
@@ -57,7 +57,7 @@ TEST(EstimateTwoViewMotion, WithstandsNoiseAndOutliers) {
 TEST(EstimateTwoViewMotion, FollowsAForwardMotion) {
   const Pose truth{rotation_exp({0.01, 0.02, 0.0}), {0.05, 0.0, -1.0}};
   const auto matches = matches_of(truth, room_depth, {.count = 400, .pixel_sigma = 0.5, .outlier_ratio = 0.2});
-  const auto found = estimate_two_view_motion(matches, {}).motion;
+  const auto found = estimate_two_view_motion(matches).motion;
   ASSERT_TRUE(found);
   EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.0 * kDegree);
 }
@@ -91,7 +91,7 @@ TEST(EstimateTwoViewMotion, TellsAMotionAlongAWall) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {0.6, 0.0, 0.0}};
     const auto matches = matches_of(truth, wall_in_front, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
-    const auto found = estimate_two_view_motion(matches, {}).motion;
+    const auto found = estimate_two_view_motion(matches).motion;
     ASSERT_TRUE(found) << "seed " << seed;
     EXPECT_TRUE(found->is_planar);
     EXPECT_LT(angle_between_translations(found->second_from_first, truth), 2.0 * kDegree) << "seed " << seed;
@@ -113,7 +113,7 @@ TEST(EstimateTwoViewMotion, TellsAMotionTowardsAPlaneByWhatStandsInFrontOfIt) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {-0.4, 0.0, -0.4}};
     const auto matches = matches_of(truth, furnished, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
-    const auto found = estimate_two_view_motion(matches, {}).motion;
+    const auto found = estimate_two_view_motion(matches).motion;
     ASSERT_TRUE(found) << "seed " << seed;
     EXPECT_LT(angle_between_translations(found->second_from_first, truth), 2.0 * kDegree) << "seed " << seed;
   }
@@ -132,8 +132,8 @@ TEST(EstimateTwoViewMotion, RefusesMatchesThatHaveNoMotionInCommon) {
 
 TEST(EstimateTwoViewMotion, GivesTheSameAnswerForTheSameSeed) {
   const auto matches = matches_of(sideways_motion(0.4), room_depth, {.pixel_sigma = 0.5, .outlier_ratio = 0.3});
-  const auto first = estimate_two_view_motion(matches, {}).motion;
-  const auto second = estimate_two_view_motion(matches, {}).motion;
+  const auto first = estimate_two_view_motion(matches).motion;
+  const auto second = estimate_two_view_motion(matches).motion;
   ASSERT_TRUE(first && second);
   EXPECT_EQ(first->second_from_first.rotation.coeffs(), second->second_from_first.rotation.coeffs());
   EXPECT_EQ(first->second_from_first.translation, second->second_from_first.translation);

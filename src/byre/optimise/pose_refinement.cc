@@ -3,6 +3,7 @@
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
+#include "byre/optimise/squared_error.h"
 
 #include <algorithm>
 #include <cassert>
@@ -119,7 +120,7 @@ double variance_factor(const std::vector<Sighting>& sightings) {
 
 void choose_inliers(std::vector<Sighting>& sightings, const PoseRefinementOptions& options, double factor) {
   for (Sighting& sighting : sightings) {
-    const double gate = sighting.stereo ? options.max_squared_error_stereo : options.max_squared_error_mono;
+    const double gate = sighting.stereo ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
     sighting.inlier = sighting.squared_error <= gate * factor || sighting.tolerant_error <= gate;
   }
 }

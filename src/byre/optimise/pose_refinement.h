@@ -23,10 +23,8 @@ struct PoseObservation {
 struct PoseRefinementOptions {
   int rounds = 4;  // of choosing inliers, then solving robustly on them
   int iterations_per_round = 5;
-  double huber_width = 1.5;                 // sigmas
-  double max_squared_error_mono = 5.991;    // 95 % of chi-square with two degrees of freedom
-  double max_squared_error_stereo = 7.815;  // 95 %, three degrees
-  double max_variance_factor = 9.0;         // see PoseRefinement::variance_factor
+  double huber_width = 1.5;          // sigmas
+  double max_variance_factor = 9.0;  // see PoseRefinement::variance_factor
   // Pixels: what calibration, a rolling shutter and the shape of things add to an error, alike in neighbouring points
   // and neighbouring frames. It widens gates and covariance and weighs nothing, for weights are by what differs from
   // point to point. A good calibration leaves 0.1 to 0.5.

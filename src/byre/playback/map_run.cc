@@ -73,9 +73,9 @@ MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunH
   const FinishHooks finish_hooks{hooks.should_stop, hooks.before_finishing_step};
   if (is_begun && !hooks.should_stop()) {
     if (options.offline) {
-      run.mission_finishing_seconds = engine.finish_mission(options.finish, finish_hooks);
+      run.mission_finishing_seconds = engine.finish_mission(finish_hooks);
     } else if (options.vocabulary) {
-      run.finishing = engine.finish_map(options.finish, finish_hooks);
+      run.finishing = engine.finish_map(finish_hooks);
     }
   }
   take_over_result(engine, run);

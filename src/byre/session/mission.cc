@@ -4,23 +4,34 @@
 #include <iterator>
 
 namespace byre {
+namespace {
+
+constexpr double kSearchDistance = 4.0;  // metres about the pose within which offline keyframes are looked for
+// How far a place found beside tracking may lie off the pose: always, and for each metre of the path since offline
+// points last held it.
+constexpr double kMinDrift = 0.01;       // metres
+constexpr double kDriftShare = 0.02;     // metres a metre
+constexpr double kMinTurn = 0.005;       // radians
+constexpr double kTurnPerMetre = 0.002;  // radians a metre
+constexpr int kLookAgainEvery = 5;       // frames between looks for suspended points in their places
+
+}  // namespace
 
 DriftBound Mission::drift() const {
-  return {options_.min_drift + options_.drift_share * distance_since_offline_,
-          options_.min_turn + options_.turn_per_metre * distance_since_offline_};
+  return {kMinDrift + kDriftShare * distance_since_offline_, kMinTurn + kTurnPerMetre * distance_since_offline_};
 }
 
 const std::vector<PointId>& Mission::candidates(const Pose& predicted_camera_from_world) {
   std::optional<KeyframeId> around = reference_;
   if (!around) {
-    const auto near = offline_->keyframes_near(predicted_camera_from_world, options_.search_distance, 1);
+    const auto near = offline_->keyframes_near(predicted_camera_from_world, kSearchDistance, 1);
     if (!near.empty()) around = near.front();
   }
   if (around != candidates_around_) {
     candidates_around_ = around;
     const Map nothing_online(Origin::online);
     const MapView view(&offline_->map(), nothing_online);
-    local_points_ = around ? local_points(view, *around, options_.local_keyframes) : std::vector<PointId>{};
+    local_points_ = around ? local_points(view, *around, local_keyframes_) : std::vector<PointId>{};
   }
   candidates_.clear();
   std::ranges::copy_if(local_points_, std::back_inserter(candidates_),
@@ -33,8 +44,7 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
   ++frames_;
   const bool held = view_ == OfflineView::held;
   if (held) {
-    suspension_.note(track.offline_agreed,
-                     moved_together(offline_->map(), track.offline_agreed, track.offline_moved, options_.suspension));
+    suspension_.note(track.offline_agreed, moved_together(offline_->map(), track.offline_agreed, track.offline_moved));
   }
   reference_ = held ? track.offline_reference : std::nullopt;
   if (held && (track.offline_stands || !track.maps_disagree)) {
@@ -47,7 +57,7 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
 
 std::vector<PointId> Mission::due_again() const {
   std::vector<PointId> due;
-  if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % options_.look_again_every != 0) return due;
+  if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
   std::ranges::copy_if(local_points_, std::back_inserter(due),
                        [this](PointId id) { return suspension_.is_suspended(id); });
   return due;

@@ -13,17 +13,11 @@
 
 namespace byre {
 
+inline constexpr int kOfflineThatHolds = 60;  // offline inliers with which the online map around lies in its place
+
 struct MissionOptions {
-  int local_keyframes = 15;       // offline ones, whose points are looked for in a frame
-  double search_distance = 4.0;   // metres about the pose within which offline keyframes are looked for
-  double min_drift = 0.01;        // metres by which a place found beside tracking may always lie off the pose,
-  double drift_share = 0.02;      // and of the path since offline points last held it
-  double min_turn = 0.005;        // radians that it may be turned,
-  double turn_per_metre = 0.002;  // and for each metre of that path
-  int look_again_every = 5;       // frames: then suspended points are looked for in their places
-  int held_by = 60;               // offline inliers from which the online map around is taken to lie in its place
-  double search_after = 0.3;      // metres without offline points: then places are looked for beside tracking
-  double restart_after = 1.0;     // seconds without a pose, until a new piece of online map is begun
+  double search_after = 0.3;   // metres without offline points, from which places are looked for beside tracking
+  double restart_after = 1.0;  // seconds without a pose, from which a new piece of online map is begun
   OfflineViewOptions view;
   SuspensionOptions suspension;
   RegistrationOptions registration;
@@ -33,8 +27,12 @@ struct MissionOptions {
 // pose, and how the online map lies in it. Called from the session's thread.
 class Mission {
  public:
-  Mission(std::shared_ptr<const OfflineMap> offline, const MissionOptions& options)
-      : offline_(std::move(offline)), options_(options), suspension_(options.suspension) {}
+  // local_keyframes: of the offline map, whose points are looked for in a frame.
+  Mission(std::shared_ptr<const OfflineMap> offline, const MissionOptions& options, int local_keyframes)
+      : offline_(std::move(offline)),
+        options_(options),
+        local_keyframes_(local_keyframes),
+        suspension_(options.suspension) {}
 
   const OfflineMap& offline() const { return *offline_; }
   const Suspension& suspension() const { return suspension_; }
@@ -64,6 +62,7 @@ class Mission {
   // Constant after construction.
   std::shared_ptr<const OfflineMap> offline_;
   MissionOptions options_;
+  int local_keyframes_;
 
   Suspension suspension_;
   OfflineView view_ = OfflineView::off_the_map;

@@ -4,9 +4,8 @@
 
 namespace byre {
 
-MissionCalibrator::MissionCalibrator(const Calibration& given, const CalibrationOnMapOptions& options,
-                                     std::unique_ptr<Executor> executor)
-    : on_map_(given, options), calibrator_(given, {}), executor_(std::move(executor)) {}
+MissionCalibrator::MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor)
+    : on_map_(given, prior_sigmas), calibrator_(given, {}), executor_(std::move(executor)) {}
 
 // Looks become rare: what many frames have told, a few more do not change.
 void MissionCalibrator::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map) {

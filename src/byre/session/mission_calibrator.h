@@ -12,8 +12,7 @@ namespace byre {
 // long, how features change by it, is worked out beside. Called from the session's thread.
 class MissionCalibrator {
  public:
-  MissionCalibrator(const Calibration& given, const CalibrationOnMapOptions& options,
-                    std::unique_ptr<Executor> executor);
+  MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor);
 
   Frame corrected(const Frame& frame) const { return calibrator_.corrected(frame); }
   const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }

@@ -22,15 +22,15 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
     : options_(options),
       rig_(rig),
       executor_(std::move(lanes.local)),
-      global_(offline ? make_inline_executor() : std::move(lanes.global), options.global),
+      global_(offline ? make_inline_executor() : std::move(lanes.global), {mapping_options(options)}),
       hindsight_(options.hindsight),
-      input_watch_(options.input),
-      focal_check_(options.focal),
+      input_watch_(options.image),
       shutter_(rig.readout_time) {
+  if (!offline) options_.map_online = true;  // there is nothing else to track
   if (vocabulary) places_.emplace(std::move(*vocabulary));
-  if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start);
+  if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start, mapping_options(options));
   if (!offline) return;
-  mission_.emplace(offline, options.mission);
+  mission_.emplace(offline, options.mission, options.local_keyframes);
   calibration_executor_ = std::move(lanes.calibration);
   search_.emplace(std::move(lanes.global), offline, options.relocalise);
 }
@@ -48,7 +48,7 @@ void Session::continue_map(Map online) {
 void Session::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
   assert(anchored_.empty());
   if (mission_) {
-    mission_calibrator_.emplace(given, CalibrationOnMapOptions{}, std::move(calibration_executor_));
+    mission_calibrator_.emplace(given, options.prior_sigmas, std::move(calibration_executor_));
   } else {
     calibrator_.emplace(given, options);
   }
@@ -58,7 +58,7 @@ void Session::refine_calibration(const Calibration& given, const SelfCalibration
 void Session::refine_readout(const RefinedCalibration& known) {
   assert(anchored_.empty());
   rolling_calibration_ = known;
-  shutter_.refine(options_.readout);
+  shutter_.refine();
 }
 
 std::optional<RefinedCalibration> Session::self_calibration() const {
@@ -263,26 +263,27 @@ void Session::forget_places(const MapDelta& delta) {
 // A waiting correction goes first: what a job would work on is about to move.
 void Session::start_job() {
   if (pending_.empty() || !executor_->idle() || global_.is_waiting() || waiting_correction_) return;
-  MapWindow window = cut_window(map(), pending_, options_.mapping.window);
+  MapWindow window = cut_window(map(), pending_, options_.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
-  executor_->submit([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+  executor_->submit(
+      [window = std::move(window), options = mapping_options(options_)] { return extend_map(window, options); });
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
 // found there too. While offline points hold the pose there is no drift that a loop could tell of.
 bool Session::look_for_loop(const Frame& frame, bool keyframe_added) {
   if (mission_ && is_registered() && mission_->view() == OfflineView::held) return false;
-  if (!places_ || !last_keyframe_ || !global_.idle() || ++frames_since_loop_ < options_.loops.min_frames_between) {
+  if (!places_ || !last_keyframe_ || !global_.idle() || ++frames_since_loop_ < kMinFramesBetweenLoops) {
     return false;
   }
   if (!loop_) {
     if (keyframe_added) loop_ = find_loop(online_, *places_, *last_keyframe_, options_.loops);
     return false;
   }
-  loop_ = check_loop(*loop_, frame, last_camera_from_world(), rig_, online_, options_.loops);
-  if (is_refuted(*loop_, options_.loops)) loop_.reset();
-  if (!loop_ || !is_confirmed(*loop_, options_.loops)) return false;
+  loop_ = check_loop(*loop_, frame, last_camera_from_world(), rig_, online_);
+  if (is_refuted(*loop_)) loop_.reset();
+  if (!loop_ || !is_confirmed(*loop_)) return false;
   settle_loop(*loop_);
   loop_.reset();
   frames_since_loop_ = 0;
@@ -349,7 +350,7 @@ void Session::finish() {
   }
 }
 
-FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
+FinishReport Session::finish_map(const FinishHooks& hooks) {
   assert(places_);
   if (calibrator_ && calibrator_->is_worth_a_last_look(online_.keyframe_count())) {
     const MapWindow whole = whole_map(map());
@@ -357,16 +358,16 @@ FinishReport Session::finish_map(const FinishOptions& options, const FinishHooks
         self_calibrate(whole, calibrator_->state(), online_.add_rig(rig_), calibrator_->options(), hooks.should_stop);
     if (refined) recalibrate(*refined);
   }
-  FinishReport report = byre::finish_map(online_, *places_, options, hooks);
+  FinishReport report = byre::finish_map(online_, *places_, finish_options(options_), hooks);
   follow(report.length_changes);
   return report;
 }
 
-void Session::finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
+void Session::finish_mission(const FinishHooks& hooks) {
   assert(mission_);
   if (online_.keyframe_count() == 0) return;
   const MapWindow whole = whole_map(map());
-  follow(apply_correction(adjust_map(whole, {}, options.global, hooks.should_stop), whole, online_));
+  follow(apply_correction(adjust_map(whole, {}, {mapping_options(options_)}, hooks.should_stop), whole, online_));
   while (const auto seen = hindsight_.take_oldest()) settle(*seen);
 }
 

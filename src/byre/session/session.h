@@ -11,6 +11,7 @@
 #include "byre/session/odometry.h"
 #include "byre/session/place_search.h"
 #include "byre/session/segments.h"
+#include "byre/session/session_options.h"
 #include "byre/session/shutter.h"
 #include "byre/slam/finishing.h"
 #include "byre/slam/focal_check.h"
@@ -32,30 +33,6 @@
 #include <vector>
 
 namespace byre {
-
-struct SessionOptions {
-  int recording = 0;                      // which one the keyframes made are of, see Keyframe::recording
-  int min_initial_points = 100;           // stereo points of the first keyframe
-  MonocularStartOptions monocular_start;  // of a rig without a baseline
-  int local_keyframes = 15;               // whose points are looked for in a frame
-  double min_kept_share = 0.5;  // of the last frame's inliers; fewer, and the pose is sought without prediction too
-  TrackOptions track;
-  KeyframeOptions keyframes;
-  MappingOptions mapping;
-  LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
-  LoopOptions loops;
-  GlobalMappingOptions global;
-  MissionOptions mission;
-  HealthOptions health;
-  ImageConditionOptions image;
-  StateOptions state;
-  HindsightOptions hindsight;
-  InputWatchOptions input;
-  FocalCheckOptions focal;
-  ReadoutOptions readout;
-  bool map_online = true;          // false: track on the offline map alone
-  double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
-};
 
 // Where mapping runs: the neighbourhood of new keyframes, and corrections of the whole map; in a mission on an offline
 // map the second looks for places in that instead.
@@ -106,10 +83,10 @@ class Session {
   void finish();
 
   // The last search for loops and adjustment of the whole map. Call it after finish().
-  FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
+  FinishReport finish_map(const FinishHooks& hooks);
 
   // Adjusts all that was mapped beside the offline map at once, around that. Call it after finish().
-  void finish_mission(const FinishOptions& options, const FinishHooks& hooks);
+  void finish_mission(const FinishHooks& hooks);
 
   MapView map() const { return {mission_ ? &mission_->offline().map() : nullptr, online_}; }
 

@@ -154,7 +154,7 @@ TEST(SessionThatRecognisesPlaces, GivesTheSameMapEachTime) {
     Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), simulated_vocabulary());
     for (const Frame& frame : mission.frames) session.process(frame);
     session.finish();
-    session.finish_map({}, {});
+    session.finish_map({});
     StoredMap stored;
     stored.map = offline_copy(session.map().online());
     return write_map(stored);
@@ -195,7 +195,7 @@ TEST(SessionThatRecognisesPlaces, FinishesItsMap) {
   std::vector<std::string> steps;
   FinishHooks hooks;
   hooks.before_step = [&steps](const char* step) { steps.emplace_back(step); };
-  const FinishReport report = session.finish_map({}, hooks);
+  const FinishReport report = session.finish_map(hooks);
   EXPECT_EQ(steps.size(), 3u);
   EXPECT_GE(report.points_removed, 0);
   EXPECT_EQ(report.after.parts, 1);

@@ -101,8 +101,8 @@ void Session::remember_mission(const Frame& frame, const HybridTrack& track, dou
   tell(OfflineView::off_the_map, SessionEvent::left_mapped_area);
   tell(OfflineView::blinded, SessionEvent::blinded);
   tell(OfflineView::held, SessionEvent::entered_mapped_area);
-  const bool is_held = now == OfflineView::held && !track.maps_disagree &&
-                       track.offline_inliers >= options_.mission.held_by && last_keyframe_;
+  const bool is_held =
+      now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds && last_keyframe_;
   if (is_held) last_held_keyframe_ = last_keyframe_->number;
   const std::vector<PointId> due = mission_->due_again();
   if (!due.empty()) {
@@ -127,8 +127,8 @@ void Session::begin_confirmation(const Frame& frame, const TrackedFrame& tracked
   const double reach = kSlack + options.max_speed * to_seconds(frame.time - *last_confirmed_);
   const double shift = (body_pose(tracked.camera_from_world).translation - last_body_.translation).norm();
   if (shift > reach) {
-    confirmations_left_ = options.confirmations_of_jump;
-  } else if (last_proven_ && to_seconds(frame.time - *last_proven_) <= options.without_proof) {
+    confirmations_left_ = kConfirmationsOfJump;
+  } else if (last_proven_ && to_seconds(frame.time - *last_proven_) <= kWithoutProof) {
     proofs_left_ = 0;
   }
 }
@@ -165,8 +165,7 @@ void Session::lose_pose(ImageFault fault, FrameReport& report) {
 void Session::settle(const RememberedFrame& seen) {
   AnchoredPose& anchored = anchored_[seen.number];
   const Pose keyframe_from_world = camera_from_world(anchored.keyframe);
-  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map(), options_.track,
-                                      options_.hindsight);
+  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map(), options_.track);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 

@@ -168,7 +168,7 @@ TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
   reports_of(session, mission.frames);
   session.finish();
   const Trajectory before = session.final_trajectory();
-  session.finish_mission({}, {});
+  session.finish_mission({});
   const Trajectory after = session.final_trajectory();
   ASSERT_EQ(after.size(), mission.truth.size());
   int moved = 0;

@@ -114,7 +114,7 @@ TEST(Monocular, ClosesItsLoopsAndTakesItsFramesAlong) {
   session.finish();
   EXPECT_EQ(session.loops().size(), 1u);
   EXPECT_LT(error_of(session, mission), 0.75 * error_of(open, mission));
-  session.finish_map({}, {});
+  session.finish_map({});
   EXPECT_LT(error_of(session, mission), 0.01);
 }
 

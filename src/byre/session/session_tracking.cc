@@ -87,9 +87,7 @@ std::optional<HybridTrack> Session::track_from(const Frame& frame, const Pose& p
   std::vector<PointId> candidates;
   if (is_registered()) candidates = mission_->candidates(predicted);
   candidates.insert(candidates.end(), online.begin(), online.end());
-  TrackOptions options = options_.track;
-  options.weigh_focal_lengths = is_focal_asked_;
-  return track_hybrid(frame, predicted, rig_, map(), candidates, options);
+  return track_hybrid(frame, predicted, rig_, map(), candidates, options_.track, is_focal_asked_);
 }
 
 // Kept until the map or the reference changes: frames come more often than that.

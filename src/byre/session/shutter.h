@@ -19,7 +19,7 @@ class Shutter {
   bool is_rolling() const { return readout_time_ != 0.0; }
 
   // From now on the readout time is refined from what is seen.
-  void refine(const ReadoutOptions& options) { estimator_.emplace(readout_time_, options); }
+  void refine() { estimator_.emplace(readout_time_); }
 
   // The frame as all rows at once would show it, seen by a camera that moves like that.
   Frame corrected(const Frame& frame, const Rig& rig, const CameraMotion& motion);

@@ -11,6 +11,11 @@
 namespace byre {
 namespace {
 
+constexpr int kMinPoints = 40;  // offline points in a frame that counts
+constexpr int kMaxRows = 60;    // stereo matches of a frame whose rows are looked at
+// Weight of a frame: points and their places err together from frame to frame.
+constexpr double kIndependence = 0.1;
+
 constexpr double kHuberWidth = 2.0;       // sigmas
 constexpr double kSystematicSigma = 0.2;  // pixels, of what neither noise nor the calibration explains
 constexpr int kMaxPoints = 120;           // of a frame
@@ -57,8 +62,8 @@ std::optional<Row> row_of(const TrackedFeature& feature, const Keypoint& keypoin
 
 }  // namespace
 
-CalibrationOnMap::CalibrationOnMap(const Calibration& given, const CalibrationOnMapOptions& options)
-    : given_(given), options_(options), sensitivity_(given) {}
+CalibrationOnMap::CalibrationOnMap(const Calibration& given, double prior_sigmas)
+    : given_(given), prior_sigmas_(prior_sigmas), sensitivity_(given) {}
 
 void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                            const CalibrationVector& change) {
@@ -66,7 +71,7 @@ void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFram
   for (const TrackedFeature& feature : tracked.features) {
     if (feature.point.origin == Origin::offline) offline.push_back(&feature);
   }
-  if (static_cast<int>(offline.size()) < options_.min_points) return;
+  if (static_cast<int>(offline.size()) < kMinPoints) return;
   const std::size_t stride = 1 + offline.size() / kMaxPoints;
   Matrix6 pose_pose = Matrix6::Zero();
   Eigen::Matrix<double, 6, kCalibrationParameters> pose_calibration;
@@ -90,7 +95,7 @@ void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFram
   }
   const Eigen::LDLT<Matrix6> factor(pose_pose);
   if (factor.info() != Eigen::Success) return;
-  const double share = options_.independence;
+  const double share = kIndependence;
   information_ += share * (information - pose_calibration.transpose() * factor.solve(pose_calibration));
   right_side_ += share * (right_side - pose_calibration.transpose() * factor.solve(right_side_of_pose));
   add_rows(*frame.features, change);
@@ -98,7 +103,7 @@ void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFram
 }
 
 void CalibrationOnMap::add_rows(const Features& features, const CalibrationVector& change) {
-  const auto stride = static_cast<std::size_t>(1 + features.size() / options_.max_rows);
+  const auto stride = static_cast<std::size_t>(1 + features.size() / kMaxRows);
   for (std::size_t i = static_cast<std::size_t>(frames_) % stride; i < features.keypoints().size(); i += stride) {
     const Keypoint& keypoint = features.keypoints()[i];
     if (!keypoint.has_disparity()) continue;
@@ -106,18 +111,17 @@ void CalibrationOnMap::add_rows(const Features& features, const CalibrationVecto
         sensitivity_.at({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}).row(3);
     const double sigma = std::hypot(static_cast<double>(keypoint.disparity_sigma), kSystematicSigma);
     const double residual = keypoint.row_offset / sigma;
-    const double weight = options_.independence * huber_weight(residual * residual, kHuberWidth) / (sigma * sigma);
+    const double weight = kIndependence * huber_weight(residual * residual, kHuberWidth) / (sigma * sigma);
     information_.noalias() += weight * row.transpose() * row;
     right_side_ += weight * (keypoint.row_offset + row.dot(change)) * row.transpose();
   }
 }
 
 RefinedCalibration CalibrationOnMap::estimate() const {
-  const CalibrationMatrix posterior =
-      information_ + CalibrationMatrix::Identity() / (options_.prior_sigmas * options_.prior_sigmas);
-  RefinedCalibration result = determined_calibration(given_, posterior, posterior.ldlt().solve(right_side_),
-                                                     options_.prior_sigmas, options_.min_gain);
-  refuse_implausible(result, given_, options_.prior_sigmas);
+  const CalibrationMatrix posterior = information_ + CalibrationMatrix::Identity() / (prior_sigmas_ * prior_sigmas_);
+  RefinedCalibration result =
+      determined_calibration(given_, posterior, posterior.ldlt().solve(right_side_), prior_sigmas_);
+  refuse_implausible(result, given_, prior_sigmas_);
   result.keyframes = frames_;
   result.observations = observations_;
   return result;

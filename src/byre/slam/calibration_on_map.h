@@ -8,21 +8,13 @@
 
 namespace byre {
 
-struct CalibrationOnMapOptions {
-  double prior_sigmas = 2.0;  // how far off a calibration is taken to be at first, in sigmas of a good one
-  double min_gain = 2.0;      // see SelfCalibrationOptions
-  int min_points = 40;        // offline points in a frame that is to count
-  int max_rows = 60;          // stereo matches of a frame whose rows are looked at
-  // Points and their places err together from frame to frame: each frame counts as this share of one.
-  double independence = 0.1;
-};
-
 // What a mission tells of the calibration of its cameras: its frames see points of the offline map, which are known.
 // A frame adds its share of the normal equations with its pose eliminated, so nothing but a sum is kept. Of one rig.
 class CalibrationOnMap {
  public:
   // given: by which the rig's images are rectified. Throws InputError when that cannot be done.
-  CalibrationOnMap(const Calibration& given, const CalibrationOnMapOptions& options);
+  // prior_sigmas: how far off the calibration is taken to be at first, in sigmas of a good one.
+  CalibrationOnMap(const Calibration& given, double prior_sigmas);
 
   // A frame that was tracked by the calibration given, changed by what was found since (in the parameters' sigmas):
   // features, rig and pose are as the changed one has them.
@@ -39,7 +31,7 @@ class CalibrationOnMap {
 
   // Constant after construction.
   Calibration given_;
-  CalibrationOnMapOptions options_;
+  double prior_sigmas_;
   CalibrationSensitivity sensitivity_;
 
   CalibrationMatrix information_ = CalibrationMatrix::Zero();

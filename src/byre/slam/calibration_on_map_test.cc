@@ -2,6 +2,7 @@
 
 #include "byre/features/recalibrated.h"
 #include "byre/geometry/calibration_scene.h"
+#include "byre/slam/self_calibration.h"
 
 #include <cmath>
 #include <random>
@@ -99,7 +100,7 @@ TEST(CalibrationOnMap, FindsTheErrorOfAGoodCalibration) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const CalibrationVector error = draw_error(seed);
     LookingAbout robot(given, error);
-    CalibrationOnMap calibration(given, {});
+    CalibrationOnMap calibration(given, SelfCalibrationOptions{}.prior_sigmas);
     for (int i = 0; i < 80; ++i) robot.look(i, calibration);
     const RefinedCalibration found = calibration.estimate();
     const Calibration truth = changed(given, error);
@@ -111,7 +112,7 @@ TEST(CalibrationOnMap, FindsTheErrorOfAGoodCalibration) {
 
 TEST(CalibrationOnMap, StaysAsGivenWhileLittleIsSeen) {
   const Calibration given = scene_calibration();
-  const CalibrationOnMap calibration(given, {});
+  const CalibrationOnMap calibration(given, SelfCalibrationOptions{}.prior_sigmas);
   const RefinedCalibration found = calibration.estimate();
   EXPECT_EQ(found.change.norm(), 0.0);
   EXPECT_EQ(found.keyframes, 0);

@@ -5,7 +5,8 @@
 namespace byre {
 
 RefinedCalibration determined_calibration(const Calibration& given, const CalibrationMatrix& information,
-                                          const CalibrationVector& expected, double prior_sigmas, double min_gain) {
+                                          const CalibrationVector& expected, double prior_sigmas) {
+  constexpr double kMinGain = 2.0;  // least factor by which images tell a direction better than was known before
   const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> directions(information);
   const double prior_information = 1.0 / (prior_sigmas * prior_sigmas);
   CalibrationVector along = directions.eigenvectors().transpose() * expected;
@@ -13,7 +14,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   int determined = 0;
   double squared_sigmas = 0.0;  // by which the change along all determined directions differs from none
   for (int i = 0; i < kCalibrationParameters; ++i) {
-    if (directions.eigenvalues()[i] >= min_gain * min_gain * prior_information) {
+    if (directions.eigenvalues()[i] >= kMinGain * kMinGain * prior_information) {
       ++determined;
       squared_sigmas += along[i] * along[i] * directions.eigenvalues()[i];
     } else {

@@ -5,11 +5,11 @@
 namespace byre {
 
 // The calibration given, changed by what is known of it (information and expected change, in the parameters' sigmas,
-// with a prior of so many sigmas in all directions). Only along directions that are known min_gain times better than
-// before; along the others it stays. It stays as given altogether when noise would make a change of that size as well.
+// with a prior of so many sigmas in all directions). Only along directions that are known twice as well as before;
+// along the others it stays. It stays as given altogether when noise would make a change of that size as well.
 // Keyframes, observations and shift are left to the caller.
 RefinedCalibration determined_calibration(const Calibration& given, const CalibrationMatrix& information,
-                                          const CalibrationVector& expected, double prior_sigmas, double min_gain);
+                                          const CalibrationVector& expected, double prior_sigmas);
 
 // Takes back a change that is larger in any parameter than calibrations err, five times the prior: what was seen does
 // not fit the model, and where a prior gives way so far, the rest of the change is made up.

@@ -11,6 +11,9 @@
 namespace byre {
 namespace {
 
+// Keyframes nearest to one that found an old place, of which enough must find it too.
+constexpr int kConfirmingKeyframes = 6;
+
 bool stopped(const FinishHooks& hooks) {
   return hooks.should_stop && hooks.should_stop();
 }
@@ -24,16 +27,15 @@ const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
 }
 
 // The keyframes around one that found an old place say whether they find it too.
-std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis,
-                                                      const FinishOptions& options) {
-  for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, options.confirming_keyframes)) {
+std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis) {
+  for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {
     const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
     const LoopHypothesis checked =
-        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map, options.loops);
+        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map);
     hypothesis.confirmations = checked.confirmations;  // the drift stays the keyframe's own
     hypothesis.misses = checked.misses;
   }
-  if (!is_confirmed(hypothesis, options.loops)) return std::nullopt;
+  if (!is_confirmed(hypothesis)) return std::nullopt;
   return hypothesis;
 }
 
@@ -116,11 +118,11 @@ std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& place
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   for (auto id = ids.rbegin(); id != ids.rend() && !stopped(hooks); ++id) {
     if (settled.contains(*id)) continue;
-    const auto found = find_loop(map, places, *id, options.loops);
-    const auto confirmed = found ? confirmed_by_neighbours(map, *found, options) : std::nullopt;
+    const auto found = find_loop(map, places, *id, options.loops, options.noise);
+    const auto confirmed = found ? confirmed_by_neighbours(map, *found) : std::nullopt;
     if (!confirmed) continue;
     loops.push_back(*confirmed);
-    for (const Covisible& neighbour : map.covisible_keyframes(*id, options.confirming_keyframes)) {
+    for (const Covisible& neighbour : map.covisible_keyframes(*id, kConfirmingKeyframes)) {
       settled.insert(neighbour.keyframe);
     }
   }

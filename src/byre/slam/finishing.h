@@ -11,7 +11,7 @@ namespace byre {
 struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
-  int confirming_keyframes = 6;  // nearest to one that found an old place, of which enough must find it too
+  PlaceNoise noise;  // of the search for loops
 };
 
 // How sound a map is by what can be known without any truth.

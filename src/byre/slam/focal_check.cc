@@ -6,6 +6,16 @@
 namespace byre {
 namespace {
 
+// Largest error that is sound, as a share of the focal length. A worn calibration is off by 0.003; frames of sound
+// cameras say up to 0.007 in a building and, hand-held with a rolling shutter, 0.015, but then with less than two
+// sigmas. Of an error of 0.05 they say 0.013 at least, and four sigmas: points that would tell of more are not found
+// where they are expected.
+constexpr double kMaxError = 0.01;
+constexpr double kMinSigmas = 3.0;  // sigmas by which an error differs from none
+constexpr double kRelease = 0.5;    // share of both bounds below which a focal length is right again
+constexpr int kMinPoints = 60;      // points of a frame that counts
+constexpr double kMemory = 0.85;    // share of what earlier frames told that is kept from frame to frame
+
 double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations) {
   constexpr double kMaxSquaredError = 16.0;  // pixels: what is farther off is something else
   double sum = 0.0;
@@ -33,12 +43,11 @@ struct Parabola {
 }  // namespace
 
 std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                 std::span<const PoseObservation> observations,
-                                                 const PoseRefinementOptions& options) {
+                                                 std::span<const PoseObservation> observations) {
   const auto cost_with = [&](double factor) -> std::optional<double> {
     Rig other = rig;
     other.focal *= factor;
-    const auto refined = refine_pose(camera_from_world, other, observations, options);
+    const auto refined = refine_pose(camera_from_world, other, observations, {});
     return refined ? std::optional(cost_at(refined->camera_from_world, other, observations)) : std::nullopt;
   };
   const auto shorter = cost_with(1.0 - kFocalStep), longer = cost_with(1.0 + kFocalStep);
@@ -53,16 +62,16 @@ bool FocalCheck::is_due() {
 }
 
 void FocalCheck::note(const FocalEvidence& evidence) {
-  if (evidence.points < options_.min_points) return;
+  if (evidence.points < kMinPoints) return;
   ++asked_;
-  const auto blend = [this](double& sum, double now) { sum = options_.memory * sum + now; };
+  const auto blend = [](double& sum, double now) { sum = kMemory * sum + now; };
   blend(sum_.shorter, evidence.shorter);
   blend(sum_.as_it_is, evidence.as_it_is);
   blend(sum_.longer, evidence.longer);
   blend(sum_.points, evidence.points);
   blend(weight_, 1.0);
-  const double share = is_off_ ? options_.release : 1.0;
-  is_off_ = std::abs(error()) > share * options_.max_error && std::abs(sigmas()) > share * options_.min_sigmas;
+  const double share = is_off_ ? kRelease : 1.0;
+  is_off_ = std::abs(error()) > share * kMaxError && std::abs(sigmas()) > share * kMinSigmas;
 }
 
 double FocalCheck::error() const {

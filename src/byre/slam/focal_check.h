@@ -20,28 +20,18 @@ constexpr double kFocalStep = 0.05;
 
 // The pose is refined already as it is, and the guess for the other two. Empty where one of them finds none.
 std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                 std::span<const PoseObservation> observations,
-                                                 const PoseRefinementOptions& options);
+                                                 std::span<const PoseObservation> observations);
 
 struct FocalCheckOptions {
-  // Share of the focal length. A worn calibration is off by 0.003; frames of sound cameras say up to 0.007 in a
-  // building and, hand-held with a rolling shutter, 0.015, but then with less than two sigmas. Of an error of 0.05 they
-  // say 0.013 at least, and four sigmas: points that would tell of more are not found where they are expected.
-  double max_error = 0.01;
-  double min_sigmas = 3.0;  // by which it differs from none
-  // What is off stays so until it is less than these shares of both bounds.
-  double release = 0.5;
-  int min_points = 60;   // of a frame that counts
   int asked_first = 5;   // frames, one after the other
   int asked_every = 20;  // frames, from then on
-  double memory = 0.85;  // of what frames told, from one to the next
 };
 
 // Whether the points of a map that is right fit what a camera sees by the focal length it is said to have. A pose alone
 // makes up for a wrong one by standing nearer or farther; the depths of points then do not fit together.
 class FocalCheck {
  public:
-  explicit FocalCheck(const FocalCheckOptions& options) : options_(options) {}
+  explicit FocalCheck(const FocalCheckOptions& options = {}) : options_(options) {}
 
   // Whether the next frame is to be asked. Call it once for each frame.
   bool is_due();

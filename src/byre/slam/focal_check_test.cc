@@ -31,12 +31,12 @@ std::vector<PoseObservation> seen_with(double focal_factor, double noise_pixels,
 }
 
 FocalCheck checked(double focal_factor, double noise_pixels, unsigned seed) {
-  FocalCheck check({});
+  FocalCheck check;
   for (unsigned frame = 0; frame < 3; ++frame) {
     const auto observations = seen_with(focal_factor, noise_pixels, 10 * seed + frame);
     const auto refined = refine_pose({}, simulated_rig(), observations, {});
     if (!refined) continue;
-    const auto evidence = weigh_focal_lengths(refined->camera_from_world, simulated_rig(), observations, {});
+    const auto evidence = weigh_focal_lengths(refined->camera_from_world, simulated_rig(), observations);
     if (evidence) check.note(*evidence);
   }
   return check;
@@ -62,7 +62,7 @@ TEST(FocalCheck, TellsThatItIsTooLongOrTooShort) {
 }
 
 TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
-  FocalCheck check({});
+  FocalCheck check;
   EXPECT_EQ(check.error(), 0.0);
   check.note({100.0, 500.0, 900.0, 20.0});
   EXPECT_EQ(check.error(), 0.0);
@@ -72,7 +72,7 @@ TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
 }
 
 TEST(FocalCheck, HoldsAnErrorThatIsLargeForOneThatCouldBeChance) {
-  FocalCheck check({});
+  FocalCheck check;
   check.note({950.0, 900.0, 1050.0, 100.0});  // 9 square pixels a point: the frame is blurred
   EXPECT_GT(std::abs(check.error()), 0.01);
   EXPECT_LT(std::abs(check.sigmas()), 3.0);
@@ -87,7 +87,7 @@ TEST(FocalCheck, WhatIsOffStaysSoUntilItIsClearlyNot) {
     for (int frame = 0; frame < 40; ++frame) check.note(evidence);
     return check.is_off();
   };
-  FocalCheck check({});
+  FocalCheck check;
   EXPECT_FALSE(note(check, doubtful));
   EXPECT_TRUE(note(check, off));
   EXPECT_TRUE(note(check, doubtful));
@@ -111,7 +111,7 @@ TEST(FocalCheck, AsksTheFirstFramesThenNowAndThen) {
 
 TEST(FocalCheck, NeedsPointsEnoughForAPose) {
   const auto observations = seen_with(1.0, 0.0, 1);
-  EXPECT_FALSE(weigh_focal_lengths({}, simulated_rig(), std::span(observations).first(2), {}));
+  EXPECT_FALSE(weigh_focal_lengths({}, simulated_rig(), std::span(observations).first(2)));
 }
 
 }  // namespace

@@ -13,6 +13,11 @@
 namespace byre {
 namespace {
 
+constexpr int kMinSharedPoints = 50;        // points of two keyframes that are joined in the pose graph
+constexpr int kMaxNeighbours = 10;          // neighbours of a keyframe in the pose graph
+constexpr int kFusionNeighbours = 10;       // keyframes on each side of a loop whose points are fused
+constexpr int kSecondBundleIterations = 6;  // iterations after outliers were taken out
+
 constexpr int kMinOfflineSightings = 30;  // that tell where a keyframe, or a whole map, lies in the offline one
 
 using IndexOfKeyframe = std::map<KeyframeId, int>;
@@ -115,12 +120,12 @@ PoseGraphNode node_of(const MapWindow& window, const WindowKeyframe& keyframe) {
           .scale_is_known = window.rig_of(keyframe).is_stereo()};
 }
 
-PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of, const std::vector<LoopEdge>& loops,
-                          const GlobalMappingOptions& options) {
+PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of,
+                          const std::vector<LoopEdge>& loops) {
   PoseGraph graph;
   const double metre = length_of_a_metre(window);
   // A drift of scale opens gaps wider than fusion searches. So a loop stands for links between all that is fused at it.
-  const double links = scale_may_drift(window) ? std::pow(options.fusion_neighbours, 2) : 1.0;
+  const double links = scale_may_drift(window) ? std::pow(kFusionNeighbours, 2) : 1.0;
   std::set<std::pair<int, int>> joined;
   const auto join = [&](int first, int second, int shared) {
     if (!joined.insert(std::minmax(first, second)).second) return;
@@ -129,12 +134,11 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
     const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
     graph.nodes.push_back(node_of(window, keyframe));
-    for (const auto& [shared, other] :
-         nearest_keyframes(window, i, options.min_shared_points, options.max_neighbours)) {
+    for (const auto& [shared, other] : nearest_keyframes(window, i, kMinSharedPoints, kMaxNeighbours)) {
       join(other, i, shared);
     }
     const auto parent = keyframe.keyframe.parent ? index_of.find(*keyframe.keyframe.parent) : index_of.end();
-    if (parent != index_of.end()) join(parent->second, i, options.min_shared_points);
+    if (parent != index_of.end()) join(parent->second, i, kMinSharedPoints);
   }
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
@@ -175,19 +179,19 @@ std::vector<int> surroundings_of(const MapWindow& window, int keyframe, int coun
   return surroundings;
 }
 
-void fuse_around(MapWindow& window, int keyframe, int place, const GlobalMappingOptions& options) {
-  const std::vector<int> newer = surroundings_of(window, keyframe, options.fusion_neighbours);
-  std::vector<int> older = surroundings_of(window, place, options.fusion_neighbours);
+void fuse_around(MapWindow& window, int keyframe, int place, const MappingOptions& options) {
+  const std::vector<int> newer = surroundings_of(window, keyframe, kFusionNeighbours);
+  std::vector<int> older = surroundings_of(window, place, kFusionNeighbours);
   std::erase_if(older, [&](int index) { return std::ranges::find(newer, index) != newer.end(); });
-  for (const int index : newer) fuse_between(window, index, older, options.mapping);
+  for (const int index : newer) fuse_between(window, index, older, options);
 }
 
-void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options) {
+void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const MappingOptions& options) {
   const IndexOfKeyframe index_of = index_keyframes(window);
   PoseGraphOptions graph_options;
   graph_options.scale_is_free = scale_may_drift(window);
   if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are what is expected
-  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops, options), graph_options);
+  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops), graph_options);
   if (bent.usable) take_over(window, index_of, bent);
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
@@ -216,11 +220,10 @@ MapWindow whole_map(const MapView& map) {
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop) {
   MapWindow adjusted = whole;
-  if (!loops.empty()) close_loops(adjusted, loops, options);
+  if (!loops.empty()) close_loops(adjusted, loops, options.mapping);
   MappingOptions mapping = options.mapping;
   mapping.first_bundle_iterations = options.first_bundle_iterations;
-  mapping.second_bundle_iterations = options.second_bundle_iterations;
-  mapping.bundle_threads = options.threads;
+  mapping.second_bundle_iterations = kSecondBundleIterations;
   adjust_bundle(adjusted, mapping, should_stop);
   refresh_points(adjusted);
   return difference(whole, adjusted);

@@ -12,12 +12,7 @@ namespace byre {
 
 struct GlobalMappingOptions {
   MappingOptions mapping;
-  int min_shared_points = 50;        // of two keyframes, to be joined in the pose graph
-  int max_neighbours = 10;           // of a keyframe in the pose graph
-  int fusion_neighbours = 10;        // keyframes on each side of a loop whose points are fused
-  int first_bundle_iterations = 8;   // before outliers are taken out
-  int second_bundle_iterations = 6;  // after
-  int threads = 1;                   // one keeps the result reproducible
+  int first_bundle_iterations = 8;  // before outliers are taken out
 };
 
 // By what the lengths around keyframes have grown, those of removed ones too: after over before. Those not named keep

@@ -3,6 +3,9 @@
 namespace byre {
 namespace {
 
+constexpr int kManyOfflinePoints = 80;     // offline points in view, from which some must be found
+constexpr double kMinOfflineShare = 0.04;  // share of those; fewer agree by chance where a building repeats itself
+
 // What is wrong with the input, which may be why nothing is found; none when nothing is known to be.
 Doubt fault_of_input(const HealthEvidence& evidence) {
   if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
@@ -31,9 +34,9 @@ Doubt reason_against(const Health& health, const HealthEvidence& evidence, const
 }
 
 bool misses_offline_points(const Health& health, const HealthOptions& options) {
-  if (health.offline_expected < options.expected_offline_points) return false;
+  if (health.offline_expected < kManyOfflinePoints) return false;
   const bool held_by_chance = health.offline_inliers >= options.min_offline_points &&
-                              health.offline_inliers < options.min_offline_share * health.offline_expected;
+                              health.offline_inliers < kMinOfflineShare * health.offline_expected;
   const bool not_held =
       health.offline_inliers < options.min_offline_points && health.distance_since_offline > options.max_changed_path;
   return held_by_chance || not_held;

@@ -7,16 +7,14 @@ namespace byre {
 
 struct HealthOptions {
   double trusted_error = 0.2;        // metres: what a trusted pose promises
-  double sigmas = 3.0;               // of the pose's uncertainty that must fit into that,
-  double drift_share = 0.005;        // with this share of the path since offline points last held the pose
+  double sigmas = 3.0;               // sigmas of the pose's position that must fit into that, together with drift
+  double drift_share = 0.005;        // drift as a share of the path since offline points last held the pose
   double max_rotation_sigma = 0.02;  // radians
   int min_points = 40;               // inliers of both kinds
-  double min_spread = 0.04;          // of the image's diagonal
+  double min_spread = 0.04;          // deviation of those where they spread least, as a share of the image's diagonal
   double max_disagreement = 0.05;    // metres between the poses from offline and from online points
-  int min_offline_points = 15;       // inliers, where
-  int expected_offline_points = 80;  // so many should be in view,
-  double min_offline_share = 0.04;   // of those expected: fewer agree by chance where a building repeats itself
-  double max_changed_path = 5.0;     // unless for less than these metres
+  int min_offline_points = 15;       // offline inliers, where many should be in view
+  double max_changed_path = 5.0;     // metres of path with fewer of them that are let pass
   double max_frozen = 0.15;          // seconds that a camera may give the same image, until the pose is of no use
 };
 

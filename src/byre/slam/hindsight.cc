@@ -8,6 +8,8 @@
 namespace byre {
 namespace {
 
+constexpr double kMinShare = 0.7;  // share of the points still in the map that agree on the pose
+
 RememberedPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
   return {seen.point,
           {seen.pixel.x(), seen.pixel.y(), keypoint.disparity},
@@ -58,7 +60,7 @@ std::optional<RememberedFrame> Hindsight::take_oldest() {
 }
 
 std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const MapView& map,
-                                      const TrackOptions& tracking, const HindsightOptions& options) {
+                                      const TrackOptions& tracking) {
   std::vector<PoseObservation> observations;
   observations.reserve(frame.points.size());
   for (const RememberedPoint& seen : frame.points) {
@@ -66,8 +68,8 @@ std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& 
       observations.push_back(observation_of(seen, *point, tracking.offline_weight));
     }
   }
-  const double needed = options.min_share * static_cast<double>(observations.size());
-  PoseRefinementOptions refinement = tracking.refinement;
+  const double needed = kMinShare * static_cast<double>(observations.size());
+  PoseRefinementOptions refinement;
   refinement.rounds = 2;  // from where it is nearly right
   const auto refined =
       refine_pose(inverse(frame.now_from_then) * camera_from_world, frame.rig, observations, refinement);

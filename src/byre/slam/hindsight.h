@@ -11,7 +11,6 @@ namespace byre {
 
 struct HindsightOptions {
   std::size_t frames = 2000;  // that wait for the end; what comes before those is settled earlier. 10 kB each
-  double min_share = 0.7;     // of the points still in the map, which must agree on the pose
 };
 
 // A point and where a frame saw it.
@@ -54,6 +53,6 @@ class Hindsight {
 
 // Where the frame was taken from, as the map has its points by now. Empty when too few are left or agree.
 std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const MapView& map,
-                                      const TrackOptions& tracking, const HindsightOptions& options);
+                                      const TrackOptions& tracking);
 
 }  // namespace byre

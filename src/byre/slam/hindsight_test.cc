@@ -39,7 +39,7 @@ class SeenInHindsight : public testing::Test {
   std::optional<Pose> pose_of(const RememberedFrame& frame) const {
     Vector6 off;
     off << 0.02, -0.01, 0.015, 0.002, 0.001, -0.002;  // as tracked on points that were not known well yet
-    return pose_in_hindsight(frame, exp_pose(off) * true_pose_, MapView(nullptr, map_), {}, {});
+    return pose_in_hindsight(frame, exp_pose(off) * true_pose_, MapView(nullptr, map_), {});
   }
 };
 
@@ -76,7 +76,7 @@ TEST_F(SeenInHindsight, AFrameOfARigThatWasRecalibratedIsLookedAtWithThatRig) {
   hindsight.turn_rig(exp_pose(turn));
   hindsight.turn_rig(exp_pose(turn));
   const Pose expected = exp_pose(turn) * exp_pose(turn) * true_pose_;
-  const auto pose = pose_in_hindsight(hindsight.take_oldest().value(), expected, MapView(nullptr, map_), {}, {});
+  const auto pose = pose_in_hindsight(hindsight.take_oldest().value(), expected, MapView(nullptr, map_), {});
   ASSERT_TRUE(pose);
   EXPECT_LT(log_pose(*pose * inverse(expected)).norm(), 1e-3);
 }

@@ -83,9 +83,9 @@ std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted
     if (const auto offline = guess(query, predicted, expected.offline)) {
       const double depth = median_depth(query, expected.offline, predicted);
       const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
-      if (differ_by(predicted) < query.options.narrow_radius) return ByMap<Pose>{*offline, *offline};
+      if (differ_by(predicted) < kNarrowRadius) return ByMap<Pose>{*offline, *offline};
       const auto online = guess(query, predicted, expected.online);
-      const bool contradict = online && differ_by(*online) > 0.5 * query.options.narrow_radius;
+      const bool contradict = online && differ_by(*online) > 0.5 * kNarrowRadius;
       return ByMap<Pose>{*offline, contradict ? *online : *offline};
     }
   }
@@ -104,7 +104,7 @@ struct Found {
 
 MeasuredPoints match_and_measure(const Query& query, const std::vector<ExpectedPoint>& expected,
                                  const Pose& camera_from_world) {
-  const SearchOptions search{query.options.narrow_radius, 90, 0.9f};
+  const SearchOptions search{kNarrowRadius, 90, 0.9f};
   const std::vector<GuidedMatch> matches = match_expected(*query.frame.features, query.map, expected, search);
   return measure_matches(query.frame, camera_from_world, query.rig, query.map, matches);
 }
@@ -133,7 +133,7 @@ MeasuredPoints join(const ByMap<MeasuredPoints>& measured, double offline_weight
 // The pose of one kind of points alone; empty when it is not sound.
 std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camera_from_world,
                                            const MeasuredPoints& measured) {
-  auto refined = refine_pose(camera_from_world, query.rig, measured.observations, query.options.refinement);
+  auto refined = refine_pose(camera_from_world, query.rig, measured.observations, {});
   if (refined && !is_sound(*refined, measured.observations.size(), query.options)) refined.reset();
   return refined;
 }
@@ -176,8 +176,7 @@ bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoi
 
 // How many of the matches fit a pose by noise and systematic errors alone.
 std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
-  return part_by_agreement(camera_from_world, query.rig, measured, 1.0, query.options.refinement)
-      .agreeing.features.size();
+  return part_by_agreement(camera_from_world, query.rig, measured, 1.0).agreeing.features.size();
 }
 
 // The pose that is believed, the points it was refined on, and matches that were left out of that.
@@ -190,7 +189,7 @@ struct Solution {
 std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world,
                                        const ByMap<MeasuredPoints>& measured) {
   MeasuredPoints both = join(measured, query.options.offline_weight);
-  const auto refined = refine_pose(camera_from_world, query.rig, both.observations, query.options.refinement);
+  const auto refined = refine_pose(camera_from_world, query.rig, both.observations, {});
   if (!refined || !is_sound(*refined, both.observations.size(), query.options)) return std::nullopt;
   return Solution{*refined, std::move(both), {}};
 }
@@ -199,9 +198,8 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
 Solution solve_led(const Query& query, const PoseRefinement& leader, Origin leading,
                    const ByMap<MeasuredPoints>& measured) {
   const bool offline_leads = leading == Origin::offline;
-  PartedPoints followers =
-      part_by_agreement(leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline,
-                        leader.variance_factor, query.options.refinement);
+  PartedPoints followers = part_by_agreement(
+      leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline, leader.variance_factor);
   const ByMap<MeasuredPoints> agreeing = offline_leads
                                              ? ByMap<MeasuredPoints>{measured.offline, std::move(followers.agreeing)}
                                              : ByMap<MeasuredPoints>{std::move(followers.agreeing), measured.online};
@@ -311,7 +309,7 @@ bool is_within(const Agreement& agreement, const DriftBound& drift) {
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const TrackOptions& options) {
+                                        const TrackOptions& options, bool weighs_focal_lengths) {
   const Query query{frame, rig, map, options};
   const ByMap<std::vector<PointId>> points = split(candidates);
   const auto guesses = guess_poses(query, predicted_camera_from_world, points);
@@ -321,11 +319,10 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
   const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
   HybridTrack result = told(query, found, opinions, *solution);
-  if (options.weigh_focal_lengths) {
+  if (weighs_focal_lengths) {
     const std::vector<PoseObservation>& seen = found.measured.offline.observations;
-    const auto refined =
-        opinions.offline ? opinions.offline : refine_pose(guesses->offline, rig, seen, options.refinement);
-    if (refined) result.focal = weigh_focal_lengths(refined->camera_from_world, rig, seen, options.refinement);
+    const auto refined = opinions.offline ? opinions.offline : refine_pose(guesses->offline, rig, seen, {});
+    if (refined) result.focal = weigh_focal_lengths(refined->camera_from_world, rig, seen);
   }
   return result;
 }
@@ -335,7 +332,7 @@ PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, 
   const Query query{frame, rig, map, options};
   const std::vector<ExpectedPoint> expected = project_points(map, points, camera_from_world, rig);
   const MeasuredPoints measured = match_and_measure(query, expected, camera_from_world);
-  const PartedPoints parted = part_by_agreement(camera_from_world, rig, measured, 1.0, options.refinement);
+  const PartedPoints parted = part_by_agreement(camera_from_world, rig, measured, 1.0);
   PlacedPoints placed;
   for (const TrackedFeature& feature : parted.agreeing.features) placed.agreed.push_back(feature.point);
   for (const TrackedFeature& feature : parted.disagreeing) {

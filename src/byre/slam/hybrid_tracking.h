@@ -46,9 +46,10 @@ struct HybridTrack {
 // pose fits offline points all over the image it stands, whatever the online map says, and online points are used that
 // agree with it. Offline points that fit one pose in a part of the image only may be a thing that was moved: where the
 // maps disagree the online pose stands, and offline points are used that agree with that.
+// weighs_focal_lengths: offline points are asked what they make of other ones, see FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const TrackOptions& options);
+                                        const TrackOptions& options, bool weighs_focal_lengths = false);
 
 // Which points a pose that is known has in their places, and which elsewhere.
 struct PlacedPoints {

@@ -17,6 +17,11 @@
 namespace byre {
 namespace {
 
+constexpr SearchOptions kSearch{.radius = 50.0f, .max_distance = 50, .max_ratio = 0.85f};
+constexpr int kMinPoints = 80;                // points of the first map, with a known depth
+constexpr int kMaxPointsPerCell = 16;         // most points that count in one of 4x4 cells of the image
+constexpr double kMaxDirectionSigma = 0.015;  // radians, of the translation between the two keyframes
+
 std::vector<TwoViewMatch> rays_of(const std::vector<Match>& matches, const Features& first, const Features& second,
                                   const Rig& rig) {
   std::vector<TwoViewMatch> rays;
@@ -137,18 +142,18 @@ int count_spread_points(const Keyframe& keyframe, const Rig& rig, int max_per_ce
   return spread;
 }
 
-TwoViewFailure reason_to_doubt(const MonocularStart& start, const Rig& rig, const MonocularStartOptions& options) {
-  const int points = count_spread_points(*start.map.find_keyframe(start.second), rig, options.max_points_per_cell);
-  if (points < options.min_points) return TwoViewFailure::too_few_points;
-  if (start.median_parallax < options.two_view.min_parallax) return TwoViewFailure::small_parallax;
-  const bool is_open = start.direction_sigma > options.max_direction_sigma;
+TwoViewFailure reason_to_doubt(const MonocularStart& start, const Rig& rig) {
+  const int points = count_spread_points(*start.map.find_keyframe(start.second), rig, kMaxPointsPerCell);
+  if (points < kMinPoints) return TwoViewFailure::too_few_points;
+  if (start.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
+  const bool is_open = start.direction_sigma > kMaxDirectionSigma;
   return is_open ? TwoViewFailure::uncertain : TwoViewFailure::none;
 }
 
 // The keyframes and points that a motion between two frames tells, in a bundle adjusted to what the image shows.
 MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>& matches, const Frame& first,
-                          const Frame& second, const Rig& rig, const MonocularStartOptions& options) {
-  const double scale = scale_for(motion, options.median_depth);
+                          const Frame& second, const Rig& rig, double median_depth, const MappingOptions& mapping) {
+  const double scale = scale_for(motion, median_depth);
   const Pose world_from_first = rig.body_from_camera;
   const Pose first_from_world = inverse(world_from_first);
   Pose second_from_first = motion.second_from_first;
@@ -162,8 +167,8 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
     add_seen_point(start.map, world_from_first * (scale * *point_in_first), {start.first, matches[i].first},
                    {start.second, matches[i].second});
   }
-  adjust(start, options.mapping);
-  remove_points_of_unknown_depth(start.map, first_from_world, options.mapping.max_relative_depth_sigma);
+  adjust(start, mapping);
+  remove_points_of_unknown_depth(start.map, first_from_world, mapping.max_relative_depth_sigma);
   start.median_parallax = median_parallax(start);
   start.direction_sigma = direction_sigma(start, rig);
   return start;
@@ -171,8 +176,9 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
 
 }  // namespace
 
-MonocularInitialiser::MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options)
-    : rig_(rig), options_(options) {
+MonocularInitialiser::MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options,
+                                           const MappingOptions& mapping)
+    : rig_(rig), options_(options), mapping_(mapping) {
   assert(!rig.is_stereo());
 }
 
@@ -185,12 +191,11 @@ void MonocularInitialiser::begin_with(const Frame& frame) {
 // One match at most for each feature of either frame: the more similar one keeps it.
 std::vector<Match> MonocularInitialiser::match_with_reference(const Features& features) const {
   const Features& reference = *reference_->features;
-  const SearchOptions search{options_.search_radius, options_.max_distance, options_.max_ratio};
   std::vector<Match> claims(static_cast<std::size_t>(features.size()), {-1, -1, std::numeric_limits<int>::max()});
   for (int i = 0; i < reference.size(); ++i) {
     const Eigen::Vector2d expected = expected_[static_cast<std::size_t>(i)].cast<double>();
     const Projection projection{{expected.x(), expected.y(), 0.0}, reference.keypoint(i).octave};
-    const auto found = find_feature(features, reference.descriptor(i), projection, search);
+    const auto found = find_feature(features, reference.descriptor(i), projection, kSearch);
     if (!found) continue;
     Match& claim = claims[static_cast<std::size_t>(found->feature)];
     if (found->distance < claim.distance) claim = {i, found->feature, found->distance};
@@ -219,17 +224,18 @@ MonocularAttempt MonocularInitialiser::try_start(const Frame& frame) {
   MonocularAttempt attempt{std::nullopt, TwoViewFailure::too_few_matches, 0};
   const std::vector<Match> matches = reference_ ? match_with_reference(*frame.features) : std::vector<Match>{};
   attempt.matches = static_cast<int>(matches.size());
-  if (attempt.matches < options_.two_view.min_matches) {
+  if (attempt.matches < kMinTwoViewMatches) {
     begin_with(frame);
     return attempt;
   }
   follow(matches, *frame.features);
   const Features& first = *reference_->features;
-  const auto estimate = estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_), options_.two_view);
+  const auto estimate = estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_));
   attempt.failure = estimate.failure;
   if (!estimate.motion) return attempt;
-  MonocularStart start = start_from(*estimate.motion, matches, *reference_, frame, rig_, options_);
-  attempt.failure = reason_to_doubt(start, rig_, options_);
+  MonocularStart start =
+      start_from(*estimate.motion, matches, *reference_, frame, rig_, options_.median_depth, mapping_);
+  attempt.failure = reason_to_doubt(start, rig_);
   if (attempt.failure != TwoViewFailure::none) return attempt;
   attempt.start = std::move(start);
   reference_.reset();

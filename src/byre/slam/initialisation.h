@@ -11,15 +11,7 @@
 namespace byre {
 
 struct MonocularStartOptions {
-  TwoViewOptions two_view;
-  MappingOptions mapping;
-  float search_radius = 50.0f;         // pixels at octave 0, about where a feature is expected
-  int max_distance = 50;               // bits
-  float max_ratio = 0.85f;             // best over second best
-  int min_points = 80;                 // of the first map, with a depth known to mapping.max_relative_depth_sigma
-  int max_points_per_cell = 16;        // of the 4x4 cells of the image: more in one cell count as so many
-  double max_direction_sigma = 0.015;  // radians, of the translation between the two keyframes
-  double median_depth = 1.0;           // metres, about, of the points from the first camera: one camera knows no scale
+  double median_depth = 1.0;  // metres, about, from the first camera to the points: one camera knows no scale
 };
 
 // A first map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe.
@@ -44,7 +36,7 @@ struct MonocularAttempt {
 class MonocularInitialiser {
  public:
   // Precondition: the rig has no baseline.
-  MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options);
+  MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options, const MappingOptions& mapping = {});
 
   // Frames in the order of time. After a start the next frame is a new reference.
   MonocularAttempt try_start(const Frame& frame);
@@ -57,6 +49,7 @@ class MonocularInitialiser {
   // Constant after construction.
   Rig rig_;
   MonocularStartOptions options_;
+  MappingOptions mapping_;
 
   // Owned by the calling thread.
   std::optional<Frame> reference_;

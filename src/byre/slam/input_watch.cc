@@ -1,5 +1,6 @@
 #include "byre/slam/input_watch.h"
 
+#include "byre/features/stereo_fit.h"
 #include "byre/geometry/median.h"
 
 #include <cmath>
@@ -9,8 +10,11 @@
 namespace byre {
 namespace {
 
-double blend(std::optional<double> before, double now, double memory) {
-  return before ? memory * *before + (1.0 - memory) * now : now;
+constexpr int kMinFeatures = 100;  // corners of a frame whose pair is judged
+constexpr double kMemory = 0.7;    // share of earlier measures that is kept from frame to frame
+
+double blend(std::optional<double> before, double now) {
+  return before ? kMemory * *before + (1.0 - kMemory) * now : now;
 }
 
 }  // namespace
@@ -31,18 +35,18 @@ void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
 }
 
 void InputWatch::note_pair(const Frame& frame, InputEvidence& evidence) {
-  if (fault_of(*frame.condition, options_.image) != ImageFault::none) return;
-  evidence.right_fault = fault_of(*frame.right_condition, options_.image);
-  if (evidence.right_fault != ImageFault::none || frame.features->size() < options_.min_features) return;
+  if (fault_of(*frame.condition, image_) != ImageFault::none) return;
+  evidence.right_fault = fault_of(*frame.right_condition, image_);
+  if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeatures) return;
   std::vector<float> row_errors;
   for (const Keypoint& keypoint : frame.features->keypoints()) {
     if (keypoint.has_disparity()) row_errors.push_back(std::abs(keypoint.row_offset));
   }
   constexpr std::size_t kEnough = 10;  // for a median
   const double matched = static_cast<double>(row_errors.size()) / frame.features->size();
-  matched_ = blend(matched_, matched, options_.memory);
-  if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median(std::move(row_errors)), options_.memory);
-  evidence.cameras_disagree = *matched_ < options_.min_matched || row_error_.value_or(0.0) > options_.max_row_error;
+  matched_ = blend(matched_, matched);
+  if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median(std::move(row_errors)));
+  evidence.cameras_disagree = *matched_ < kLeastStereoShare || row_error_.value_or(0.0) > kMostRowOffset;
 }
 
 }  // namespace byre

@@ -1,19 +1,10 @@
 #pragma once
 
 #include "byre/features.h"
-#include "byre/features/stereo_fit.h"
 
 #include <optional>
 
 namespace byre {
-
-struct InputWatchOptions {
-  ImageConditionOptions image;
-  int min_features = 100;  // of a frame whose pair is judged
-  double min_matched = kLeastStereoShare;
-  double max_row_error = kMostRowOffset;  // pixels
-  double memory = 0.7;                    // of both, from frame to frame
-};
 
 // What speaks against the images of a frame themselves.
 struct InputEvidence {
@@ -26,7 +17,7 @@ struct InputEvidence {
 // Looks at frames one after the other.
 class InputWatch {
  public:
-  explicit InputWatch(const InputWatchOptions& options) : options_(options) {}
+  explicit InputWatch(const ImageConditionOptions& image) : image_(image) {}
 
   // Rows are judged by the calibration that the frame's features were made, or made anew, by.
   InputEvidence look_at(const Frame& frame);
@@ -35,7 +26,7 @@ class InputWatch {
   void note_repetition(const Frame& frame, InputEvidence& evidence);
   void note_pair(const Frame& frame, InputEvidence& evidence);
 
-  InputWatchOptions options_;
+  ImageConditionOptions image_;  // constant after construction
   std::uint64_t last_content_ = 0;
   Timestamp first_shown_{};  // when the present image came first
   std::optional<double> matched_;

@@ -29,13 +29,13 @@ Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world,
 }  // namespace
 
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options) {
-  if (evidence.offline_inliers >= options.enough_offline) return false;
+  if (evidence.offline_inliers >= kEnoughOffline) return false;
   const int inliers = static_cast<int>(tracked.features.size());
   const bool weak = inliers < options.min_tracked;
-  if (evidence.pending >= (weak ? options.max_pending_when_weak : options.max_pending)) return false;
+  if (evidence.pending >= (weak ? kMaxPendingWhenWeak : kMaxPending)) return false;
   if (weak) return true;
   if (evidence.frames_since_last < options.min_frames) return false;
-  if (evidence.without_depth > 0 && evidence.without_depth <= options.max_wait_for_depth) return false;
+  if (evidence.without_depth > 0 && evidence.without_depth <= kMaxWaitForDepth) return false;
   return inliers < options.min_tracked_share * evidence.fresh_inliers || evidence.turn > options.max_turn ||
          evidence.shift_share > options.max_shift_share;
 }

@@ -8,18 +8,19 @@
 
 namespace byre {
 
+// Fewer points, or more motion, ask for a keyframe.
 struct KeyframeOptions {
-  double min_tracked_share =
-      0.75;                        // of the points tracked when the reference keyframe became it: fewer ask for another
-  int min_tracked = 100;           // points: fewer ask for one too
-  double max_turn = 0.25;          // radians of rotation from the reference keyframe
-  double max_shift_share = 0.15;   // of the median depth, translation from the reference keyframe
-  int min_frames = 2;              // between keyframes, unless tracking is about to fail
-  int max_pending = 3;             // keyframes that wait for mapping; more are not made,
-  int max_pending_when_weak = 10;  // unless fewer than min_tracked points are left
-  int max_wait_for_depth = 8;      // frames without disparities that a keyframe waits for one that has them
-  int enough_offline = 300;        // offline points tracked: the place is known, and needs no keyframe
+  double min_tracked_share = 0.75;  // share of the points tracked when the reference keyframe became it
+  int min_tracked = 100;            // points tracked
+  double max_turn = 0.25;           // radians of rotation from the reference keyframe
+  double max_shift_share = 0.15;    // translation from the reference keyframe over the median depth
+  int min_frames = 2;               // frames between keyframes, unless tracking is about to fail
 };
+
+inline constexpr int kMaxPending = 3;           // most keyframes that wait for mapping
+inline constexpr int kMaxPendingWhenWeak = 10;  // the same where fewer than min_tracked points are left
+inline constexpr int kMaxWaitForDepth = 8;      // frames that a keyframe waits for one with disparities
+inline constexpr int kEnoughOffline = 300;      // offline points tracked in a place that needs no keyframe
 
 // What speaks for or against a new keyframe, apart from the tracked frame itself.
 struct KeyframeEvidence {

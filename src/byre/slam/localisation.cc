@@ -2,6 +2,7 @@
 
 #include "byre/geometry/absolute_pose.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/place_matching.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,16 @@
 
 namespace byre {
 namespace {
+
+constexpr PlaceQueryOptions kPlaces{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
+constexpr int kMinFeatures = 50;        // corners of a frame that can be found
+constexpr int kMinMatches = 10;         // matches by words from which a pose is looked for
+constexpr int kMinPoseInliers = 8;      // matches that agree with a first pose
+constexpr int kMaxDraws = 2000;         // draws of three points
+constexpr double kMaxMatchError = 6.0;  // pixels, largest error of such a match
+constexpr double kRivalShare = 0.7;     // share of the best place's inliers with which a second place is a rival
+// The search around a first pose, which is a guess of another kind than one from motion.
+constexpr TrackOptions kAroundFirstPose{};
 
 using Failure = LocalisationFailure;
 
@@ -40,14 +51,16 @@ std::optional<AbsolutePose> pose_from_matches(const FrameQuery& query, const std
   std::vector<PointSighting> sightings;
   sightings.reserve(matches.size());
   for (const PointMatch& match : matches) sightings.push_back(sighting_of(query, match));
-  return estimate_absolute_pose(sightings, query.rig, query.options.ransac);
+  const RansacOptions ransac{
+      .max_iterations = kMaxDraws, .confidence = 0.999, .max_error = kMaxMatchError, .seed = query.options.seed};
+  return estimate_absolute_pose(sightings, query.rig, ransac);
 }
 
 // Looks for the points around a first pose, then for those around the keyframe that shares most of them.
 std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_from_world, KeyframeId place) {
   const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
-    return track(query.frame, predicted, query.rig, query.map,
-                 local_points(query.map, reference, query.options.local_keyframes), query.options.track);
+    return track(query.frame, predicted, query.rig, query.map, local_points(query.map, reference, kKeyframesOfPlace),
+                 kAroundFirstPose);
   };
   const std::optional<TrackedFrame> first = track_near(camera_from_world, place);
   if (!first || first->reference == place) return first;
@@ -58,13 +71,13 @@ std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_f
 Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   const LocaliseOptions& options = query.options;
   const std::vector<PointMatch> matches =
-      match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, options.matching);
+      match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, {});
   const int match_count = static_cast<int>(matches.size());
-  if (match_count < options.min_matches) return failed(Failure::too_few_matches, match_count, matches.size());
+  if (match_count < kMinMatches) return failed(Failure::too_few_matches, match_count, matches.size());
 
   const std::optional<AbsolutePose> pose = pose_from_matches(query, matches);
   const int agreeing = pose ? pose->inlier_count : 0;
-  if (agreeing < options.min_pose_inliers) {
+  if (agreeing < kMinPoseInliers) {
     return failed(Failure::geometry_disagrees, match_count, static_cast<std::size_t>(agreeing));
   }
   const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
@@ -92,7 +105,7 @@ Localisation better_of(const Localisation& best, const Localisation& other, cons
   }
   const auto& [more, fewer] = best.inliers >= other.inliers ? std::tie(best, other) : std::tie(other, best);
   const bool rivals =
-      fewer.inliers >= query.options.rival_share * more.inliers && contradict(*more.tracked, *fewer.tracked, query.map);
+      fewer.inliers >= kRivalShare * more.inliers && contradict(*more.tracked, *fewer.tracked, query.map);
   return rivals ? failed(Failure::ambiguous, more.matches, static_cast<std::size_t>(more.inliers)) : more;
 }
 
@@ -150,10 +163,9 @@ LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig,
 
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
                       const LocaliseOptions& options) {
-  if (frame.features->size() < options.min_features) return failed(Failure::too_few_features, 0, 0);
+  if (frame.features->size() < kMinFeatures) return failed(Failure::too_few_features, 0, 0);
   const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
-  return localise_at(frame, words, rig, map, index.vocabulary(), find_places(index, map, words, options.places),
-                     options);
+  return localise_at(frame, words, rig, map, index.vocabulary(), find_places(index, map, words, kPlaces), options);
 }
 
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,

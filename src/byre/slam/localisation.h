@@ -1,9 +1,7 @@
 #pragma once
 
-#include "byre/geometry/robust.h"
 #include "byre/map/map_view.h"
 #include "byre/place/place_index.h"
-#include "byre/slam/place_matching.h"
 #include "byre/slam/tracking.h"
 
 #include <cstdint>
@@ -28,20 +26,14 @@ enum class LocalisationFailure : std::uint8_t {
 
 std::string_view to_string(LocalisationFailure failure);
 
+inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are looked for around a first pose
+
 struct LocaliseOptions {
-  PlaceQueryOptions places{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
-  PlaceMatchOptions matching;
-  TrackOptions track;
-  int min_features = 50;
-  int min_matches = 10;      // before a pose is looked for
-  int min_pose_inliers = 8;  // of the matches, for a first pose
-  RansacOptions ransac{.max_iterations = 2000, .confidence = 0.999, .max_error = 6.0, .seed = 0};
-  int local_keyframes = 20;          // whose points are looked for around the first pose
-  int min_inliers = 40;              // at the end
-  double min_spread = 0.05;          // of the image's diagonal: deviation of the inliers where they spread least
-  double max_position_sigma = 0.02;  // over the median depth of the inliers
+  std::uint64_t seed = 0;            // seed of the poses that are tried from three points
+  int min_inliers = 40;              // inliers at the end
+  double min_spread = 0.05;          // deviation of the inliers where they spread least over the image's diagonal
+  double max_position_sigma = 0.02;  // position's sigma over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
-  double rival_share = 0.7;          // of the best place's inliers at a second place: the frame could be at either
 };
 
 struct Localisation {

@@ -1,6 +1,7 @@
 #include "byre/slam/localisation.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/place_matching.h"
 #include "byre/slam/place_scene.h"
 
 #include <algorithm>

@@ -13,6 +13,14 @@
 namespace byre {
 namespace {
 
+constexpr PlaceQueryOptions kPlaces{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
+// As strict as finding a frame from nothing, however that is set: a wrong loop spoils the map.
+constexpr LocaliseOptions kStrictness{};
+constexpr float kMinScoreShare = 0.5f;   // share of a covisible neighbour's similarity, below which a place is another
+constexpr double kMaxDriftTurn = 0.2;    // radians of drift
+constexpr double kMaxDriftDepths = 0.1;  // median depths of drift without stereo, in place of max_drift
+constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians, between two frames' drifts
+
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
 std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
   constexpr int kAll = 1 << 20;
@@ -48,17 +56,17 @@ void disturb(std::vector<PlaceCandidate>& places, const PlaceNoise& noise, Keyfr
 }
 
 std::vector<PlaceCandidate> find_old_places(const Map& map, const MapView& view, const PlaceIndex& index, KeyframeId id,
-                                            const LoopOptions& options) {
+                                            const LoopOptions& options, const PlaceNoise& noise) {
   const std::vector<Word>& words = map.find_keyframe(id)->words;
   const std::set<KeyframeId> surroundings = surroundings_of(map, id);
   const auto is_near = [&](KeyframeId other) {
     return other.number + options.min_gap > id.number || surroundings.contains(other);
   };
-  std::vector<PlaceCandidate> places = find_places(index, view, words, options.places, is_near);
+  std::vector<PlaceCandidate> places = find_places(index, view, words, kPlaces, is_near);
   if (places.empty()) return places;
-  disturb(places, options.noise, id);
+  disturb(places, noise, id);
   const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
-  std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < options.min_score_share * usual; });
+  std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < kMinScoreShare * usual; });
   return places;
 }
 
@@ -98,8 +106,8 @@ bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOp
   const double path = path_between(map, hypothesis.place, hypothesis.keyframe);
   const double scale_drift = std::abs(std::log(hypothesis.scale));
   const double on_top =
-      rig_of(map, keyframe).is_stereo() ? options.max_drift : options.max_drift_depths * hypothesis.median_depth;
-  return shift.turn <= options.max_drift_turn && scale_drift <= options.max_scale_drift &&
+      rig_of(map, keyframe).is_stereo() ? options.max_drift : kMaxDriftDepths * hypothesis.median_depth;
+  return shift.turn <= kMaxDriftTurn && scale_drift <= options.max_scale_drift &&
          shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
 }
 
@@ -123,14 +131,14 @@ std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyfr
 }  // namespace
 
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                        const LoopOptions& options) {
+                                        const LoopOptions& options, const PlaceNoise& noise) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
   if (keyframe == nullptr || keyframe->words.empty()) return std::nullopt;
   const MapView view(nullptr, map);
-  const std::vector<PlaceCandidate> places = find_old_places(map, view, index, newest, options);
+  const std::vector<PlaceCandidate> places = find_old_places(map, view, index, newest, options, noise);
   if (places.empty()) return std::nullopt;
   const Localisation found = localise_at(keyframe->frame, keyframe->words, view.rig_of(*keyframe, newest), view,
-                                         index.vocabulary(), places, options.localise);
+                                         index.vocabulary(), places, kStrictness);
   if (!found.tracked) return std::nullopt;
 
   LoopHypothesis hypothesis;
@@ -149,21 +157,20 @@ std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index,
 }
 
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
-                          const Rig& rig, const Map& map, const LoopOptions& options) {
+                          const Rig& rig, const Map& map) {
   LoopHypothesis checked = hypothesis;
   const MapView view(nullptr, map);
   const Pose predicted_camera_from_old = move_camera(drift_of(hypothesis), camera_from_world);
   const auto tracked =
-      track(frame, predicted_camera_from_old, rig, view,
-            local_points(view, hypothesis.place, options.localise.local_keyframes), options.localise.track);
-  if (!tracked || reason_to_doubt(*tracked, rig, view, options.localise) != LocalisationFailure::none) {
+      track(frame, predicted_camera_from_old, rig, view, local_points(view, hypothesis.place, kKeyframesOfPlace), {});
+  if (!tracked || reason_to_doubt(*tracked, rig, view, kStrictness) != LocalisationFailure::none) {
     ++checked.misses;
     return checked;
   }
   const Pose motion = tracked->camera_from_world * inverse(predicted_camera_from_old);
   const double depth = median_depth(*tracked, view);
-  const bool agrees = motion.translation.norm() <= options.max_disagreement * depth &&
-                      rotation_log(motion.rotation).norm() <= options.max_disagreement;
+  const bool agrees =
+      motion.translation.norm() <= kMaxDisagreement * depth && rotation_log(motion.rotation).norm() <= kMaxDisagreement;
   if (!agrees) {
     ++checked.misses;
     return checked;

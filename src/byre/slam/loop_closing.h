@@ -28,24 +28,18 @@ struct PlaceNoise {
   std::uint64_t seed = 0;      // 0: no noise at all
 };
 
+inline constexpr int kMinConfirmations = 3;  // frames, not only keyframes, that must find the place again
+inline constexpr int kMaxMisses = 3;         // frames without the place, from which it is given up
+// Frames between loops: until mapping knows of the one before, the next frames would find it again.
+inline constexpr int kMinFramesBetweenLoops = 10;
+
 struct LoopOptions {
-  PlaceQueryOptions places{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
-  LocaliseOptions localise;       // as strict as finding a frame from nothing
   std::uint32_t min_gap = 20;     // keyframes between a place and the newest: nearer ones are reached by tracking
-  float min_score_share = 0.5f;   // of the similarity of a covisible neighbour: less alike is not the same place
-  double max_drift_share = 0.03;  // of the path since the place was seen, by which the map may have drifted,
-  double max_drift = 0.3;         // and metres on top
-  double max_drift_turn = 0.2;    // radians
-  // Without stereo, where the unit of length is the map's own, and drifts too.
-  double max_drift_depths = 0.1;  // median depths, in place of max_drift
-  double max_scale_drift = 0.4;   // of the scale's logarithm; positions may then have drifted by as much of the path
-  double max_scale_sigma = 0.03;  // of its logarithm: less certain, and the loop would do harm
-  int min_scale_points = 15;      // seen in both parts of the map
-  PlaceNoise noise;
-  int min_confirmations = 3;       // frames, not only keyframes, that must find the place where the first one did
-  int min_frames_between = 10;     // loops: until mapping knows of the one before, the next frames would find it again
-  int max_misses = 3;              // frames that did not, before the place is given up
-  double max_disagreement = 0.01;  // of the median depth, between what two frames say of the drift
+  double max_drift_share = 0.03;  // drift of the map, as a share of the path since the place was seen
+  double max_drift = 0.3;         // metres of drift on top of that share
+  double max_scale_drift = 0.4;   // natural logarithm; positions may then have drifted by as much of the path
+  double max_scale_sigma = 0.03;  // natural logarithm: with more the loop would do harm
+  int min_scale_points = 15;      // points seen in both parts of the map, which tell the drift of scale
 };
 
 // A place that the newest keyframe seems to have come back to, without the map knowing it.
@@ -73,18 +67,18 @@ inline Similarity drift_of(const LoopHypothesis& hypothesis) {
 // fence repeats itself within metres, but a map does not drift by them within a few. Without stereo the scale drifts
 // too, and is told by the points that the keyframe sees in both parts.
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                        const LoopOptions& options);
+                                        const LoopOptions& options, const PlaceNoise& noise = {});
 
 // Looks for a later frame, tracked in the newer part of the map, in the older one. The hypothesis with one confirmation
 // or miss more, and with the drift as this frame saw it.
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
-                          const Rig& rig, const Map& map, const LoopOptions& options);
+                          const Rig& rig, const Map& map);
 
-inline bool is_confirmed(const LoopHypothesis& hypothesis, const LoopOptions& options) {
-  return hypothesis.confirmations >= options.min_confirmations;
+inline bool is_confirmed(const LoopHypothesis& hypothesis) {
+  return hypothesis.confirmations >= kMinConfirmations;
 }
-inline bool is_refuted(const LoopHypothesis& hypothesis, const LoopOptions& options) {
-  return hypothesis.misses >= options.max_misses;
+inline bool is_refuted(const LoopHypothesis& hypothesis) {
+  return hypothesis.misses >= kMaxMisses;
 }
 
 // The loop as an edge between two keyframes; empty when one of them has gone.

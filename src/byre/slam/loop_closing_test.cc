@@ -93,12 +93,12 @@ TEST_F(LoopInAMap, IsConfirmedByFramesThatFindItToo) {
   auto loop = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(loop);
   for (const std::size_t frame : {66u, 67u, 68u}) {
-    EXPECT_FALSE(is_confirmed(*loop, options_));
+    EXPECT_FALSE(is_confirmed(*loop));
     const Pose camera_from_world = true_camera_from_world(mission_, frame) * inverse(new_from_old_);
-    loop = check_loop(*loop, mission_.frames[frame], camera_from_world, mission_.rig, map_, options_);
+    loop = check_loop(*loop, mission_.frames[frame], camera_from_world, mission_.rig, map_);
   }
-  EXPECT_TRUE(is_confirmed(*loop, options_));
-  EXPECT_FALSE(is_refuted(*loop, options_));
+  EXPECT_TRUE(is_confirmed(*loop));
+  EXPECT_FALSE(is_refuted(*loop));
 }
 
 TEST_F(LoopInAMap, IsRefutedByFramesThatSayOtherwise) {
@@ -107,9 +107,9 @@ TEST_F(LoopInAMap, IsRefutedByFramesThatSayOtherwise) {
   const Pose displaced{Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};
   for (const std::size_t frame : {66u, 67u, 68u}) {
     const Pose camera_from_world = displaced * true_camera_from_world(mission_, frame) * inverse(new_from_old_);
-    loop = check_loop(*loop, mission_.frames[frame], camera_from_world, mission_.rig, map_, options_);
+    loop = check_loop(*loop, mission_.frames[frame], camera_from_world, mission_.rig, map_);
   }
-  EXPECT_TRUE(is_refuted(*loop, options_));
+  EXPECT_TRUE(is_refuted(*loop));
 }
 
 TEST_F(LoopInAMap, IsNotFoundWithoutWords) {

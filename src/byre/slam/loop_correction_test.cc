@@ -84,9 +84,9 @@ TEST_F(GrownLap, IsConfirmedByFramesThatFindItToo) {
   const Similarity drift = lap_.drift_at(lap_.newest());
   for (const std::size_t frame : {66u, 68u, 71u}) {
     const Pose camera_from_world = move_camera(drift, true_camera_from_world(lap_.mission, frame));
-    loop = check_loop(*loop, lap_.mission.frames[frame], camera_from_world, lap_.mission.rig, lap_.map, options_);
+    loop = check_loop(*loop, lap_.mission.frames[frame], camera_from_world, lap_.mission.rig, lap_.map);
   }
-  EXPECT_TRUE(is_confirmed(*loop, options_));
+  EXPECT_TRUE(is_confirmed(*loop));
 }
 
 TEST_F(GrownLap, IsNotBelievedBeyondTheDriftOfScaleThatIsAllowed) {

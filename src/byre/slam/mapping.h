@@ -7,19 +7,15 @@ namespace byre {
 
 struct MappingOptions {
   WindowOptions window;
-  int triangulation_neighbours = 6;         // online keyframes searched for new points
-  int fusion_neighbours = 10;               // online keyframes searched for points seen twice
-  int offline_neighbours = 4;               // offline keyframes searched for both
-  float search_radius = 3.0f;               // pixels at octave 0, about where a point of another keyframe should be
-  double pose_sigma = 0.5;                  // pixels that errors of the poses may add between two views
-  double max_relative_depth_sigma = 0.1;    // a new point's depth must be known to this share of itself
-  double max_squared_error_mono = 5.991;    // squared sigmas: 95 % of chi-square, two degrees of freedom
-  double max_squared_error_stereo = 7.815;  // 95 %, three degrees
-  double redundant_share = 0.9;             // of a keyframe's points offline or seen by three others: it is redundant
-  double offline_weight = 2.0;              // of a sighting of an offline point in bundle adjustment; others have 1
-  int first_bundle_iterations = 5;          // before outliers are taken out
-  int second_bundle_iterations = 8;         // after
-  int bundle_threads = 1;                   // one keeps the result reproducible
+  int triangulation_neighbours = 6;       // online keyframes searched for new points
+  int fusion_neighbours = 10;             // online keyframes searched for points seen twice
+  float search_radius = 3.0f;             // pixels at octave 0, about where a point of another keyframe should be
+  double pose_sigma = 0.5;                // pixels that errors of the poses may add between two views
+  double max_relative_depth_sigma = 0.1;  // a new point's depth must be known to this share of itself
+  double redundant_share = 0.9;           // of a keyframe's points offline or seen by three others: it is redundant
+  double offline_weight = 2.0;            // of a sighting of an offline point in bundle adjustment; others have 1
+  int first_bundle_iterations = 5;        // before outliers are taken out
+  int second_bundle_iterations = 8;       // after
 };
 
 // One mapping job: new points between the new keyframes and their neighbours, online and offline, points seen twice

@@ -1,4 +1,5 @@
 #include "byre/optimise/pose_refinement.h"
+#include "byre/optimise/squared_error.h"
 #include "byre/slam/mapping_steps.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ double tolerance_of(const BundleObservation& observation) {
 
 bool is_outlier(const BundleObservation& observation, bool of_offline_point, double squared_error,
                 const MappingOptions& options) {
-  const double gate = observation.is_stereo() ? options.max_squared_error_stereo : options.max_squared_error_mono;
+  const double gate = observation.is_stereo() ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
   return !(squared_error <= gate * (of_offline_point ? tolerance_of(observation) : 1.0));
 }
 
@@ -131,7 +132,6 @@ Matrix6 anchor_covariance(const MapWindow& window) {
 
 void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop) {
   BundleOptions bundle_options;
-  bundle_options.threads = options.bundle_threads;
   bundle_options.should_stop = should_stop;
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;

@@ -116,8 +116,8 @@ Sighting measure_in_window(const MapWindow& window, int point, int keyframe, int
 }
 
 void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& options) {
-  fuse_between(window, keyframe,
-               nearest_neighbours(window, keyframe, options.fusion_neighbours, options.offline_neighbours), options);
+  fuse_between(window, keyframe, nearest_neighbours(window, keyframe, options.fusion_neighbours, kOfflineNeighbours),
+               options);
 }
 
 void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options) {

@@ -9,6 +9,8 @@
 // The steps of extend_map, each on a window. Keyframes and points are named by their index in the window.
 namespace byre {
 
+inline constexpr int kOfflineNeighbours = 4;  // offline keyframes searched for new points, and for points seen twice
+
 inline CameraView view_of(const MapWindow& window, int keyframe) {
   const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
   return {*entry.keyframe.frame.features, window.rig_of(entry), entry.keyframe.camera_from_world};

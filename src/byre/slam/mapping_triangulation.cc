@@ -1,5 +1,6 @@
 #include "byre/features/descriptor.h"
 #include "byre/geometry/triangulation.h"
+#include "byre/optimise/squared_error.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/mapping_steps.h"
 
@@ -101,8 +102,8 @@ std::optional<TriangulatedPoint> triangulate_match(const CameraView& first, int 
   if (!point) return std::nullopt;
   const double first_sigma = reference_sigma(first.features, first_feature);
   const double allowed_sigma = std::hypot(static_cast<double>(measured.sigma), options.pose_sigma);
-  if (!agrees(first, *point, first_keypoint.pixel, allowed_sigma, options.max_squared_error_mono) ||
-      !agrees(second, *point, measured.pixel, allowed_sigma, options.max_squared_error_mono)) {
+  if (!agrees(first, *point, first_keypoint.pixel, allowed_sigma, kMaxSquaredErrorMono) ||
+      !agrees(second, *point, measured.pixel, allowed_sigma, kMaxSquaredErrorMono)) {
     return std::nullopt;
   }
   const Eigen::Matrix3d covariance =
@@ -145,8 +146,7 @@ void triangulate_pair(MapWindow& window, int first, int second, const MappingOpt
 }  // namespace
 
 void triangulate_new_points(MapWindow& window, int keyframe, const MappingOptions& options) {
-  for (const int other :
-       nearest_neighbours(window, keyframe, options.triangulation_neighbours, options.offline_neighbours)) {
+  for (const int other : nearest_neighbours(window, keyframe, options.triangulation_neighbours, kOfflineNeighbours)) {
     triangulate_pair(window, keyframe, other, options);
   }
 }

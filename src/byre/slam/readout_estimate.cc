@@ -10,6 +10,17 @@
 namespace byre {
 namespace {
 
+constexpr int kFramesOfBlock = 8;  // frames that err alike
+constexpr int kMinBlocks = 4;      // blocks that are asked at least
+// Seconds and, of what is measured, sigmas of the first change. What a calibration that errs looks like, to a robot
+// that only drives ahead or in the first seconds, is less.
+constexpr double kMinFirst = 0.006;
+constexpr double kMinEffect = 0.2;
+constexpr double kMinFurther = 0.001;    // seconds of a change after the first
+constexpr double kMinSigmas = 5.0;       // sigmas of a change
+constexpr double kLeastReadout = 0.002;  // seconds of the shortest time that is seen
+constexpr double kMaxReadout = 0.1;      // seconds of the longest time
+
 constexpr double kHuberWidth = 2.0;       // sigmas
 constexpr double kSystematicSigma = 0.2;  // pixels, of what neither noise nor the shutter explains
 
@@ -113,24 +124,23 @@ double ReadoutEstimator::Blocks::effect() const {
 }
 
 bool ReadoutEstimator::is_sure() const {
-  if (blocks_.count < options_.min_blocks || blocks_.sum.information <= 0.0) return false;
+  if (blocks_.count < kMinBlocks || blocks_.sum.information <= 0.0) return false;
   const double size = std::abs(blocks_.change());
   const bool is_first = readout_time_ == 0.0;
-  return size > (is_first ? options_.min_first : options_.min_further) &&
-         (!is_first || blocks_.effect() > options_.min_effect) && size > options_.min_sigmas * blocks_.sigma() &&
-         std::abs(readout_time_ + blocks_.change()) <= options_.max_readout;
+  return size > (is_first ? kMinFirst : kMinFurther) && (!is_first || blocks_.effect() > kMinEffect) &&
+         size > kMinSigmas * blocks_.sigma() && std::abs(readout_time_ + blocks_.change()) <= kMaxReadout;
 }
 
 void ReadoutEstimator::note(const ReadoutEvidence& evidence) {
   if (evidence.information <= 0.0) return;
   block_ += evidence;
-  if (++frames_in_block_ < options_.frames_of_block) return;
+  if (++frames_in_block_ < kFramesOfBlock) return;
   blocks_.add(block_);
   block_ = {};
   frames_in_block_ = 0;
   if (!is_sure()) return;
   const double changed = readout_time_ + blocks_.change();
-  readout_time_ = std::abs(changed) < options_.least ? 0.0 : changed;
+  readout_time_ = std::abs(changed) < kLeastReadout ? 0.0 : changed;
   blocks_ = {};
 }
 

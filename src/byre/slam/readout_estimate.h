@@ -21,27 +21,13 @@ struct ReadoutEvidence {
 ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                                  const Vector6& velocity);
 
-struct ReadoutOptions {
-  int frames_of_block = 8;  // that err alike
-  int min_blocks = 4;       // that are asked at least
-  // Of the first change, seconds and sigmas of what is measured: what a calibration that errs looks like, to a robot
-  // that only drives ahead or in the first seconds, is less.
-  double min_first = 0.006;
-  double min_effect = 0.2;
-  double min_further = 0.001;  // seconds, of changes after the first
-  double min_sigmas = 5.0;     // of a change
-  double least = 0.002;        // seconds: of a shorter time nothing is seen
-  double max_readout = 0.1;    // seconds
-};
-
 // Finds out how long a rolling shutter takes to read an image, from frame to frame. What errs otherwise than in
 // proportion to the camera's motion, such as a calibration, averages out as the camera turns hither and thither: how
 // sure the sum is comes from how blocks of frames differ. A map that was made by a wrong time takes up part of what it
 // does, so that the right one is come to in several changes.
 class ReadoutEstimator {
  public:
-  ReadoutEstimator(double readout_time, const ReadoutOptions& options)
-      : options_(options), readout_time_(readout_time) {}
+  explicit ReadoutEstimator(double readout_time) : readout_time_(readout_time) {}
 
   double readout_time() const { return readout_time_; }  // seconds
 
@@ -65,7 +51,6 @@ class ReadoutEstimator {
 
   bool is_sure() const;
 
-  ReadoutOptions options_;  // constant after construction
   double readout_time_;
   ReadoutEvidence block_;  // so far
   int frames_in_block_ = 0;

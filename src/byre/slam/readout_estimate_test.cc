@@ -17,40 +17,40 @@ double after(ReadoutEstimator& estimator, double change, int frames) {
 }
 
 TEST(ReadoutEstimator, ComesToWhatFramesSay) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   EXPECT_NEAR(after(estimator, 0.02, 32), 0.02, 1e-9);
 }
 
 TEST(ReadoutEstimator, WaitsForEnoughFrames) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.02, 31), 0.0);
 }
 
 TEST(ReadoutEstimator, TakesLittleForAnErrorOfTheCalibration) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.004, 400), 0.0);
 }
 
 TEST(ReadoutEstimator, BelievesNothingThatHardlyShows) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   constexpr int kManyPoints = 30000;
   for (int i = 0; i < 400; ++i) estimator.note({kInformation, kInformation * 0.02, kManyPoints});
   EXPECT_EQ(estimator.readout_time(), 0.0);
 }
 
 TEST(ReadoutEstimator, RefinesWhatItHasFound) {
-  ReadoutEstimator estimator(0.02, {});
+  ReadoutEstimator estimator(0.02);
   EXPECT_EQ(after(estimator, 0.0005, 400), 0.02);
   EXPECT_GT(after(estimator, 0.004, 64 + 400), 0.021);
 }
 
 TEST(ReadoutEstimator, GivesUpWhatComesToNothing) {
-  ReadoutEstimator estimator(0.008, {});
+  ReadoutEstimator estimator(0.008);
   EXPECT_EQ(after(estimator, -0.0075, 32), 0.0);
 }
 
 TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   for (int i = 0; i < 400; ++i) {
     const double change = i / 8 % 2 == 0 ? 0.1 : -0.08;  // 0.01 on the whole, as an error that motion does not cause
     estimator.note({kInformation, kInformation * change, kPoints});
@@ -59,7 +59,7 @@ TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
 }
 
 TEST(ReadoutEstimator, BelievesNoCameraToBeThatSlow) {
-  ReadoutEstimator estimator(0.0, {});
+  ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.2, 400), 0.0);
 }
 

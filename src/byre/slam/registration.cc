@@ -6,6 +6,9 @@
 namespace byre {
 namespace {
 
+constexpr double kMaxDisagreement =
+    0.01;  // share of the median depth, and radians, between two frames that say the same
+
 struct PathKeyframe {
   OnlineKeyframeId id;
   Pose camera_from_world;
@@ -57,7 +60,7 @@ std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHy
   const double shift =
       (hypothesis->offline_from_online * camera_in_online - offline_from_online * camera_in_online).norm();
   const double turn = angle_between(hypothesis->offline_from_online.rotation, offline_from_online.rotation);
-  if (shift <= options.max_disagreement * median_depth && turn <= options.max_disagreement) {
+  if (shift <= kMaxDisagreement * median_depth && turn <= kMaxDisagreement) {
     ++checked.confirmations;
     checked.offline_from_online = offline_from_online;
     return checked;

@@ -9,15 +9,15 @@
 namespace byre {
 
 struct RegistrationOptions {
-  int confirmations = 3;           // frames that must say the same before it is believed,
-  int confirmations_of_jump = 10;  // or when it means that the robot was carried, or went faster than it can
-  double proving_share = 0.06;     // of the offline points in view: what so many frames must see before a pose found
-                                   // from nothing is trusted; fewer agree by chance where a building repeats itself,
-  double without_proof = 1.0;      // unless one beyond doubt was lost no longer than these seconds ago
-  double max_speed = 3.0;          // metres a second that the robot may move
-  double max_disagreement = 0.01;  // of the median depth, and radians, between what two frames say
-  int max_misses = 2;              // frames that say something else, before it is given up
+  int confirmations = 3;        // frames that must say the same before it is believed
+  double proving_share = 0.06;  // share of the offline points in view that so many frames must see before a pose found
+                                // from nothing is trusted: fewer agree by chance where a building repeats itself
+  double max_speed = 3.0;       // metres a second, highest speed of the robot
+  int max_misses = 2;           // frames that say something else, before it is given up
 };
+
+inline constexpr int kConfirmationsOfJump = 10;  // frames, where the robot was carried or went faster than it can
+inline constexpr double kWithoutProof = 1.0;     // seconds after a pose beyond doubt in which none needs proof
 
 // Where the online map lies in the offline one, as several frames have it.
 struct RegistrationHypothesis {

@@ -17,6 +17,12 @@
 namespace byre {
 namespace {
 
+constexpr int kMinKeyframes = 6;  // keyframes that tell anything
+constexpr int kIterations = 12;   // iterations of bundle adjustment
+// Common error of measurements in real images, which looks like a wrong focal length, whatever their number. In sigmas
+// of a good calibration.
+constexpr double kFocalSigmas = 0.25;
+
 constexpr double kHuberWidth = 2.0;  // sigmas
 // The disparities of one corner in many keyframes, and those of its neighbours, are measured on the same surface and
 // err alike: together they tell less than their sigmas say.
@@ -206,7 +212,7 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
                                                  const SelfCalibrationOptions& options,
                                                  const std::function<bool()>& should_stop) {
   const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
-  if (static_cast<int>(keyframes.size()) < options.min_keyframes) return std::nullopt;
+  if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
   const CalibrationSensitivity sensitivity(state.present());
   const Knowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas), -state.change};
   const Knowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, sensitivity), prior);
@@ -214,7 +220,7 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   BundleProblem problem = bundle_of(whole, keyframes);
   problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
   BundleOptions bundle_options;
-  bundle_options.max_iterations = options.iterations;
+  bundle_options.max_iterations = kIterations;
   bundle_options.huber_width = kHuberWidth;
   bundle_options.should_stop = should_stop;
   const BundleResult solved = bundle_adjust(problem, bundle_options);
@@ -224,9 +230,9 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   if (!information) return std::nullopt;
   Learned of_motion = difference({*information, solved.calibration_change}, with_rows);
   of_motion /= variance_factor(problem, solved.squared_errors);
-  const Knowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(options.focal_sigmas)));
-  RefinedCalibration result = determined_calibration(
-      state.given, posterior.information, state.change + posterior.expected, options.prior_sigmas, options.min_gain);
+  const Knowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
+  RefinedCalibration result = determined_calibration(state.given, posterior.information,
+                                                     state.change + posterior.expected, options.prior_sigmas);
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);

@@ -10,14 +10,7 @@ namespace byre {
 
 struct SelfCalibrationOptions {
   int max_keyframes = 250;    // those that take part: the time grows with their cube
-  int min_keyframes = 6;      // fewer do not tell
   double prior_sigmas = 2.0;  // how far off a calibration is taken to be at first, in sigmas of a good one
-  // A direction among the parameters moves only when the images tell it this much better than was known before.
-  double min_gain = 2.0;
-  // By which measurements in real images err together as a wrong focal length would, whatever their number. In sigmas
-  // of a good calibration.
-  double focal_sigmas = 0.25;
-  int iterations = 12;
 };
 
 // Estimates how the calibration errs from a whole map of what one rig saw: bundle adjustment in which the calibration

@@ -6,6 +6,9 @@
 namespace byre {
 namespace {
 
+constexpr std::size_t kNeighbours = 6;  // nearest judged points, which tell whether a point moved with others
+constexpr double kMinShare = 0.5;       // share of those that have moved too
+
 struct JudgedPoint {
   Eigen::Vector3d position_in_world;
   bool moved = false;
@@ -21,14 +24,14 @@ std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const Point
 }
 
 // Of the nearest judged points about one of them, the share that has moved.
-double share_around(const std::vector<JudgedPoint>& judged, std::size_t point, std::size_t neighbours) {
+double share_around(const std::vector<JudgedPoint>& judged, std::size_t point) {
   std::vector<std::pair<double, bool>> others;  // squared metres, moved
   others.reserve(judged.size());
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (i == point) continue;
     others.push_back({(judged[i].position_in_world - judged[point].position_in_world).squaredNorm(), judged[i].moved});
   }
-  const std::size_t count = std::min(neighbours, others.size());
+  const std::size_t count = std::min(kNeighbours, others.size());
   if (count == 0) return 0.0;
   std::ranges::nth_element(others, others.begin() + static_cast<std::ptrdiff_t>(count - 1));
   const auto moved = std::count_if(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count),
@@ -38,13 +41,13 @@ double share_around(const std::vector<JudgedPoint>& judged, std::size_t point, s
 
 }  // namespace
 
-std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed, std::span<const PointId> moved,
-                                    const SuspensionOptions& options) {
+std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                    std::span<const PointId> moved) {
   if (moved.empty()) return {};  // as in most frames
   const std::vector<JudgedPoint> judged = judged_points(offline, agreed, moved);
   std::vector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (share_around(judged, i, static_cast<std::size_t>(options.neighbours)) >= options.min_share) {
+    if (share_around(judged, i) >= kMinShare) {
       together.push_back(moved[i]);
     }
   }

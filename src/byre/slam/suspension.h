@@ -11,15 +11,13 @@ namespace byre {
 
 struct SuspensionOptions {
   int frames = 8;            // by which a point was found elsewhere more often than in its place
-  int neighbours = 6;        // nearest judged points that tell whether it moved with others,
-  double min_share = 0.5;    // of which so many have moved too
   int frames_to_return = 3;  // in which a suspended point was found in its place again, one after the other
 };
 
 // Of the points that were found elsewhere, those that lie among others of them: a thing that was moved is a cluster in
 // space, and a point that disagrees alone, among neighbours in place, was mistaken for another. All ascending.
-std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed, std::span<const PointId> moved,
-                                    const SuspensionOptions& options);
+std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                    std::span<const PointId> moved);
 
 // Offline points that are not where the map has them: what they belong to was moved. They are left out until they are
 // found in their places again; the map itself stays as it is.

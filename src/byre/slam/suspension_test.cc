@@ -68,14 +68,14 @@ TEST(MovedTogether, KeepsClustersAndNoPointThatDisagreesAlone) {
     const bool alone = id.number == 5 || id.number == 12;
     (in_thing || alone ? moved : agreed).push_back(id);
   }
-  const std::vector<PointId> together = moved_together(map, agreed, moved, {});
+  const std::vector<PointId> together = moved_together(map, agreed, moved);
   EXPECT_THAT(together, testing::SizeIs(testing::Ge(9U)));
   EXPECT_THAT(together, testing::Each(testing::Field(&PointId::number, testing::Ge(20U))));
 }
 
 TEST(MovedTogether, FindsNoThingInOnePoint) {
   const Map map = row_of_points(1);
-  EXPECT_THAT(moved_together(map, {}, map.point_ids(), {}), testing::IsEmpty());
+  EXPECT_THAT(moved_together(map, {}, map.point_ids()), testing::IsEmpty());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
                                               const MapView& map, const std::vector<GuidedMatch>& matches,
                                               const TrackOptions& options) {
   const MeasuredPoints measured = measure_matches(frame, camera_from_world, rig, map, matches);
-  const auto refined = refine_pose(camera_from_world, rig, measured.observations, options.refinement);
+  const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
   std::vector<TrackedFeature> inliers = inliers_of(*refined, measured);
   const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
@@ -70,8 +70,7 @@ std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_came
   if (!first) return std::nullopt;
 
   const std::vector<ExpectedPoint> expected = project_points(map, candidates, *first, rig);
-  const std::vector<GuidedMatch> matches =
-      match_expected(*frame.features, map, expected, {options.narrow_radius, 90, 0.9f});
+  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f});
   auto tracked = refine_on_matches(frame, *first, rig, map, matches, options);
   if (tracked) tracked->expected = static_cast<int>(expected.size());
   return tracked;

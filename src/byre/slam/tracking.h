@@ -49,14 +49,10 @@ enum class OfflinePolicy : std::uint8_t { first, together };
 
 struct TrackOptions {
   float search_radius = 12.0f;  // pixels at octave 0, about the predicted pixel
-  float wide_radius = 40.0f;    // pixels, when the first search finds too little
-  float narrow_radius = 4.0f;   // pixels, once a first pose is known
+  float wide_radius = 40.0f;    // pixels at octave 0, when the first search finds too little
   int min_inliers = 25;
-  double min_inlier_share = 0.5;  // of the matches; fewer mean that the prediction led astray
   OfflinePolicy offline_policy = OfflinePolicy::first;
-  double offline_weight = 2.0;  // of an offline point's measurement, against 1 of an online one's
-  PoseRefinementOptions refinement;
-  bool weigh_focal_lengths = false;  // whether offline points are asked what they make of others, see FocalCheck
+  double offline_weight = 2.0;  // weight of a measured offline point, against 1 of an online one
 };
 
 // Points seen by a keyframe and by those most covisible with it; ascending, bounded whatever the map's size.

@@ -6,6 +6,8 @@
 namespace byre {
 namespace {
 
+constexpr double kMinInlierShare = 0.5;  // share of the matches; with fewer the prediction led astray
+
 PoseObservation observation_of(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
   const StereoPixel measured(pixel.pixel.x(), pixel.pixel.y(), keypoint.disparity);
   return pose_observation(point, measured, pixel.sigma, keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0);
@@ -59,8 +61,8 @@ MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world
 }
 
 PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                               double max_variance_factor, const PoseRefinementOptions& options) {
-  PoseRefinementOptions at_pose = options;
+                               double max_variance_factor) {
+  PoseRefinementOptions at_pose;
   at_pose.rounds = 0;
   at_pose.max_variance_factor = max_variance_factor;
   PartedPoints parted;
@@ -78,7 +80,7 @@ PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, co
 
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
   return refined.inlier_count >= options.min_inliers &&
-         refined.inlier_count >= options.min_inlier_share * static_cast<double>(matches);
+         refined.inlier_count >= kMinInlierShare * static_cast<double>(matches);
 }
 
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
@@ -91,7 +93,7 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
     const Keypoint& keypoint = frame.features->keypoint(match.feature);
     observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
   }
-  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, options.refinement);
+  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
   return refined->camera_from_world;
 }

@@ -11,6 +11,8 @@
 // The steps that tracking on one map and on two have in common.
 namespace byre {
 
+inline constexpr float kNarrowRadius = 4.0f;  // pixels at octave 0, about where a first pose expects a point
+
 PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
                                  double disparity_sigma);
 
@@ -32,7 +34,7 @@ struct PartedPoints {
 
 // max_variance_factor: by which their errors may exceed their sigmas, as they do for the points that gave the pose.
 PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                               double max_variance_factor, const PoseRefinementOptions& options);
+                               double max_variance_factor);
 
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);

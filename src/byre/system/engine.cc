@@ -84,18 +84,18 @@ Engine::Processed Engine::process(const ImageFrame& images, const std::optional<
   return processed;
 }
 
-Finishing Engine::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
+Finishing Engine::finish_map(const FinishHooks& hooks) {
   const Stopwatch watch;
   Finishing finishing;
-  finishing.report = session_.finish_map(options, hooks);
+  finishing.report = session_.finish_map(hooks);
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   return finishing;
 }
 
-double Engine::finish_mission(const FinishOptions& options, const FinishHooks& hooks) {
+double Engine::finish_mission(const FinishHooks& hooks) {
   const Stopwatch watch;
-  session_.finish_mission(options, hooks);
+  session_.finish_mission(hooks);
   return watch.seconds();
 }
 

@@ -36,7 +36,6 @@ struct EngineOptions {
   std::optional<RefinedCalibration> known;  // what the cameras are known to be by now, of which the readout time alone
                                             // is refined; empty: what the offline map knows, if anything
   SelfCalibrationOptions self_calibration;
-  FinishOptions finish;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
@@ -83,9 +82,8 @@ class Engine {
   void hurry() { session_.hurry(); }  // see Session
   void finish() { session_.finish(); }
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
-  Finishing finish_map(const FinishOptions& options, const FinishHooks& hooks);
-  double finish_mission(const FinishOptions& options,
-                        const FinishHooks& hooks);  // likewise, on one; wall time, seconds
+  Finishing finish_map(const FinishHooks& hooks);
+  double finish_mission(const FinishHooks& hooks);  // likewise, on one; wall time, seconds
 
   const Rig& rig() const { return extractor_.rig(); }
   const Map& online() const { return session_.map().online(); }

@@ -218,9 +218,9 @@ void Slam::finish(const std::function<bool()>& should_stop) {
   parts_->engine.finish();
   if (hooks.should_stop() || !parts_->has_mapped()) return;
   if (parts_->offline) {
-    parts_->engine.finish_mission({}, hooks);
+    parts_->engine.finish_mission(hooks);
   } else {
-    parts_->engine.finish_map({}, hooks);
+    parts_->engine.finish_map(hooks);
   }
 }
 

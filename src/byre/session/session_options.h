@@ -1,0 +1,45 @@
+#pragma once
+
+#include "byre/image_condition.h"
+#include "byre/session/mission.h"
+#include "byre/slam/finishing.h"
+#include "byre/slam/health.h"
+#include "byre/slam/hindsight.h"
+#include "byre/slam/initialisation.h"
+#include "byre/slam/keyframes.h"
+#include "byre/slam/localisation.h"
+#include "byre/slam/loop_closing.h"
+#include "byre/slam/mapping.h"
+#include "byre/slam/state.h"
+#include "byre/slam/tracking.h"
+
+namespace byre {
+
+// Each leaf stands here once, and is handed to every function that needs it.
+struct SessionOptions {
+  int recording = 0;               // which one the keyframes made are of, see Keyframe::recording
+  bool map_online = true;          // false: track on the offline map alone
+  int min_initial_points = 100;    // stereo points of the first keyframe
+  int local_keyframes = 15;        // of either map, whose points are looked for in a frame
+  double min_kept_share = 0.5;     // of the last frame's inliers; fewer, and the pose is sought without prediction too
+  double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
+  MonocularStartOptions monocular_start;  // of a rig without a baseline
+  TrackOptions track;
+  KeyframeOptions keyframes;
+  WindowOptions window;                                                         // of local mapping
+  double max_relative_depth_sigma = MappingOptions{}.max_relative_depth_sigma;  // see there
+  double redundant_share = MappingOptions{}.redundant_share;                    // see there
+  LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
+  LoopOptions loops;
+  MissionOptions mission;
+  HealthOptions health;
+  ImageConditionOptions image;
+  StateOptions state;
+  HindsightOptions hindsight;
+};
+
+// What a session maps with, its offline weight that of tracking.
+MappingOptions mapping_options(const SessionOptions& options);
+FinishOptions finish_options(const SessionOptions& options);
+
+}  // namespace byre
