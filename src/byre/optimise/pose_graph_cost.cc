@@ -1,5 +1,7 @@
 #include "byre/optimise/pose_graph_cost.h"
 
+#include "byre/optimise/rotation_jacobian.h"
+
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -34,16 +36,6 @@ Matrix7 whitening_of(const PoseGraphEdge& edge, bool scale_has_a_say) {
   whitening.topLeftCorner<6, 6>() = square_root(edge.information);
   if (scale_has_a_say) whitening(6, 6) = 1.0 / edge.scale_sigma;
   return whitening;
-}
-
-// d(rotation_log(rotation_exp(delta) * rotation)) / d(delta), from the rotation's own logarithm (Chirikjian 2012,
-// eq. 10.86).
-Eigen::Matrix3d inverse_left_jacobian(const Eigen::Vector3d& logarithm) {
-  const double angle = logarithm.norm();
-  const double half = 0.5 * angle;
-  const double factor = angle < 1e-3 ? 1.0 / 12.0 : (1.0 - half / std::tan(half)) / (angle * angle);
-  const Eigen::Matrix3d cross = skew(logarithm);
-  return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
 }
 
 // Writes the derivatives by one node's blocks, those that are asked for, in Ceres' order of rows.

@@ -3,6 +3,7 @@
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
+#include "byre/optimise/rotation_jacobian.h"
 #include "byre/optimise/squared_error.h"
 
 #include <algorithm>
@@ -47,7 +48,35 @@ struct Expansion {
     descent.head<3>() += camera_descent;
     descent.tail<3>() += point_in_camera.cross(camera_descent);
   }
+
+  Expansion& operator+=(const Expansion& other) {
+    cost += other.cost;
+    normal_matrix += other.normal_matrix;
+    descent += other.descent;
+    return *this;
+  }
 };
+
+// A prior as the solver reads it.
+struct KnownPose {
+  Pose world_from_camera;
+  Matrix6 information;
+};
+
+std::optional<KnownPose> known_pose(const std::optional<PosePrior>& prior) {
+  if (!prior) return std::nullopt;
+  return KnownPose{inverse(prior->camera_from_world), prior->covariance.inverse()};
+}
+
+// Its share of the cost: a residual of six numbers, log_pose(camera_from_world * world_from_camera).
+Expansion expand(const KnownPose& known, const Pose& camera_from_world) {
+  const Vector6 error = log_pose(camera_from_world * known.world_from_camera);
+  Matrix6 jacobian = Matrix6::Identity();
+  jacobian.topRightCorner<3, 3>() = -skew(error.head<3>());
+  jacobian.bottomRightCorner<3, 3>() = inverse_left_jacobian(error.tail<3>());
+  const Matrix6 gain = jacobian.transpose() * known.information;
+  return {error.dot(known.information * error), gain * jacobian, -gain * error};
+}
 
 // The measurement's plus the point's, projected; square pixels.
 Eigen::Matrix3d residual_covariance(const PoseObservation& observation, const StereoJacobian& by_point) {
@@ -129,7 +158,7 @@ int count_inliers(const std::vector<Sighting>& sightings) {
   return static_cast<int>(std::ranges::count(sightings, true, &Sighting::inlier));
 }
 
-// Over the inliers.
+// The inliers' share.
 Expansion expand(const std::vector<Sighting>& sightings, const Rig& rig, const Pose& camera_from_world,
                  double huber_width) {
   constexpr double kSquaredErrorBehind = 1e4;  // what a step that moves a point behind the camera pays for it
@@ -154,18 +183,25 @@ Expansion expand(const std::vector<Sighting>& sightings, const Rig& rig, const P
   return sum;
 }
 
+Expansion expand(const std::vector<Sighting>& sightings, const std::optional<KnownPose>& known, const Rig& rig,
+                 const Pose& camera_from_world, double huber_width) {
+  Expansion sum = expand(sightings, rig, camera_from_world, huber_width);
+  if (known) sum += expand(*known, camera_from_world);
+  return sum;
+}
+
 // Gauss-Newton, damped (Levenberg-Marquardt) after a step that led uphill.
-Pose descend(const std::vector<Sighting>& sightings, const Rig& rig, Pose camera_from_world,
-             const PoseRefinementOptions& options, double huber_width) {
+Pose descend(const std::vector<Sighting>& sightings, const std::optional<KnownPose>& known, const Rig& rig,
+             Pose camera_from_world, const PoseRefinementOptions& options, double huber_width) {
   constexpr double kConverged = 1e-4;  // squared sigmas
   double damping = 0.0;
-  Expansion here = expand(sightings, rig, camera_from_world, huber_width);
+  Expansion here = expand(sightings, known, rig, camera_from_world, huber_width);
   for (int i = 0; i < options.iterations_per_round; ++i) {
     Matrix6 damped = here.normal_matrix;
     damped.diagonal() *= 1.0 + damping;
     const Vector6 delta = damped.ldlt().solve(here.descent);
     const Pose candidate = exp_pose(delta) * camera_from_world;
-    const Expansion there = expand(sightings, rig, candidate, huber_width);
+    const Expansion there = expand(sightings, known, rig, candidate, huber_width);
     if (!(there.cost <= here.cost)) {
       damping = std::max(10.0 * damping, 1e-2);
       continue;
@@ -255,15 +291,17 @@ Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_nor
   return sigma * sigma * inverse_normal_matrix * pushes * inverse_normal_matrix;
 }
 
-// Empty where the inliers leave a direction open.
-std::optional<PoseRefinement> with_covariance(PoseRefinement refined, std::vector<Sighting> sightings, const Rig& rig,
+// Empty where the inliers, and the prior, leave a direction open.
+std::optional<PoseRefinement> with_covariance(PoseRefinement refined, std::vector<Sighting> sightings,
+                                              const std::optional<KnownPose>& known, const Rig& rig,
                                               const PoseRefinementOptions& options) {
   const Pose& pose = refined.camera_from_world;
   const double huber_width = options.huber_width * std::sqrt(refined.variance_factor);
-  const std::optional<Matrix6> inverse = inverse_of(expand(sightings, rig, pose, huber_width).normal_matrix);
+  const std::optional<Matrix6> inverse = inverse_of(expand(sightings, known, rig, pose, huber_width).normal_matrix);
   if (!inverse) return std::nullopt;
   const Regions regions = gather_regions(sightings, rig, pose, huber_width);
   refined.covariance = refined.variance_factor * covariance_at(std::move(sightings), rig, pose, *inverse, huber_width);
+  if (known) refined.covariance += *inverse * expand(*known, pose).normal_matrix * *inverse;
   if (options.systematic_sigma <= 0.0) return refined;
   refined.systematic_sigma = systematic_sigma_of(regions, refined.variance_factor, options.systematic_sigma);
   refined.covariance += systematic_covariance(regions, *inverse, refined.systematic_sigma);
@@ -274,8 +312,9 @@ std::optional<PoseRefinement> with_covariance(PoseRefinement refined, std::vecto
 
 std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_world, const Rig& rig,
                                           std::span<const PoseObservation> observations,
-                                          const PoseRefinementOptions& options) {
+                                          const PoseRefinementOptions& options, const std::optional<PosePrior>& prior) {
   constexpr int kMinInliers = 4;
+  const std::optional<KnownPose> known = known_pose(prior);
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
   const auto sight_from = [&](const Pose& pose) { return sight(observations, rig, pose, options.systematic_sigma); };
@@ -287,7 +326,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
     choose_inliers(sightings, options, factor);
     if (count_inliers(sightings) < kMinInliers) return std::nullopt;
     result.camera_from_world =
-        descend(sightings, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
+        descend(sightings, known, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
     sightings = sight_from(result.camera_from_world);
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
@@ -295,7 +334,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   result.inlier_count = count_inliers(sightings);
   if (result.inlier_count < kMinInliers) return std::nullopt;
   for (const Sighting& sighting : sightings) result.inliers.push_back(sighting.inlier);
-  return with_covariance(std::move(result), std::move(sightings), rig, options);
+  return with_covariance(std::move(result), std::move(sightings), known, rig, options);
 }
 
 }  // namespace byre

@@ -42,14 +42,25 @@ struct PoseRefinement {
   double systematic_sigma = 0.0;  // pixels, as regions of the image have it in common; see PoseRefinementOptions
 };
 
+// What is known of a pose besides what the frame sees, from wheels or a gyroscope say: the error of the pose it states.
+struct PosePrior {
+  Pose camera_from_world;
+  Matrix6 covariance;  // of delta in exp_pose(delta) * camera_from_world; positive definite
+};
+
 // Gauss-Newton on one pose against points of known uncertainty: each residual is whitened by the sum of the
 // measurement's covariance and the point's, projected. Weights decide neither who is an inlier nor make the covariance
 // smaller. What the inliers of a region of the image have in common, beyond noise, is taken for systematic: it adds to
 // the covariance as an error of the whole region, which no number of points averages out. The gates also cut the tails
 // of good measurements, which leaves the covariance's variances too small by some 5 % (stereo) to 15 % (mono). Empty
 // when fewer than four observations remain or the normal equations are singular.
+//
+// A prior adds the squared length of log_pose(camera_from_world * inverse(prior.camera_from_world)), whitened by its
+// covariance, to the squared errors of observations of weight 1. It is never an outlier, is not widened by the variance
+// factor, and says nothing of which observations are inliers but by the pose.
 std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_world, const Rig& rig,
                                           std::span<const PoseObservation> observations,
-                                          const PoseRefinementOptions& options);
+                                          const PoseRefinementOptions& options,
+                                          const std::optional<PosePrior>& prior = {});
 
 }  // namespace byre

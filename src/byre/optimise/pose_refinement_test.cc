@@ -38,6 +38,9 @@ struct Scene {
   std::optional<PoseRefinement> refine(const PoseRefinementOptions& options = {}) const {
     return refine_pose(predicted_camera_from_world, rig, observations, options);
   }
+  std::optional<PoseRefinement> refine_with(const PosePrior& prior, const PoseRefinementOptions& options = {}) const {
+    return refine_pose(predicted_camera_from_world, rig, observations, options, prior);
+  }
 };
 
 PoseObservation observe(const Scene& scene, const SceneOptions& options, Draw& draw) {
@@ -352,6 +355,104 @@ TEST(RefinePose, EstimatesTheSystematicPart) {
   EXPECT_LT(small->systematic_sigma, 0.15);
   EXPECT_GT(large->systematic_sigma, 0.3);
   EXPECT_LT(large->systematic_sigma, 0.8);
+}
+
+// A prior that puts the camera by that much off the truth; sigma in metres and radians.
+PosePrior prior_off(const Scene& scene, const Vector6& delta, double sigma) {
+  return {exp_pose(delta) * scene.true_camera_from_world, sigma * sigma * Matrix6::Identity()};
+}
+
+const Vector6 kOff = (Vector6() << 0.02, -0.03, 0.04, 0.01, -0.02, 0.015).finished();
+
+TEST(RefinePoseWithPrior, IsHeldByAStrongOne) {
+  const Scene scene = make_scene(40, {.noise = 1.0});
+  const PosePrior prior = prior_off(scene, 0.1 * kOff, 1e-6);
+  const auto refined = scene.refine_with(prior);
+  ASSERT_TRUE(refined);
+  EXPECT_THAT(refined->camera_from_world, PoseNear(prior.camera_from_world, 1e-6, 1e-6));
+  EXPECT_GT(refined->inlier_count, 90) << "nor does a prior make outliers";
+}
+
+TEST(RefinePoseWithPrior, IsNotMovedByAWeakOne) {
+  const Scene scene = make_scene(41, {.noise = 1.0});
+  const auto alone = scene.refine();
+  const auto refined = scene.refine_with(prior_off(scene, kOff, 1e3));
+  ASSERT_TRUE(alone && refined);
+  EXPECT_THAT(refined->camera_from_world, PoseNear(alone->camera_from_world, 1e-6, 1e-6));
+  EXPECT_LT((refined->covariance - alone->covariance).norm(), 1e-6 * alone->covariance.norm());
+  EXPECT_EQ(refined->inliers, alone->inliers);
+}
+
+TEST(RefinePoseWithPrior, HasTheSameBytesWithoutOne) {
+  const Scene scene = make_scene(42, {.mono_fraction = 0.5, .noise = 1.0});
+  const auto alone = scene.refine();
+  const auto refined = refine_pose(scene.predicted_camera_from_world, scene.rig, scene.observations, {}, std::nullopt);
+  ASSERT_TRUE(alone && refined);
+  EXPECT_EQ(refined->camera_from_world, alone->camera_from_world);
+  EXPECT_EQ(refined->covariance, alone->covariance);
+}
+
+// Clean measurements stay within the loss's quadratic part, so that both costs are plain sums of squares.
+double cost_of(const Scene& scene, const PosePrior& prior, const Pose& camera_from_world) {
+  double cost = 0.0;
+  for (const PoseObservation& observation : scene.observations) {
+    const Eigen::Vector3d error =
+        observation.measured - scene.rig.project(camera_from_world * observation.point_in_world);
+    cost += error.head<2>().squaredNorm() / std::pow(observation.pixel_sigma, 2);
+    if (observation.is_stereo()) cost += std::pow(error.z() / observation.disparity_sigma, 2);
+  }
+  const Vector6 off = log_pose(camera_from_world * inverse(prior.camera_from_world));
+  return cost + off.dot(prior.covariance.inverse() * off);
+}
+
+TEST(RefinePoseWithPrior, FindsTheLeastOfBothCostsTogether) {
+  Scene scene = make_scene(43, {.points = 30});
+  for (PoseObservation& observation : scene.observations) observation.pixel_sigma = observation.disparity_sigma = 20.0;
+  PosePrior prior = prior_off(scene, 3.0 * kOff, 0.03);
+  prior.covariance(0, 4) = prior.covariance(4, 0) = 0.5 * prior.covariance(0, 0);
+  const auto refined = scene.refine_with(prior, {.rounds = 4, .iterations_per_round = 20});
+  ASSERT_TRUE(refined);
+  ASSERT_EQ(refined->inlier_count, 30);
+  const double least = cost_of(scene, prior, refined->camera_from_world);
+  EXPECT_LT(least, cost_of(scene, prior, scene.true_camera_from_world));
+  EXPECT_LT(least, cost_of(scene, prior, prior.camera_from_world));
+  for (int i = 0; i < 6; ++i) {
+    for (const double step : {-1e-3, 1e-3}) {
+      EXPECT_GT(cost_of(scene, prior, exp_pose(step * Vector6::Unit(i)) * refined->camera_from_world), least) << i;
+    }
+  }
+}
+
+TEST(RefinePoseWithPrior, AddsItsInformationToThatOfTheObservations) {
+  const Scene scene = make_scene(44, {});
+  const auto alone = scene.refine(kNoiseAlone);
+  ASSERT_TRUE(alone);
+  PosePrior prior{scene.true_camera_from_world, alone->covariance};
+  const auto twice_as_sure = scene.refine_with(prior, kNoiseAlone);
+  ASSERT_TRUE(twice_as_sure);
+  EXPECT_LT((twice_as_sure->covariance - 0.5 * alone->covariance).norm(), 1e-6 * alone->covariance.norm());
+  prior.covariance *= 1e-6;
+  const auto as_the_prior = scene.refine_with(prior, kNoiseAlone);
+  ASSERT_TRUE(as_the_prior);
+  EXPECT_LT((as_the_prior->covariance - prior.covariance).norm(), 1e-5 * prior.covariance.norm());
+}
+
+TEST(RefinePoseWithPrior, DeterminesWhatPointsOnOneLineLeaveOpen) {
+  Scene scene = make_scene(45, {.prediction_metres = 0.01, .prediction_radians = 0.01});
+  for (std::size_t i = 0; i < scene.observations.size(); ++i) {
+    const Eigen::Vector3d point_in_camera(-1.0 + 0.02 * static_cast<double>(i), 0.3, 3.0);
+    scene.observations[i].point_in_world = inverse(scene.true_camera_from_world) * point_in_camera;
+    scene.observations[i].measured = scene.rig.project(point_in_camera);
+  }
+  EXPECT_FALSE(scene.refine());
+  const auto refined = scene.refine_with(prior_off(scene, Vector6::Zero(), 0.01));
+  ASSERT_TRUE(refined);
+  EXPECT_THAT(refined->camera_from_world, PoseNear(scene.true_camera_from_world, 1e-4, 1e-4));
+}
+
+TEST(RefinePoseWithPrior, IsEmptyForFewerThanFourObservations) {
+  const Scene scene = make_scene(46, {.points = 3});
+  EXPECT_FALSE(scene.refine_with(prior_off(scene, Vector6::Zero(), 0.01)));
 }
 
 }  // namespace
