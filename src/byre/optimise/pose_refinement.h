@@ -45,7 +45,7 @@ struct PoseRefinement {
 // What is known of a pose besides what the frame sees, from wheels or a gyroscope say: the error of the pose it states.
 struct PosePrior {
   Pose camera_from_world;
-  Matrix6 covariance;  // of delta in exp_pose(delta) * camera_from_world; positive definite
+  Matrix6 covariance;  // covariance of delta in exp_pose(delta) * camera_from_world; positive definite
 };
 
 // Gauss-Newton on one pose against points of known uncertainty: each residual is whitened by the sum of the

@@ -48,7 +48,7 @@ class Calibrator {
   CalibrationState state_;
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the one given
-  std::optional<int> last_keyframes_;          // of the map at the last look
+  std::optional<int> last_keyframes_;          // map's size at the last look
 };
 
 }  // namespace byre

@@ -1,5 +1,7 @@
 #include "byre/session/executor.h"
 
+#include "byre/session/stopwatch.h"
+
 #include <cassert>
 #include <chrono>
 #include <future>
@@ -8,15 +10,15 @@
 namespace byre {
 namespace {
 
-FinishedJob run(const MappingJob& job) {
-  const auto start = std::chrono::steady_clock::now();
-  MapDelta delta = job();
-  return {std::move(delta), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+FinishedJob run(const Job& job) {
+  const Stopwatch watch;
+  std::any result = job();
+  return {std::move(result), watch.seconds()};
 }
 
 class InlineExecutor final : public Executor {
  public:
-  void submit(MappingJob job) override {
+  void submit(Job job) override {
     assert(idle());
     std::packaged_task<FinishedJob()> task([&job] { return run(job); });
     result_ = task.get_future();
@@ -36,7 +38,7 @@ class InlineExecutor final : public Executor {
 // Runs each job on a thread of its own; when its result is handed over is left open.
 class WorkerExecutor : public Executor {
  public:
-  void submit(MappingJob job) override {
+  void submit(Job job) override {
     assert(idle());
     result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
   }
@@ -57,7 +59,7 @@ class PacedExecutor final : public WorkerExecutor {
  public:
   explicit PacedExecutor(int latency) : latency_(latency) { assert(latency > 0); }
 
-  void submit(MappingJob job) override {
+  void submit(Job job) override {
     WorkerExecutor::submit(std::move(job));
     frames_left_ = latency_;
   }

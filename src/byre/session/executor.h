@@ -1,27 +1,27 @@
 #pragma once
 
-#include "byre/slam/delta.h"
-
+#include <any>
 #include <functional>
 #include <memory>
 #include <optional>
 
 namespace byre {
 
-using MappingJob = std::function<MapDelta()>;
+using Job = std::function<std::any()>;
 
 // What a job came to.
 struct FinishedJob {
-  MapDelta delta;
+  std::any result;
   double seconds = 0.0;  // wall time the job took
 };
 
-// Where and when mapping runs. At most one job is in flight. All methods are called from one thread.
-// An exception thrown by a job is thrown again by the collect() or finish() that would have handed its result over.
+// Where and when mapping runs, whatever it results in; a Worker knows that. At most one job is in flight. All methods
+// are called from one thread. An exception thrown by a job is thrown again by the collect() or finish() that would have
+// handed its result over.
 class Executor {
  public:
   virtual ~Executor() = default;
-  virtual void submit(MappingJob job) = 0;           // precondition: idle()
+  virtual void submit(Job job) = 0;                  // precondition: idle()
   virtual std::optional<FinishedJob> collect() = 0;  // called once per frame
   virtual std::optional<FinishedJob> finish() = 0;   // waits for the job in flight, if there is one
   virtual bool idle() const = 0;                     // no job in flight and none to be collected

@@ -10,15 +10,12 @@
 namespace byre {
 namespace {
 
-// A delta that can be told from others.
-MapDelta delta_of(std::uint32_t number) {
-  MapDelta delta;
-  delta.removed_points.push_back({number});
-  return delta;
+int number_of(const std::optional<FinishedJob>& finished) {
+  return std::any_cast<int>(finished->result);
 }
 
-std::uint32_t number_of(const std::optional<FinishedJob>& finished) {
-  return finished->delta.removed_points.front().number;
+std::any break_off() {
+  throw std::runtime_error("broken job");
 }
 
 // Asks again and again, as frames do, until the job is done.
@@ -48,8 +45,8 @@ TEST_P(EveryExecutor, HasNothingToGiveAtFirst) {
 }
 
 TEST_P(EveryExecutor, HandsOverEveryJobOnceAndInTurn) {
-  for (std::uint32_t job = 0; job < 5; ++job) {
-    executor_->submit([job] { return delta_of(job); });
+  for (int job = 0; job < 5; ++job) {
+    executor_->submit([job] { return job; });
     EXPECT_FALSE(executor_->idle());
     const auto finished = collect_when_ready(*executor_);
     ASSERT_TRUE(finished);
@@ -61,28 +58,28 @@ TEST_P(EveryExecutor, HandsOverEveryJobOnceAndInTurn) {
 }
 
 TEST_P(EveryExecutor, FinishesTheJobInFlight) {
-  executor_->submit([] { return delta_of(7); });
+  executor_->submit([] { return 7; });
   const auto finished = executor_->finish();
   ASSERT_TRUE(finished);
-  EXPECT_EQ(number_of(finished), 7u);
+  EXPECT_EQ(number_of(finished), 7);
   EXPECT_TRUE(executor_->idle());
   EXPECT_FALSE(executor_->finish());
 }
 
 TEST_P(EveryExecutor, ThrowsAJobsExceptionWhereItsResultWasDue) {
-  executor_->submit([]() -> MapDelta { throw std::runtime_error("broken job"); });
+  executor_->submit(break_off);
   EXPECT_THROW(collect_when_ready(*executor_), std::runtime_error);
   EXPECT_TRUE(executor_->idle());
-  executor_->submit([]() -> MapDelta { throw std::runtime_error("broken job"); });
+  executor_->submit(break_off);
   EXPECT_THROW(executor_->finish(), std::runtime_error);
   EXPECT_TRUE(executor_->idle());
 }
 
 TEST_P(EveryExecutor, WorksOnAfterAnException) {
-  executor_->submit([]() -> MapDelta { throw std::runtime_error("broken job"); });
+  executor_->submit(break_off);
   EXPECT_THROW(executor_->finish(), std::runtime_error);
-  executor_->submit([] { return delta_of(3); });
-  EXPECT_EQ(number_of(executor_->finish()), 3u);
+  executor_->submit([] { return 3; });
+  EXPECT_EQ(number_of(executor_->finish()), 3);
 }
 
 TEST_P(EveryExecutor, LetsItsJobEndBeforeItIsDestroyed) {
@@ -90,7 +87,7 @@ TEST_P(EveryExecutor, LetsItsJobEndBeforeItIsDestroyed) {
   auto executor = GetParam().make();
   executor->submit([&done] {
     done = true;
-    return MapDelta{};
+    return std::any();
   });
   executor.reset();
   EXPECT_TRUE(done);
@@ -108,7 +105,7 @@ TEST(InlineExecutor, RunsTheJobOnTheCallersThreadBeforeSubmitReturns) {
   std::thread::id ran_on;
   executor->submit([&ran_on] {
     ran_on = std::this_thread::get_id();
-    return MapDelta{};
+    return std::any();
   });
   EXPECT_EQ(ran_on, std::this_thread::get_id());
 }
@@ -116,7 +113,7 @@ TEST(InlineExecutor, RunsTheJobOnTheCallersThreadBeforeSubmitReturns) {
 class PacedExecutor : public ::testing::TestWithParam<int> {
  protected:
   // Which collect() after submit() hands the result over.
-  static int frames_until_handed_over(const MappingJob& job) {
+  static int frames_until_handed_over(const Job& job) {
     const auto executor = make_paced_executor(GetParam());
     executor->submit(job);
     int frames = 1;
@@ -126,13 +123,13 @@ class PacedExecutor : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(PacedExecutor, HandsAQuickJobOverExactlyAfterItsLatency) {
-  EXPECT_EQ(frames_until_handed_over([] { return MapDelta{}; }), GetParam());
+  EXPECT_EQ(frames_until_handed_over([] { return std::any(); }), GetParam());
 }
 
 TEST_P(PacedExecutor, WaitsForASlowJob) {
   EXPECT_EQ(frames_until_handed_over([] {
               std::this_thread::sleep_for(std::chrono::milliseconds(20));
-              return MapDelta{};
+              return std::any();
             }),
             GetParam());
 }
@@ -144,12 +141,12 @@ TEST(LiveExecutor, DoesNotWaitForAJobThatRuns) {
   std::promise<void> may_end;
   executor->submit([end = may_end.get_future().share()] {
     end.wait();
-    return delta_of(9);
+    return 9;
   });
   EXPECT_FALSE(executor->collect());
   EXPECT_FALSE(executor->idle());
   may_end.set_value();
-  EXPECT_EQ(number_of(collect_when_ready(*executor)), 9u);
+  EXPECT_EQ(number_of(collect_when_ready(*executor)), 9);
 }
 
 }  // namespace

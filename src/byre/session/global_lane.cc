@@ -8,7 +8,7 @@ namespace byre {
 void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops) {
   assert(idle());
   snapshot_ = std::make_shared<const MapWindow>(whole_map(map));
-  executor_->submit([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
+  worker_.start([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
     return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
   });
 }
@@ -16,43 +16,35 @@ void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops)
 void GlobalLane::calibrate(const MapView& map, const CalibrationState& state, int rig,
                            const SelfCalibrationOptions& options) {
   assert(idle());
-  calibration_ = std::make_shared<std::optional<RefinedCalibration>>();
-  calibration_is_ready_ = false;
   const auto snapshot = std::make_shared<const MapWindow>(whole_map(map));
-  executor_->submit([snapshot, state, rig, options, result = calibration_, is_hurried = is_hurried_] {
-    *result = self_calibrate(*snapshot, state, rig, options, [&is_hurried] { return is_hurried->load(); });
-    return MapDelta{};
+  worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_] {
+    return self_calibrate(*snapshot, state, rig, options, [&is_hurried] { return is_hurried->load(); });
   });
 }
 
 std::optional<RefinedCalibration> GlobalLane::take_calibration() {
-  if (!calibration_is_ready_) return std::nullopt;
-  calibration_is_ready_ = false;
-  return *std::exchange(calibration_, nullptr);
+  if (!outcome_ || !std::holds_alternative<Refinement>(*outcome_)) return std::nullopt;
+  return std::get<Refinement>(*std::exchange(outcome_, std::nullopt));
 }
 
 void GlobalLane::collect() {
-  if (auto finished = executor_->collect()) note(std::move(*finished));
+  keep(worker_.collect());
 }
 
 void GlobalLane::finish() {
-  if (auto finished = executor_->finish()) note(std::move(*finished));
+  keep(worker_.finish());
 }
 
-void GlobalLane::note(FinishedJob finished) {
-  if (calibration_) {
-    calibration_is_ready_ = true;
-  } else {
-    correction_ = std::move(finished.delta);
-  }
+void GlobalLane::keep(std::optional<Worker<Outcome>::Finished> finished) {
+  if (finished) outcome_ = std::move(finished->result);
 }
 
 AppliedCorrection GlobalLane::apply(Map& online) {
   assert(is_waiting());
-  const MapDelta correction = *std::exchange(correction_, std::nullopt);
+  MapDelta correction = std::get<MapDelta>(*std::exchange(outcome_, std::nullopt));
   LengthChanges changes = apply_correction(correction, *snapshot_, online);
   snapshot_.reset();
-  return {correction, std::move(changes)};
+  return {std::move(correction), std::move(changes)};
 }
 
 }  // namespace byre

@@ -1,19 +1,20 @@
 #pragma once
 
-#include "byre/session/executor.h"
+#include "byre/session/worker.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/self_calibration.h"
 
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <variant>
 #include <vector>
 
 namespace byre {
 
 struct AppliedCorrection {
   MapDelta delta;
-  LengthChanges length_changes;  // by which what lies relative to a keyframe is to follow
+  LengthChanges length_changes;  // what lies relative to a keyframe is to follow them
 };
 
 // Corrections of the whole map, and of its calibration, one at a time, beside tracking and local mapping. A finished
@@ -21,10 +22,10 @@ struct AppliedCorrection {
 class GlobalLane {
  public:
   GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options)
-      : executor_(std::move(executor)), options_(options) {}
+      : options_(options), worker_(std::move(executor)) {}
 
-  bool idle() const { return !snapshot_ && executor_->idle() && !calibration_; }
-  bool is_waiting() const { return correction_.has_value(); }  // with a finished correction
+  bool idle() const { return worker_.idle() && !outcome_; }
+  bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
 
   // Bends the map to close these loops. Precondition: idle().
   void close_loops(const Map& map, const std::vector<LoopEdge>& loops);
@@ -39,19 +40,18 @@ class GlobalLane {
   AppliedCorrection apply(Map& online);  // precondition: is_waiting()
 
  private:
-  void note(FinishedJob finished);
+  using Refinement = std::optional<RefinedCalibration>;
+  using Outcome = std::variant<MapDelta, Refinement>;
 
-  // Constant after construction.
-  std::unique_ptr<Executor> executor_;
-  GlobalMappingOptions options_;
+  void keep(std::optional<Worker<Outcome>::Finished> finished);
+
+  GlobalMappingOptions options_;  // constant after construction
 
   // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
-  std::shared_ptr<const MapWindow> snapshot_;
+  Worker<Outcome> worker_;
+  std::shared_ptr<const MapWindow> snapshot_;  // map that is corrected, as it was
   std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
-  std::optional<MapDelta> correction_;
-  // Written by the job, read when that has been collected.
-  std::shared_ptr<std::optional<RefinedCalibration>> calibration_;
-  bool calibration_is_ready_ = false;
+  std::optional<Outcome> outcome_;                                                              // not taken over yet
 };
 
 }  // namespace byre

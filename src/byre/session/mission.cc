@@ -21,22 +21,17 @@ DriftBound Mission::drift() const {
   return {kMinDrift + kDriftShare * distance_since_offline_, kMinTurn + kTurnPerMetre * distance_since_offline_};
 }
 
-const std::vector<PointId>& Mission::candidates(const Pose& predicted_camera_from_world) {
-  std::optional<KeyframeId> around = reference_;
-  if (!around) {
-    const auto near = offline_->keyframes_near(predicted_camera_from_world, kSearchDistance, 1);
-    if (!near.empty()) around = near.front();
-  }
-  if (around != candidates_around_) {
-    candidates_around_ = around;
-    const Map nothing_online(Origin::online);
-    const MapView view(&offline_->map(), nothing_online);
-    local_points_ = around ? local_points(view, *around, local_keyframes_) : std::vector<PointId>{};
-  }
-  candidates_.clear();
-  std::ranges::copy_if(local_points_, std::back_inserter(candidates_),
+std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_from_world) const {
+  if (reference_) return reference_;
+  const auto near = offline_->keyframes_near(predicted_camera_from_world, kSearchDistance, 1);
+  return near.empty() ? std::nullopt : std::optional(near.front());
+}
+
+std::vector<PointId> Mission::candidates(const std::vector<PointId>& around) const {
+  std::vector<PointId> candidates;
+  std::ranges::copy_if(around, std::back_inserter(candidates),
                        [this](PointId id) { return !suspension_.is_suspended(id); });
-  return candidates_;
+  return candidates;
 }
 
 void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
@@ -55,11 +50,10 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
   }
 }
 
-std::vector<PointId> Mission::due_again() const {
+std::vector<PointId> Mission::due_again(const std::vector<PointId>& around) const {
   std::vector<PointId> due;
   if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
-  std::ranges::copy_if(local_points_, std::back_inserter(due),
-                       [this](PointId id) { return suspension_.is_suspended(id); });
+  std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return suspension_.is_suspended(id); });
   return due;
 }
 

@@ -27,12 +27,8 @@ struct MissionOptions {
 // pose, and how the online map lies in it. Called from the session's thread.
 class Mission {
  public:
-  // local_keyframes: of the offline map, whose points are looked for in a frame.
-  Mission(std::shared_ptr<const OfflineMap> offline, const MissionOptions& options, int local_keyframes)
-      : offline_(std::move(offline)),
-        options_(options),
-        local_keyframes_(local_keyframes),
-        suspension_(options.suspension) {}
+  Mission(std::shared_ptr<const OfflineMap> offline, const MissionOptions& options)
+      : offline_(std::move(offline)), options_(options), suspension_(options.suspension) {}
 
   const OfflineMap& offline() const { return *offline_; }
   const Suspension& suspension() const { return suspension_; }
@@ -41,14 +37,16 @@ class Mission {
   std::optional<Timestamp> last_offline_time() const { return last_offline_time_; }
   DriftBound drift() const;
 
-  // Offline points to look for from a predicted pose: those around the keyframe that showed most of them in the last
-  // frame, or around the one nearest to the pose.
-  const std::vector<PointId>& candidates(const Pose& predicted_camera_from_world);
+  // Where offline points are to be looked for from a predicted pose: around the keyframe that showed most of them in
+  // the last frame, or around the one nearest to the pose.
+  std::optional<KeyframeId> keyframe_near(const Pose& predicted_camera_from_world) const;
+  // The points around it that are looked for.
+  std::vector<PointId> candidates(const std::vector<PointId>& around) const;
 
   // A frame was tracked, so many metres from the one before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
   // Suspended points around, in frames where they are to be looked for again; else none.
-  std::vector<PointId> due_again() const;
+  std::vector<PointId> due_again(const std::vector<PointId>& around) const;
   void note_again(const PlacedPoints& placed) { suspension_.note_again(placed.agreed, placed.moved); }
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
@@ -62,17 +60,13 @@ class Mission {
   // Constant after construction.
   std::shared_ptr<const OfflineMap> offline_;
   MissionOptions options_;
-  int local_keyframes_;
 
   Suspension suspension_;
   OfflineView view_ = OfflineView::off_the_map;
   double distance_since_offline_ = 0.0;  // metres
   std::optional<Timestamp> last_offline_time_;
-  int frames_ = 0;                               // noted
-  std::optional<KeyframeId> reference_;          // offline keyframe that showed most of the last frame's points
-  std::optional<KeyframeId> candidates_around_;  // of which the points below are
-  std::vector<PointId> local_points_;            // suspended ones included
-  std::vector<PointId> candidates_;
+  int frames_ = 0;                       // noted
+  std::optional<KeyframeId> reference_;  // offline keyframe that showed most of the last frame's points
   std::optional<RegistrationHypothesis> hypothesis_;
 };
 

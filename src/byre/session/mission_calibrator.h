@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/session/calibrator.h"
+#include "byre/session/worker.h"
 #include "byre/slam/calibration_on_map.h"
 
 #include <memory>
@@ -26,21 +27,20 @@ class MissionCalibrator {
     Rig rig;
   };
   std::optional<Switch> collect();  // once per frame; empty unless there is a better calibration
-  void finish() { executor_->finish(); }
+  void finish() { worker_.finish(); }
 
  private:
   // What a job came to.
   struct Outcome {
     RefinedCalibration refined;
-    std::optional<RectifiedChange> from_given;
+    RectifiedChange from_given;
     Pose after_from_before;
   };
 
   CalibrationOnMap on_map_;
   Calibrator calibrator_;
-  std::unique_ptr<Executor> executor_;
-  std::shared_ptr<Outcome> outcome_;  // written by the job, read when that has been collected
-  int next_frames_ = 60;              // that must have been noted until the next look
+  Worker<Outcome> worker_;
+  int next_frames_ = 60;  // frames noted until the next look
 };
 
 }  // namespace byre

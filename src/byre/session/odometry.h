@@ -2,25 +2,43 @@
 
 #include "byre/pose.h"
 
+#include <optional>
+
 namespace byre {
 
-// The smooth pose beside the corrected one: whatever moves the map, or the pose in it, without the robot moving is
-// taken out again. Its frame is that of the body at the start.
+// Where the body is in the map, and the smooth pose beside that: whatever moves the map, or the pose in it, without the
+// robot moving is taken out again. The smooth pose's frame is that of the body at the start.
 class Odometry {
  public:
-  Pose pose(const Pose& map_from_body) const { return odometry_from_map_ * map_from_body; }
+  const Pose& map_from_body() const { return map_from_body_; }  // last pose, as it was then
+  Pose odometry_from_body() const { return odometry_from_map_ * map_from_body_; }
   double travelled() const { return travelled_; }  // metres
 
-  void start(const Pose& map_from_body) { odometry_from_map_ = inverse(map_from_body); }
-  // What was taken for one pose turned out to be the other.
-  void absorb(const Pose& map_from_body_before, const Pose& map_from_body_after) {
-    odometry_from_map_ = odometry_from_map_ * map_from_body_before * inverse(map_from_body_after);
-  }
-  void travel(double metres) { travelled_ += metres; }
+  // A first pose.
+  void start(const Pose& map_from_body);
+  // The body did not move: what was taken for one pose turned out to be the other.
+  void correct(const Pose& map_from_body);
+
+  // The way from the last frame to this one.
+  struct Step {
+    Pose smooth;          // map_from_body, had the map not moved the pose
+    double metres = 0.0;  // to there
+  };
+  // The body was tracked to a pose. offset: to it from where online points alone have the body. What offline points do
+  // to a pose that online points hold as well is no motion: where the offset changes at once, the body is where it
+  // would be had it not.
+  Step follow(const Pose& map_from_body, const std::optional<Pose>& offset);
+
+  // Sets the offset that the next pose is compared with; empty where the two have nothing to do with each other.
+  void remember_offset(const std::optional<Pose>& offset) { offset_ = offset; }
 
  private:
+  Pose without_change_of(const std::optional<Pose>& offset, const Pose& map_from_body) const;
+
+  Pose map_from_body_;
   Pose odometry_from_map_;
   double travelled_ = 0.0;
+  std::optional<Pose> offset_;  // offset of the last pose
 };
 
 }  // namespace byre

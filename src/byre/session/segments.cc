@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// Of segments that begin with the same number the last one has the keyframes: those before never got any.
+// Where segments begin with the same number the last one has the keyframes: those before never got any.
 Segments::Frame Segments::frame(KeyframeId online) const {
   const auto next = std::ranges::upper_bound(segments_, online.number, {}, &Segment::first_keyframe);
   return std::prev(next)->frame;

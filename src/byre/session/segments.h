@@ -18,11 +18,15 @@ class Segments {
 
   bool empty() const { return segments_.empty(); }
   std::size_t size() const { return segments_.size(); }
-  // Of the present segment, the last one. Precondition: not empty.
+  // The present segment is the last one. Precondition: not empty.
   std::size_t present() const { return segments_.size() - 1; }
   Frame frame() const { return segments_.back().frame; }
   Frame frame(std::size_t segment) const { return segments_[segment].frame; }
   Frame frame(KeyframeId online) const;
+  // The present segment lies in the reports' frame.
+  bool is_registered() const { return !empty() && frame() == kMapFrame; }
+  // The keyframe lies in the frame of the present segment.
+  bool is_in_present_frame(KeyframeId online) const { return frame(online) == frame(); }
 
   // A new segment, whose keyframes will have this number and higher ones.
   void begin_in_map_frame(std::uint32_t first_keyframe);

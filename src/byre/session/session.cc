@@ -2,17 +2,36 @@
 
 #include "byre/session/stopwatch.h"
 
-#include <algorithm>
 #include <cassert>
 #include <utility>
 
 namespace byre {
 namespace {
 
-constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
+MapperOptions mapper_options(const SessionOptions& options) {
+  return {.recording = options.recording,
+          .min_initial_points = options.min_initial_points,
+          .monocular_start = options.monocular_start,
+          .window = options.window,
+          .mapping = mapping_options(options),
+          .loops = options.loops,
+          .max_drift_to_fuse = options.max_drift_to_fuse};
+}
 
-bool has_disparities(const Frame& frame) {
-  return std::ranges::any_of(frame.features->keypoints(), &Keypoint::has_disparity);
+TrackerOptions tracker_options(const SessionOptions& options) {
+  return {.local_keyframes = options.local_keyframes,
+          .min_kept_share = options.min_kept_share,
+          .track = options.track,
+          .relocalise = options.relocalise};
+}
+
+OfflineTrackerOptions offline_options(const SessionOptions& options) {
+  return {.mission = options.mission, .track = options.track, .relocalise = options.relocalise};
+}
+
+WhereaboutsOptions whereabouts_options(const SessionOptions& options, bool on_offline_map) {
+  return {
+      .on_offline_map = on_offline_map, .registration = options.mission.registration, .hindsight = options.hindsight};
 }
 
 }  // namespace
@@ -21,364 +40,275 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
                  std::shared_ptr<const OfflineMap> offline)
     : options_(options),
       rig_(rig),
-      executor_(std::move(lanes.local)),
-      global_(offline ? make_inline_executor() : std::move(lanes.global), {mapping_options(options)}),
-      hindsight_(options.hindsight),
+      mapper_(rig, mapper_options(options), std::move(lanes.local),
+              offline ? make_inline_executor() : std::move(lanes.global), {std::move(vocabulary), offline}),
+      tracker_(tracker_options(options)),
+      whereabouts_(whereabouts_options(options, offline != nullptr)),
       input_watch_(options.image),
       shutter_(rig.readout_time) {
   if (!offline) options_.map_online = true;  // there is nothing else to track
-  if (vocabulary) places_.emplace(std::move(*vocabulary));
-  if (!rig.is_stereo() && !offline) initialiser_.emplace(rig, options.monocular_start, mapping_options(options));
   if (!offline) return;
-  mission_.emplace(offline, options.mission, options.local_keyframes);
-  calibration_executor_ = std::move(lanes.calibration);
-  search_.emplace(std::move(lanes.global), offline, options.relocalise);
+  mission_.emplace(std::move(offline), offline_options(options),
+                   OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
 }
 
 void Session::continue_map(Map online) {
-  assert(places_ && !mission_ && anchored_.empty() && online.keyframe_count() > 0);
-  online_ = std::move(online);
-  initialiser_.reset();
-  for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
-  last_keyframe_ = online_.keyframe_ids().back();
-  segments_.begin_in_map_frame(0);
+  assert(whereabouts_.trajectory().empty());
+  mapper_.continue_map(std::move(online));
   state_ = State::lost;
 }
 
 void Session::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
-  assert(anchored_.empty());
-  if (mission_) {
-    mission_calibrator_.emplace(given, options.prior_sigmas, std::move(calibration_executor_));
-  } else {
-    calibrator_.emplace(given, options);
-  }
+  mission_ ? mission_->refine_calibration(given, options.prior_sigmas) : mapper_.refine_calibration(given, options);
   refine_readout(RefinedCalibration{given});
 }
 
 void Session::refine_readout(const RefinedCalibration& known) {
-  assert(anchored_.empty());
-  rolling_calibration_ = known;
-  shutter_.refine();
+  assert(whereabouts_.trajectory().empty());
+  shutter_.refine(known);
 }
 
 std::optional<RefinedCalibration> Session::self_calibration() const {
-  std::optional<RefinedCalibration> refined;
-  if (calibrator_) refined = calibrator_->result();
-  if (mission_calibrator_) refined = mission_calibrator_->result();
-  if (!rolling_calibration_ || shutter_.readout_time() == rolling_calibration_->calibration.readout_time)
-    return refined;
-  if (!refined) refined = rolling_calibration_;
-  refined->calibration.readout_time = shutter_.readout_time();
-  return refined;
-}
-
-Frame Session::corrected(const Frame& rectified) const {
-  if (calibrator_) return calibrator_->corrected(rectified);
-  return mission_calibrator_ ? mission_calibrator_->corrected(rectified) : rectified;
-}
-
-// Until the next pose is known the camera is taken to move as it did.
-CameraMotion Session::motion() const {
-  return {has_pose_ ? velocity_ : Vector6(Vector6::Zero()), scene_depth_};
+  if (mapper_.calibrator()) return shutter_.refined(mapper_.calibrator()->result());
+  if (mission_ && mission_->calibrator()) return shutter_.refined(mission_->calibrator()->result());
+  return shutter_.refined({});
 }
 
 FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& last_from_body) {
   FrameReport report;
   report.time = rectified.time;
-  told_motion_ = told_motion_ && last_from_body ? std::optional(*told_motion_ * *last_from_body) : std::nullopt;
   if (!first_frame_) first_frame_ = rectified.time;
+  whereabouts_.tell(last_from_body);
   const Stopwatch mapping_before;
-  const auto finished = executor_->collect();
-  take_over_results(finished, report);
-  const Frame frame = shutter_.corrected(corrected(rectified), rig_, motion());
-  input_ = input_watch_.look_at(frame);
-  start_job();
+  take_over_results(report);
+  const InputFrame input = input_of(rectified);
+  mapper_.start_job();
   const double seconds_before = mapping_before.seconds();
 
   const Stopwatch tracking;
-  const Located located = locate(frame);
+  const Located located = locate(input);
   report.track_seconds = tracking.seconds();
 
   const Stopwatch mapping_after;
-  ++frames_since_keyframe_;
-  frames_without_depth_ = rig_.is_stereo() && !has_disparities(frame) ? frames_without_depth_ + 1 : 0;
-  report.keyframe_added = located.is_new_segment;
+  keyframe_watch_.note_frame(input.frame, rig_);
   report.start_failure = located.start_failure;
-  if (located.is_new_segment) {
-    report.events.push_back(segments_.size() == 1 ? SessionEvent::initialised : SessionEvent::restarted);
-  }
+  report.keyframe_added = located.begins_segment;
   if (located.track) {
-    remember(frame, *located.track, located.without_prediction, report);
-    if (may_map(frame, *located.track)) {
-      add_keyframe(frame, *located.track);
-      report.keyframe_added = true;
-    }
-    if (look_for_loop(frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
-    search_beside(frame);
-  } else if (!located.is_new_segment) {
-    lose_pose(image_fault(frame), report);
+    remember(input, located, report);
+    extend_map(input, *located.track, report);
+  } else if (located.begins_segment) {
+    const bool is_first = mapper_.segments().size() == 1;
+    report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
+  } else {
+    lose_pose(input.fault, report);
   }
-  conclude(frame, located, report);
-  if (has_pose_) told_motion_ = Pose{};
-  if (const auto overdue = hindsight_.take_overdue()) settle(*overdue);
+
+  const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
+  const bool is_believed = whereabouts_.confirmation().is_believed();
+  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,         whereabouts_,
+                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_};
+  state_ = next_state(state_, {whereabouts_.has_pose(), is_believed, seconds_without}, options_.state);
+  report = described(std::move(report), summary);
+  report.state = state_;
+  report.health = health_of(summary, report.covariance, options_.health);
+  const bool was_error_told = std::exchange(is_error_told_, is_navigation_error(seconds_without));
+  if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
+
+  whereabouts_.settle_overdue(map(), options_.track);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
-  if (finished) report.job_seconds = finished->seconds;
   return report;
 }
 
-void Session::take_over_results(const std::optional<FinishedJob>& finished, FrameReport& report) {
+bool Session::is_navigation_error(double seconds_without_pose) const {
+  return mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
+}
+
+void Session::take_over_results(FrameReport& report) {
+  constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
   const bool was_registered = is_registered();
-  if (finished) take_over(*finished);
-  global_.collect();
-  const bool is_shutter_better = take_over_readout();
-  if (take_over_calibration() || switch_camera() || is_shutter_better)
-    report.events.push_back(SessionEvent::recalibrated);
-  if (take_over_correction()) report.events.push_back(SessionEvent::map_corrected);
-  if (search_) {
-    if (const auto found = search_->collect()) consider_place(*found, report);
+  report.job_seconds = mapper_.collect();
+  const bool is_shutter_better = mapper_.take_over_readout(shutter_, rig_);
+  if (take_over_camera() || is_shutter_better) report.events.push_back(SessionEvent::recalibrated);
+  if (const auto changes = mapper_.take_over_correction()) {
+    whereabouts_.follow(*changes);
+    report.events.push_back(SessionEvent::map_corrected);
   }
-  if (correct_online()) report.events.push_back(SessionEvent::online_corrected);
-  if (!has_pose_) return;
-  const Pose body_now = body_pose(last_camera_from_world());
-  odometry_.absorb(last_body_, body_now);
-  const Pose correction = body_now * inverse(last_body_);
-  if (was_registered && is_registered() && log_pose(correction).norm() > kLeastCorrection)
-    report.correction = correction;
-  last_body_ = body_now;
-}
-
-void Session::take_over(const FinishedJob& job) {
-  apply(job.delta, online_);
-  local_points_of_.reset();
-  forget_places(job.delta);
-}
-
-bool Session::take_over_correction() {
-  if (!global_.is_waiting() || !executor_->idle()) return false;
-  const AppliedCorrection applied = global_.apply(online_);
-  forget_places(applied.delta);
-  follow(applied.length_changes);
-  local_points_of_.reset();
-  return true;
-}
-
-// What was measured relative to keyframes, in lengths that have changed since.
-void Session::follow(const LengthChanges& changes) {
-  for (AnchoredPose& pose : anchored_) {
-    const auto change = changes.find(pose.keyframe);
-    if (change == changes.end()) continue;
-    pose.camera_from_keyframe = scale_lengths(pose.camera_from_keyframe, change->second);
-    if (&pose == &anchored_.back()) velocity_.head<3>() *= change->second;
+  if (const auto found = mission_ ? mission_->collect_place() : std::nullopt) {
+    const OfflineTracker::Consequence consequence = mission_->consider(*found, whereabouts_, mapper_);
+    if (consequence.correction) mapper_.correct_later(*consequence.correction);
+    if (consequence.refutes_pose) {
+      mapper_.leave_map_frame();
+      lose_pose(ImageFault::none, report);
+    }
   }
-  for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
+  if (mapper_.correct_online()) {
+    whereabouts_.note_online_correction();
+    report.events.push_back(SessionEvent::online_corrected);
+  }
+  const auto correction = whereabouts_.follow_map(rig_, map());
+  if (!correction || !was_registered || !is_registered()) return;
+  if (log_pose(*correction).norm() > kLeastCorrection) report.correction = correction;
 }
 
-// What is in flight was measured by the calibration before, so that it must be over.
-bool Session::take_over_calibration() {
-  if (!calibrator_ || !executor_->idle()) return false;
-  if (const auto refined = global_.take_calibration()) {
-    constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
-    const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
-    recalibrate(*refined);
-    if (is_large && global_.idle()) global_.close_loops(online_, loops_);
+// A map's own calibration turns its keyframes as well; in a mission frames are of another rig from here on, and
+// keyframes stay as they were seen.
+bool Session::take_over_camera() {
+  if (const auto turn = mapper_.take_over_calibration(rig_)) {
+    take_turn(*turn);
     return true;
   }
-  if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return false;
-  calibrator_->note_attempt(online_.keyframe_count());
-  global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig_), calibrator_->options());
-  return false;
-}
-
-// Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
-bool Session::take_over_readout() {
-  if (!shutter_.has_change() || !executor_->idle() || !global_.idle()) return false;
-  shutter_.take_over(rig_, online_);
-  local_points_of_.reset();
-  loop_.reset();
-  if (!mission_ && online_.keyframe_count() > 1) global_.close_loops(online_, loops_);
-  return true;
-}
-
-// The rectified camera turns, as it is made of the real ones in another way.
-void Session::recalibrate(const RefinedCalibration& refined) {
-  const int rig = online_.add_rig(rig_);
-  const RectifiedChange change = calibrator_->take_over(refined);
-  const Pose& turn = change.after_from_before();
-  const auto turn_of = [&](KeyframeId id) {
-    return id.origin == Origin::online && online_.rig_of(id) == rig ? turn : Pose{};
-  };
-  online_.recalibrate(rig, change);
-  rig_ = change.rig();
-  for (AnchoredPose& pose : anchored_) {
-    pose.camera_from_keyframe = turn * pose.camera_from_keyframe * inverse(turn_of(pose.keyframe));
-  }
-  for (LoopEdge& loop : loops_) {
-    loop.keyframe_from_place = turn_of(loop.keyframe) * loop.keyframe_from_place * inverse(turn_of(loop.place));
-  }
-  velocity_ = adjoint(turn) * velocity_;
-  loop_.reset();
-  local_points_of_.reset();
-}
-
-// From here on frames are of another rig; keyframes stay as they were seen.
-bool Session::switch_camera() {
-  const auto change = mission_calibrator_ ? mission_calibrator_->collect() : std::nullopt;
+  const auto change = mission_ ? mission_->collect_camera() : std::nullopt;
   if (!change) return false;
   rig_ = change->rig;
-  hindsight_.turn_rig(change->after_from_before);
-  for (AnchoredPose& pose : anchored_)
-    pose.camera_from_keyframe = change->after_from_before * pose.camera_from_keyframe;
-  velocity_ = adjoint(change->after_from_before) * velocity_;
-  loop_.reset();
+  whereabouts_.turn_camera(change->after_from_before);
+  mapper_.forget_loop();
   return true;
 }
 
-bool Session::correct_online() {
-  if (!waiting_correction_ || !executor_->idle()) return false;
-  const WaitingCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
-  std::vector<KeyframeId> path = online_.keyframe_ids();
-  std::erase_if(path, [&](KeyframeId id) {
-    return id.number < correction.first_keyframe || segments_.frame(id) != correction.frame;
-  });
-  apply(correction_of(online_, path, correction.offline_from_online, correction.shape), online_);
-  segments_.join_map_frame(correction.frame);
-  local_points_of_.reset();
-  offset_from_online_.reset();
-  if (last_keyframe_ && pending_.empty()) pending_.push_back(*last_keyframe_);
-  return true;
+void Session::take_turn(const RigTurn& turn) {
+  rig_ = turn.after;
+  whereabouts_.turn(turn, mapper_.online());
 }
 
-void Session::index_place(KeyframeId id) {
-  if (!places_) return;
-  online_.set_words(id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features));
-  places_->add(id, online_.find_keyframe(id)->words);
+InputFrame Session::input_of(const Frame& rectified) {
+  Frame frame = rectified;
+  if (mapper_.calibrator()) frame = mapper_.calibrator()->corrected(rectified);
+  if (mission_ && mission_->calibrator()) frame = mission_->calibrator()->corrected(rectified);
+  frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
+  const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
+  const InputEvidence evidence = input_watch_.look_at(frame);
+  return {std::move(frame), fault, evidence};
 }
 
-void Session::forget_places(const MapDelta& delta) {
-  if (!places_) return;
-  for (const OnlineKeyframeId id : delta.removed_keyframes) places_->remove(id);
+Session::Located Session::locate(const InputFrame& input) {
+  const Frame& frame = input.frame;
+  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
+  const Tracker::Scene scene{rig_, mapper_, mission_ ? &mission_->mission() : nullptr,
+                             mission_ && mission_->ask_for_focal_length()};
+  const bool can_search = mission_ || mapper_.places();
+  const bool is_led_back = can_search && whereabouts_.may_be_led_back(frame.time);
+  Located located;
+  if (!trajectory.empty() && (whereabouts_.has_pose() || !can_search || is_led_back)) {
+    const AnchoredPose& last = trajectory.back();
+    located.track =
+        tracker_.track(frame, scene, {last.time, camera_from_world(map(), last), last.keyframe}, whereabouts_.motion());
+  }
+  if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
+  if (located.track && !whereabouts_.confirmation().is_believed() && tracker_.is_doubtful(*located.track, scene)) {
+    located.track.reset();
+  }
+  located.from_nothing = located.track && is_led_back;
+  if (!located.track && can_search) {
+    located.track = tracker_.find(frame, scene);
+    located.from_nothing = located.track.has_value();
+    if (located.track) mapper_.begin_where_found(*located.track);
+  }
+  return located.track || !may_begin_segment(input) ? located : begin_segment(frame);
 }
 
-// A waiting correction goes first: what a job would work on is about to move.
-void Session::start_job() {
-  if (pending_.empty() || !executor_->idle() || global_.is_waiting() || waiting_correction_) return;
-  MapWindow window = cut_window(map(), pending_, options_.window);
-  pending_.clear();
-  if (window.keyframes.empty()) return;
-  executor_->submit(
-      [window = std::move(window), options = mapping_options(options_)] { return extend_map(window, options); });
+bool Session::may_begin_segment(const InputFrame& input) const {
+  if (!options_.map_online || !mapper_.can_begin(rig_)) return false;
+  if (!rig_.is_stereo()) return true;
+  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
+  if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || mission_;
+  if (!mission_ || input.fault != ImageFault::none) return false;
+  return to_seconds(input.frame.time - trajectory.back().time) >= options_.mission.restart_after;
 }
 
-// New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
-// found there too. While offline points hold the pose there is no drift that a loop could tell of.
+Session::Located Session::begin_segment(const Frame& frame) {
+  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
+  const Pose camera_from_last = trajectory.empty() ? Pose{} : camera_from_world(map(), trajectory.back());
+  const Mapper::Beginning begun = mapper_.begin(frame, rig_, camera_from_last);
+  if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
+  whereabouts_.begin(begun.keyframes, mapper_.segments().present(), rig_, mapper_.online());
+  tracker_.restart_from(begun.keyframes.back());
+  keyframe_watch_.restart();
+  if (mission_) mission_->begin_segment();
+  return {.track = {}, .begins_segment = true, .start_failure = begun.failure};
+}
+
+void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
+  const HybridTrack& track = *located.track;
+  const Whereabouts::Progress progress = whereabouts_.note(
+      {input.frame, track, located.from_nothing, is_registered(), mapper_.segments().present()}, rig_, map());
+  tracker_.note(track);
+  keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
+  if (progress.was_proven && !located.from_nothing) {
+    shutter_.note(input.frame, rig_, track.tracked, map(), whereabouts_.motion().velocity());
+  }
+  if (mission_ && is_registered()) {
+    const OfflineTracker::Consequence consequence = mission_->note(
+        {input.frame, track, rig_, progress.step, input.fault != ImageFault::none, tracker_.offline_points()},
+        whereabouts_, mapper_);
+    report.events.insert(report.events.end(), consequence.events.begin(), consequence.events.end());
+    if (consequence.correction) mapper_.correct_later(*consequence.correction);
+  }
+  if (!whereabouts_.confirmation().is_believed() || !is_registered()) return;
+  if (mission_ && !progress.was_ever_believed) {
+    report.events.push_back(SessionEvent::localised);
+  } else if (has_lost_its_way(state_)) {
+    report.events.push_back(SessionEvent::relocalised);
+  }
+}
+
+// A keyframe is made where one is needed; loops and places are looked for with every tracked frame.
+void Session::extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report) {
+  if (may_add_keyframe(input, track)) {
+    const KeyframeId id = mapper_.add_keyframe(input.frame, track, rig_);
+    shutter_.note_keyframe(id);
+    tracker_.restart_from(id);
+    keyframe_watch_.restart();
+    whereabouts_.anchor_to(id);
+    report.keyframe_added = true;
+  }
+  if (look_for_loop(input.frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
+  if (mission_) mission_->search_beside(input.frame, rig_, whereabouts_, mapper_);
+}
+
+bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {
+  if (!options_.map_online || !whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none)
+    return false;
+  return needs_keyframe(track.tracked, keyframe_watch_.evidence(track, map(), mapper_.pending()), options_.keyframes);
+}
+
+// While offline points hold the pose there is no drift that a loop could tell of.
 bool Session::look_for_loop(const Frame& frame, bool keyframe_added) {
-  if (mission_ && is_registered() && mission_->view() == OfflineView::held) return false;
-  if (!places_ || !last_keyframe_ || !global_.idle() || ++frames_since_loop_ < kMinFramesBetweenLoops) {
-    return false;
-  }
-  if (!loop_) {
-    if (keyframe_added) loop_ = find_loop(online_, *places_, *last_keyframe_, options_.loops);
-    return false;
-  }
-  loop_ = check_loop(*loop_, frame, last_camera_from_world(), rig_, online_);
-  if (is_refuted(*loop_)) loop_.reset();
-  if (!loop_ || !is_confirmed(*loop_)) return false;
-  settle_loop(*loop_);
-  loop_.reset();
-  frames_since_loop_ = 0;
-  return true;
+  const auto newest = mapper_.newest_keyframe();
+  if (!newest || (mission_ && is_registered() && mission_->mission().view() == OfflineView::held)) return false;
+  const Pose camera_from_map = camera_from_world(map(), whereabouts_.trajectory().back());
+  return mapper_.look_for_loop({frame, camera_from_map, rig_, *newest, keyframe_added});
 }
 
-// In a mission it is the offline map that large drift is corrected by.
-void Session::settle_loop(const LoopHypothesis& loop) {
-  const std::optional<LoopEdge> edge = edge_of(loop, online_);
-  if (!edge) return;  // found redundant meanwhile
-  const bool fusing_will_do = apparent_drift(loop, online_) <= options_.max_drift_to_fuse;
-  if (!fusing_will_do && mission_) return;
-  loops_.push_back(*edge);
-  if (fusing_will_do) {
-    pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
-  } else {
-    global_.close_loops(online_, loops_);
+void Session::lose_pose(ImageFault fault, FrameReport& report) {
+  if (whereabouts_.has_pose() && state_ == State::tracking) {
+    report.events.push_back(SessionEvent::pose_lost);
+    if (fault != ImageFault::none) report.events.push_back(SessionEvent::blinded);
   }
-}
-
-KeyframeEvidence Session::keyframe_evidence(const HybridTrack& track) const {
-  KeyframeEvidence evidence;
-  evidence.fresh_inliers = fresh_inliers_;
-  evidence.frames_since_last = frames_since_keyframe_;
-  evidence.without_depth = frames_without_depth_;
-  evidence.pending = static_cast<int>(pending_.size());
-  evidence.offline_inliers = track.offline_inliers;
-  const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(track.tracked.reference));
-  evidence.turn = rotation_log(motion.rotation).norm();
-  evidence.shift_share = motion.translation.norm() / std::max(1e-3, median_depth(track.tracked, map()));
-  return evidence;
-}
-
-void Session::add_keyframe(const Frame& frame, const HybridTrack& track) {
-  Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig_));
-  keyframe.recording = options_.recording;
-  keyframe.parent = track.online_reference;
-  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
-  add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
-  index_place(id);
-  shutter_.note_keyframe(id);
-  last_keyframe_ = id;
-  online_reference_ = id;
-  local_points_of_.reset();
-  frames_since_keyframe_ = 0;
-  reference_.reset();
-  pending_.push_back(id);
-  anchored_.back().keyframe = id;
-  anchored_.back().camera_from_keyframe = Pose{};
-  hindsight_.forget_from(anchored_.size() - 1);
-  start_job();
+  whereabouts_.lose();
+  if (mission_) mission_->lose();
 }
 
 void Session::finish() {
-  if (search_) search_->finish();
-  if (mission_calibrator_) mission_calibrator_->finish();
-  while (true) {
-    if (const auto finished = executor_->finish()) take_over(*finished);
-    global_.finish();
-    take_over_correction();
-    correct_online();
-    if (pending_.empty()) return;
-    start_job();
-  }
+  if (mission_) mission_->finish();
+  whereabouts_.follow(mapper_.finish());
 }
 
 FinishReport Session::finish_map(const FinishHooks& hooks) {
-  assert(places_);
-  if (calibrator_ && calibrator_->is_worth_a_last_look(online_.keyframe_count())) {
-    const MapWindow whole = whole_map(map());
-    const auto refined =
-        self_calibrate(whole, calibrator_->state(), online_.add_rig(rig_), calibrator_->options(), hooks.should_stop);
-    if (refined) recalibrate(*refined);
-  }
-  FinishReport report = byre::finish_map(online_, *places_, finish_options(options_), hooks);
-  follow(report.length_changes);
+  if (const auto turn = mapper_.calibrate_at_last(rig_, hooks.should_stop)) take_turn(*turn);
+  FinishReport report = mapper_.finish_map(finish_options(options_), hooks);
+  whereabouts_.follow(report.length_changes);
   return report;
 }
 
 void Session::finish_mission(const FinishHooks& hooks) {
-  assert(mission_);
-  if (online_.keyframe_count() == 0) return;
-  const MapWindow whole = whole_map(map());
-  follow(apply_correction(adjust_map(whole, {}, {mapping_options(options_)}, hooks.should_stop), whole, online_));
-  while (const auto seen = hindsight_.take_oldest()) settle(*seen);
+  if (mapper_.online().keyframe_count() == 0) return;
+  whereabouts_.follow(mapper_.adjust_around_offline(hooks));
+  whereabouts_.settle_all(map(), options_.track);
 }
 
 Trajectory Session::final_trajectory() const {
-  Trajectory trajectory;
-  trajectory.reserve(anchored_.size());
-  for (const AnchoredPose& pose : anchored_) {
-    if (segments_.frame(pose.segment) != Segments::kMapFrame) continue;
-    trajectory.push_back({pose.time, body_pose(pose.camera_from_keyframe * camera_from_world(pose.keyframe))});
-  }
-  return trajectory;
+  return whereabouts_.trajectory().in_map_frame(map(), mapper_.segments(), rig_);
 }
 
 }  // namespace byre

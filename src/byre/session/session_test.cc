@@ -178,8 +178,10 @@ TEST(Session, StaysNearTheTruthWhileMappingRunsBeside) {
 // Hands over what the test wants, when it wants it, in place of what mapping makes.
 class ScriptedExecutor final : public Executor {
  public:
-  explicit ScriptedExecutor(MappingJob& due) : due_(due) {}
-  void submit(MappingJob) override { idle_ = false; }
+  using Mapping = std::function<MapDelta()>;
+
+  explicit ScriptedExecutor(Mapping& due) : due_(due) {}
+  void submit(Job) override { idle_ = false; }
   std::optional<FinishedJob> collect() override {
     if (idle_ || !due_) return std::nullopt;
     idle_ = true;
@@ -189,7 +191,7 @@ class ScriptedExecutor final : public Executor {
   bool idle() const override { return idle_; }
 
  private:
-  MappingJob& due_;
+  Mapping& due_;
   bool idle_ = true;
 };
 
@@ -216,7 +218,7 @@ class SessionWithScriptedMapping : public ::testing::Test {
   }
 
   const SimulatedMission mission_ = turning();
-  MappingJob due_;
+  ScriptedExecutor::Mapping due_;
   Session session_{mission_.rig, options(), std::unique_ptr<Executor>(std::make_unique<ScriptedExecutor>(due_))};
 
  private:

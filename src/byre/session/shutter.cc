@@ -4,6 +4,18 @@
 
 namespace byre {
 
+void Shutter::refine(const RefinedCalibration& known) {
+  known_ = known;
+  estimator_.emplace(readout_time_);
+}
+
+std::optional<RefinedCalibration> Shutter::refined(std::optional<RefinedCalibration> otherwise) const {
+  if (!known_ || readout_time_ == known_->calibration.readout_time) return otherwise;
+  if (!otherwise) otherwise = known_;
+  otherwise->calibration.readout_time = readout_time_;
+  return otherwise;
+}
+
 Frame Shutter::corrected(const Frame& frame, const Rig& rig, const CameraMotion& motion) {
   motion_ = motion;
   if (!is_rolling() || motion.velocity.isZero(0.0)) return frame;

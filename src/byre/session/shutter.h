@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/rolling_shutter.h"
+#include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 #include "byre/slam/readout_estimate.h"
 
@@ -18,8 +19,10 @@ class Shutter {
   double readout_time() const { return readout_time_; }  // seconds, by which corners are corrected
   bool is_rolling() const { return readout_time_ != 0.0; }
 
-  // From now on the readout time is refined from what is seen.
-  void refine() { estimator_.emplace(readout_time_); }
+  // From now on the readout time is refined from what is seen; known: of the camera, with the time as it is.
+  void refine(const RefinedCalibration& known);
+  // What is known of the camera by now: what was refined otherwise, if anything, with the readout time as it is found.
+  std::optional<RefinedCalibration> refined(std::optional<RefinedCalibration> otherwise) const;
 
   // The frame as all rows at once would show it, seen by a camera that moves like that.
   Frame corrected(const Frame& frame, const Rig& rig, const CameraMotion& motion);
@@ -37,6 +40,7 @@ class Shutter {
 
  private:
   double readout_time_;                         // seconds, that the corners lie by
+  std::optional<RefinedCalibration> known_;     // as it was, where the time is refined
   std::optional<ReadoutEstimator> estimator_;   // where it is refined; ahead of it until that is taken over
   CameraMotion motion_;                         // while the last frame was taken
   std::map<KeyframeId, CameraMotion> motions_;  // while keyframes were

@@ -11,7 +11,7 @@ class LoggedExecutor final : public Executor {
  public:
   LoggedExecutor(std::unique_ptr<Executor> executor, JobLog& log) : executor_(std::move(executor)), log_(log) {}
 
-  void submit(MappingJob job) override {
+  void submit(Job job) override {
     const Stopwatch watch;
     executor_->submit(std::move(job));
     log_.submit_seconds += watch.seconds();

@@ -12,7 +12,7 @@ TEST(LoggedExecutor, HandsOverTheResultAndNotesItsTime) {
   JobLog log;
   const auto executor = make_logged_executor(make_inline_executor(), log);
   EXPECT_TRUE(executor->idle());
-  executor->submit([] { return MapDelta{}; });
+  executor->submit([] { return std::any(); });
   EXPECT_FALSE(executor->idle());
   EXPECT_THAT(log.job_seconds, SizeIs(0));
   const std::optional<FinishedJob> finished = executor->collect();
@@ -25,7 +25,7 @@ TEST(LoggedExecutor, HandsOverTheResultAndNotesItsTime) {
 TEST(LoggedExecutor, CountsAJobThatRunsInlineAsTheCallersTime) {
   JobLog log;
   const auto executor = make_logged_executor(make_inline_executor(), log);
-  executor->submit([] { return MapDelta{}; });
+  executor->submit([] { return std::any(); });
   executor->collect();
   EXPECT_GE(log.submit_seconds, log.job_seconds.front());
 }
@@ -33,7 +33,7 @@ TEST(LoggedExecutor, CountsAJobThatRunsInlineAsTheCallersTime) {
 TEST(LoggedExecutor, NotesJobsThatEndWithTheRun) {
   JobLog log;
   const auto executor = make_logged_executor(make_paced_executor(4), log);
-  executor->submit([] { return MapDelta{}; });
+  executor->submit([] { return std::any(); });
   EXPECT_FALSE(executor->collect());
   EXPECT_TRUE(executor->finish());
   EXPECT_THAT(log.job_seconds, SizeIs(1));

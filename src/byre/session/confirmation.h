@@ -1,0 +1,40 @@
+#pragma once
+
+#include "byre/slam/registration.h"
+
+#include <optional>
+
+namespace byre {
+
+// How far a pose found from nothing may be relied on. It is believed once the frames that follow have been tracked on
+// it; the more of them, the less the robot can have come there by itself. It is trusted once some frames have seen much
+// of what should be there.
+struct Confirmation {
+  int frames_to_believe = 0;
+  int frames_to_prove = 0;
+
+  bool is_believed() const { return frames_to_believe == 0; }
+  bool is_proven() const { return frames_to_prove == 0; }
+  bool operator==(const Confirmation&) const = default;
+};
+
+// A pose found from nothing, against the poses before.
+struct FindEvidence {
+  std::optional<double> seconds_since_believed;  // since the last believed pose; empty: there was none
+  std::optional<double> seconds_since_proven;    // since the last one beyond doubt
+  double shift = 0.0;                            // metres from the last pose
+};
+
+// What a find needs:
+//   find                                        frames to believe      frames to prove
+//   the first                                   confirmations          confirmations
+//   farther off than the robot can have moved   confirmations_of_jump  confirmations
+//   nearer, not long after a proven pose        confirmations          none
+//   nearer                                      confirmations          confirmations
+Confirmation confirmation_of(const FindEvidence& find, const RegistrationOptions& options);
+
+// After one more frame was tracked on the pose, on so many of the offline points expected.
+Confirmation confirmed_further(const Confirmation& before, int expected, int inliers,
+                               const RegistrationOptions& options);
+
+}  // namespace byre

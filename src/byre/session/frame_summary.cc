@@ -1,0 +1,101 @@
+#include "byre/session/frame_summary.h"
+
+#include "byre/slam/localisation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+// Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
+constexpr double kNeglectedCorrelation = 1.1;
+
+Matrix6 body_covariance(const Matrix6& camera_covariance, const Rig& rig) {
+  return kNeglectedCorrelation * move_covariance(camera_covariance, rig.body_from_camera);
+}
+
+// What the matches leave open, and the drift that stereo odometry may have gathered on its way.
+Matrix6 odometry_covariance(const Matrix6& match_covariance, double travelled) {
+  constexpr double kDriftShare = 0.005;
+  constexpr double kTurnPerMetre = 0.0005;  // radians
+  Matrix6 covariance = match_covariance;
+  covariance.topLeftCorner<3, 3>().diagonal().array() += std::pow(kDriftShare * travelled, 2);
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += std::pow(kTurnPerMetre * travelled, 2);
+  return covariance;
+}
+
+// In a mission the map's frame itself is only as exact as the offline map. Where offline points hold the pose, that and
+// the matches are all.
+Matrix6 covariance_in_map(const TrackedFrame& tracked, const OfflineTracker* mission) {
+  if (!mission) return tracked.covariance;
+  const bool is_online = tracked.reference.origin == Origin::online;
+  return (is_online ? tracked.covariance : tracked.match_covariance) + mission->mission().offline().frame_covariance();
+}
+
+// What the points say that a frame was tracked on.
+Health measured(const HybridTrack& track, const Rig& rig) {
+  Health health;
+  health.offline_expected = track.offline_expected;
+  health.offline_matches = track.offline_matches;
+  health.offline_inliers = track.offline_inliers;
+  health.online_inliers = track.online_inliers();
+  health.inlier_share = static_cast<double>(track.tracked.features.size()) / std::max(1, track.tracked.matches);
+  health.spread = spread_of(track.tracked.features, rig);
+  if (track.from_offline && track.from_online) health.agreement = agreement_of(*track.from_offline, *track.from_online);
+  return health;
+}
+
+// Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
+HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) {
+  constexpr double kFarOff = 3.0;  // pixels; the real calibrations that were refused are off by 0.6 to 2.4
+  const auto& result = calibrator.result();
+  evidence.is_calibration_open = !result;
+  evidence.is_calibration_doubtful = result && result->was_refused();
+  if (evidence.is_calibration_doubtful && result->shift >= kFarOff) evidence.is_miscalibrated = true;
+  return evidence;
+}
+
+HealthEvidence evidence_of(const FrameSummary& summary) {
+  const Confirmation& confirmation = summary.whereabouts.confirmation();
+  HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
+                          confirmation.is_believed() && confirmation.is_proven()};
+  evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;
+  evidence.image_fault = summary.input.fault;
+  evidence.input = summary.input.evidence;
+  evidence.is_miscalibrated = summary.mission && summary.mission->is_focal_length_off();
+  const Calibrator* const calibrator = summary.mapper.calibrator();
+  return calibrator ? judged_by(*calibrator, evidence) : evidence;
+}
+
+}  // namespace
+
+FrameReport described(FrameReport report, const FrameSummary& summary) {
+  const Odometry& odometry = summary.whereabouts.odometry();
+  report.features = summary.input.frame.features->size();
+  if (summary.whereabouts.has_pose()) {
+    if (summary.is_registered()) report.map_from_body = odometry.map_from_body();
+    report.odometry_from_body = odometry.odometry_from_body();
+  }
+  if (!summary.track) return report;
+  const TrackedFrame& tracked = summary.track->tracked;
+  report.expected_points = tracked.expected;
+  report.matches = tracked.matches;
+  report.inliers = static_cast<int>(tracked.features.size());
+  report.covariance = body_covariance(covariance_in_map(tracked, summary.mission), summary.rig);
+  report.odometry_covariance =
+      odometry_covariance(body_covariance(tracked.match_covariance, summary.rig), odometry.travelled());
+  return report;
+}
+
+Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthOptions& options) {
+  const Frame& frame = summary.input.frame;
+  Health health = summary.track ? measured(*summary.track, summary.rig) : Health{};
+  if (summary.mission) health = summary.mission->added_to(health, frame.time, summary.first_frame);
+  health.image = frame.condition;
+  health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  return judged(health, evidence_of(summary), options);
+}
+
+}  // namespace byre

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "byre/frame_report.h"
+#include "byre/session/mapper.h"
+#include "byre/session/offline_tracker.h"
+#include "byre/session/whereabouts.h"
+#include "byre/slam/health.h"
+
+namespace byre {
+
+// A frame as it is tracked, and what speaks against its images.
+struct InputFrame {
+  Frame frame;
+  ImageFault fault = ImageFault::none;
+  InputEvidence evidence;
+};
+
+// All that is told of a frame, once the session has taken it in.
+struct FrameSummary {
+  const InputFrame& input;
+  const HybridTrack* track = nullptr;  // where it was tracked
+  const Rig& rig;
+  const Whereabouts& whereabouts;
+  const Mapper& mapper;
+  const OfflineTracker* mission = nullptr;  // on an offline map
+  Timestamp first_frame{};
+
+  bool is_registered() const { return mapper.segments().is_registered(); }
+};
+
+// A report with the frame's poses, their covariances and the counts of points in it.
+FrameReport described(FrameReport report, const FrameSummary& summary);
+
+// How far the pose may be relied on. covariance: of the pose in the map.
+Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "byre/slam/hybrid_tracking.h"
+#include "byre/slam/keyframes.h"
+
+#include <optional>
+
+namespace byre {
+
+// What speaks for a new keyframe, gathered from frame to frame. Called from the session's thread.
+class KeyframeWatch {
+ public:
+  // A frame came, whether it has a pose or not.
+  void note_frame(const Frame& frame, const Rig& rig);
+  // The frame was tracked on so many points, with this reference keyframe.
+  void note_track(KeyframeId reference, int inliers);
+  // A keyframe was made.
+  void restart();
+
+  // For the frame noted last; pending: keyframes that mapping has not worked on.
+  KeyframeEvidence evidence(const HybridTrack& track, const MapView& map, int pending) const;
+
+ private:
+  int frames_since_keyframe_ = 0;
+  int frames_without_depth_ = 0;         // since one had disparities, with a rig that gives them
+  std::optional<KeyframeId> reference_;  // reference of the last frame tracked
+  int fresh_inliers_ = 0;                // in the first frame tracked with that reference
+};
+
+}  // namespace byre

@@ -1,0 +1,114 @@
+#include "byre/session/tracker.h"
+
+#include "byre/session/place_search.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+std::size_t inlier_count(const std::optional<HybridTrack>& track) {
+  return track ? track->tracked.features.size() : 0;
+}
+
+// A frame found in one map alone.
+HybridTrack found_in(Origin origin, const TrackedFrame& tracked) {
+  HybridTrack track;
+  track.tracked = tracked;
+  if (origin == Origin::online) {
+    track.online_reference = tracked.reference;
+    return track;
+  }
+  track.offline_reference = tracked.reference;
+  track.offline_expected = tracked.expected;
+  track.offline_matches = tracked.matches;
+  track.offline_inliers = static_cast<int>(tracked.features.size());
+  track.from_offline = tracked.camera_from_world;
+  for (const TrackedFeature& feature : tracked.features) track.offline_agreed.push_back(feature.point);
+  return track;
+}
+
+}  // namespace
+
+// Mapping may have removed a keyframe since, but never the newest. What lies in another frame, left when the pose was
+// lost, is not where the pose says.
+bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const {
+  return reference && mapper.online().find_keyframe(*reference) != nullptr &&
+         mapper.segments().is_in_present_frame(*reference);
+}
+
+const std::vector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
+  if (online_.keyframe && online_.keyframe == reference_ && online_.revision == mapper.revision()) {
+    return online_.points;
+  }
+  online_ = {reference_, mapper.revision(), {}};
+  if (reference_) online_.points = local_points(mapper.map(), *reference_, options_.local_keyframes);
+  std::erase_if(online_.points, [](PointId id) { return id.origin == Origin::offline; });
+  return online_.points;
+}
+
+const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
+  const std::optional<KeyframeId> around = mission.keyframe_near(predicted);
+  if (around == offline_.keyframe) return offline_.points;
+  const Map nothing_online(Origin::online);
+  const MapView view(&mission.offline().map(), nothing_online);
+  offline_ = {around, 0, {}};
+  if (around) offline_.points = local_points(view, *around, options_.local_keyframes);
+  return offline_.points;
+}
+
+std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted) {
+  const std::vector<PointId>& online = points_around_reference(scene.mapper);
+  const MapView map = scene.mapper.map();
+  if (!scene.mission) {
+    const auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
+    return tracked ? std::optional(found_in(Origin::online, *tracked)) : std::nullopt;
+  }
+  std::vector<PointId> candidates;
+  if (scene.mapper.segments().is_registered()) {
+    candidates = scene.mission->candidates(offline_points_around(predicted, *scene.mission));
+  }
+  candidates.insert(candidates.end(), online.begin(), online.end());
+  return track_hybrid(frame, predicted, scene.rig, map, candidates, options_.track, scene.weigh_focal_lengths);
+}
+
+std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,
+                                          const MotionModel& motion) {
+  const auto newest = scene.mapper.newest_in_present_frame();
+  if (!is_usable(reference_, scene.mapper)) reference_ = newest;
+  const Pose predicted = motion.predict(last.camera_from_world, scene.rig, to_seconds(frame.time - last.time));
+  auto best = track_from(frame, scene, predicted);
+  // A sudden loss of matches may mean that the prediction led astray: look again without it.
+  if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
+  for (const std::optional<KeyframeId>& keyframe : {std::optional(last.keyframe), newest}) {
+    const auto pose = keyframe ? pose_from_keyframe(frame, scene.rig, scene.mapper.map(), *keyframe) : std::nullopt;
+    if (!pose) continue;
+    auto tracked = track_from(frame, scene, *pose);
+    if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);
+  }
+  return best;
+}
+
+std::optional<HybridTrack> Tracker::find(const Frame& frame, const Scene& scene) const {
+  if (scene.mission) {
+    const Localisation found = localise_in(scene.mission->offline(), frame, scene.rig, options_.relocalise);
+    if (found.tracked) return found_in(Origin::offline, *found.tracked);
+  }
+  const PlaceIndex* const places = scene.mapper.places();
+  if (!places || scene.mapper.online().keyframe_count() == 0) return std::nullopt;
+  const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options_.relocalise);
+  if (!found.tracked) return std::nullopt;
+  return found_in(Origin::online, *found.tracked);
+}
+
+bool Tracker::is_doubtful(const HybridTrack& track, const Scene& scene) const {
+  return reason_to_doubt(track.tracked, scene.rig, scene.mapper.map(), options_.relocalise) !=
+         LocalisationFailure::none;
+}
+
+void Tracker::note(const HybridTrack& track) {
+  last_inliers_ = static_cast<int>(track.tracked.features.size());
+  if (track.online_reference) reference_ = track.online_reference;
+}
+
+}  // namespace byre

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "byre/session/mapper.h"
+#include "byre/session/mission.h"
+#include "byre/slam/localisation.h"
+#include "byre/slam/motion_model.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct TrackerOptions {
+  int local_keyframes = 15;     // keyframes of either map, whose points are looked for in a frame
+  double min_kept_share = 0.5;  // share of the last inliers; fewer, and the pose is sought without prediction too
+  TrackOptions track;
+  LocaliseOptions relocalise;  // where the frame is looked for in the whole map
+};
+
+// Finds where a frame was taken from: by prediction, or from nothing. Reads the maps, and changes nothing but what it
+// keeps from frame to frame. Called from the session's thread.
+class Tracker {
+ public:
+  explicit Tracker(const TrackerOptions& options) : options_(options) {}
+
+  // What frames are tracked on.
+  struct Scene {
+    const Rig& rig;
+    const Mapper& mapper;
+    const Mission* mission = nullptr;  // on an offline map
+    bool weigh_focal_lengths = false;  // see FocalCheck
+  };
+  // The last frame that had a pose.
+  struct LastPose {
+    Timestamp time{};
+    Pose camera_from_world;
+    KeyframeId keyframe;  // it lay around
+  };
+
+  // From where the motion leads. Precondition: the map has a segment.
+  std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
+                                   const MotionModel& motion);
+  // Anywhere in the maps, the offline one first. What is found is online or offline by its references.
+  std::optional<HybridTrack> find(const Frame& frame, const Scene& scene) const;
+  // Whether a tracked pose does not bear out what was found from nothing.
+  bool is_doubtful(const HybridTrack& track, const Scene& scene) const;
+
+  // That is where the frame was taken from, and where the next one is looked for.
+  void note(const HybridTrack& track);
+  // The frame has become a keyframe.
+  void restart_from(KeyframeId newest) { reference_ = newest; }
+  // Offline points around the last prediction, suspended ones included.
+  const std::vector<PointId>& offline_points() const { return offline_.points; }
+
+ private:
+  // Points around a keyframe, kept while that and the map stay: frames come more often than either changes.
+  struct PointsAround {
+    std::optional<KeyframeId> keyframe;
+    int revision = 0;  // revision of the map
+    std::vector<PointId> points;
+  };
+
+  bool is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const;
+  const std::vector<PointId>& points_around_reference(const Mapper& mapper);
+  const std::vector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
+  std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted);
+
+  TrackerOptions options_;  // constant after construction
+
+  std::optional<KeyframeId> reference_;  // online, whose points are looked for
+  int last_inliers_ = 0;                 // in the last frame tracked
+  PointsAround online_;
+  PointsAround offline_;
+};
+
+}  // namespace byre

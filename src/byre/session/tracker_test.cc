@@ -1,0 +1,93 @@
+#include "byre/session/tracker.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/session/session_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+// A map of the first frame, which the frames after it are tracked on.
+class TrackerOnAMap : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = quarter_circle({});
+  Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), nullptr}};
+  Tracker tracker_{{}};
+
+  void SetUp() override { mapper_.begin(mission_.frames[0], mission_.rig, Pose{}); }
+
+  Tracker::Scene scene() const { return {mission_.rig, mapper_}; }
+  Pose true_pose(std::size_t frame) const {  // in the map of the first frame
+    return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
+  }
+  Tracker::LastPose last(std::size_t frame) const {
+    return {mission_.frames[frame].time, true_pose(frame), *mapper_.newest_keyframe()};
+  }
+  // The motion that led to a frame.
+  MotionModel motion_to(std::size_t frame) const {
+    MotionModel motion;
+    motion.reach(velocity_between(true_pose(frame - 1), true_pose(frame), 0.1));
+    motion.tell({});
+    return motion;
+  }
+};
+
+TEST_F(TrackerOnAMap, FindsAFrameWhereTheMotionLeads) {
+  const auto track = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
+  EXPECT_EQ(track->online_reference, mapper_.newest_keyframe());
+  EXPECT_FALSE(track->offline_reference);
+}
+
+TEST_F(TrackerOnAMap, ChangesNothingOfTheMap) {
+  const int revision = mapper_.revision();
+  const auto first = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
+  const auto second = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->tracked.camera_from_world, second->tracked.camera_from_world);
+  EXPECT_EQ(mapper_.revision(), revision);
+}
+
+TEST_F(TrackerOnAMap, LooksWithoutAPredictionWhereOneLedAstray) {
+  const auto before = tracker_.track(mission_.frames[1], scene(), last(0), {});
+  ASSERT_TRUE(before);
+  tracker_.note(*before);
+  MotionModel astray;
+  astray.tell(Pose{rotation_exp({0.0, 0.0, 0.6}), {0.5, 0.5, 0.0}});
+  const auto track = tracker_.track(mission_.frames[2], scene(), last(1), astray);
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
+}
+
+TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
+  const auto found = tracker_.find(mission_.frames[2], scene());
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
+  EXPECT_TRUE(found->online_reference);
+  EXPECT_FALSE(tracker_.is_doubtful(*found, scene()));
+}
+
+TEST_F(TrackerOnAMap, FindsNothingInAnEmptyFrame) {
+  const Frame blank{mission_.frames[1].time, std::make_shared<const Features>()};
+  EXPECT_FALSE(tracker_.track(blank, scene(), last(0), {}));
+  EXPECT_FALSE(tracker_.find(blank, scene()));
+}
+
+TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
+  const SimulatedMission mission = quarter_circle({});
+  const auto offline = offline_map_of(mission);
+  const Mapper mapper(mission.rig, {}, make_inline_executor(), make_inline_executor(),
+                      {simulated_vocabulary(), offline});
+  const Mission way(offline, {});
+  const Tracker tracker({});
+  const auto found = tracker.find(mission.frames[6], {mission.rig, mapper, &way});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->offline_reference);
+  EXPECT_FALSE(found->online_reference);
+  EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_camera_from_world(mission, 6), 0.02, 0.01));
+}
+
+}  // namespace
+}  // namespace byre

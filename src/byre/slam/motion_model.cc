@@ -1,0 +1,35 @@
+#include "byre/slam/motion_model.h"
+
+#include "byre/slam/body_pose.h"
+
+namespace byre {
+
+void MotionModel::tell(const std::optional<Pose>& last_from_body) {
+  told_ = told_ && last_from_body ? std::optional(*told_ * *last_from_body) : std::nullopt;
+}
+
+void MotionModel::reach(const Vector6& velocity) {
+  velocity_ = velocity;
+  told_ = Pose{};
+}
+
+void MotionModel::turn_camera(const Pose& after_from_before) {
+  if (velocity_) velocity_ = adjoint(after_from_before) * *velocity_;
+}
+
+void MotionModel::scale_lengths(double change) {
+  if (velocity_) velocity_->head<3>() *= change;
+}
+
+Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const {
+  if (told_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * *told_);
+  if (velocity_) return exp_pose(*velocity_ * seconds) * last_camera_from_world;
+  return last_camera_from_world;
+}
+
+Vector6 velocity_between(const Pose& before, const Pose& after, double seconds) {
+  if (seconds <= 0.0) return Vector6::Zero();
+  return log_pose(after * inverse(before)) / seconds;
+}
+
+}  // namespace byre

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "byre/rig.h"
+
+#include <optional>
+
+namespace byre {
+
+// How the camera is taken to move until a frame's pose is known: as the body was told to have moved since the last
+// pose, else on as it moved before, else not at all.
+class MotionModel {
+ public:
+  // A frame later; last_from_body is how the body has moved since the last frame, where that is known.
+  void tell(const std::optional<Pose>& last_from_body);
+  // The pose is known now; velocity is that of the camera, per second.
+  void reach(const Vector6& velocity);
+  // The pose is not known any more; what is told leads on from the last one.
+  void lose() { velocity_.reset(); }
+  // The last pose was none, so that what was told leads nowhere.
+  void forget_told() { told_.reset(); }
+
+  // From here on the camera is one that is turned against the one before.
+  void turn_camera(const Pose& after_from_before);
+  // From here on lengths are so many times what they were.
+  void scale_lengths(double change);
+
+  // Whether the body's motion since the last pose is known without a gap.
+  bool is_told() const { return told_.has_value(); }
+  // The camera's, per second: exp_pose(velocity * dt) * camera_from_world. Zero where it is not known.
+  Vector6 velocity() const { return velocity_.value_or(Vector6::Zero()); }
+
+  // camera_from_world so many seconds after the last pose.
+  Pose predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const;
+
+ private:
+  std::optional<Vector6> velocity_;
+  std::optional<Pose> told_ = Pose{};  // body's motion since the last pose
+};
+
+// The velocity that led from one camera_from_world to the next; zero where no time went by.
+Vector6 velocity_between(const Pose& before, const Pose& after, double seconds);
+
+}  // namespace byre

@@ -1,0 +1,108 @@
+#include "byre/slam/motion_model.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/body_pose.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+// A camera ahead of the body, that looks along its x axis.
+Rig robot_rig() {
+  Rig rig;
+  rig.body_from_camera = {rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.0, 0.1}};
+  return rig;
+}
+
+const Pose kLast = exp_pose((Vector6() << 1.0, -2.0, 0.5, 0.3, 0.1, -0.2).finished());
+const Vector6 kVelocity = (Vector6() << 0.1, 0.0, 1.0, 0.0, 0.2, 0.0).finished();
+const Pose kAhead{rotation_exp({0.0, 0.0, 0.1}), {0.2, 0.0, 0.0}};  // last_from_body
+
+TEST(MotionModel, StandsStillWhereNothingIsKnown) {
+  MotionModel motion;
+  motion.tell({});
+  EXPECT_EQ(motion.predict(kLast, robot_rig(), 0.1), kLast);
+  EXPECT_FALSE(motion.is_told());
+}
+
+TEST(MotionModel, GoesOnAsItMovedBefore) {
+  const Pose before = exp_pose(-0.5 * kVelocity) * kLast;
+  MotionModel motion;
+  motion.reach(velocity_between(before, kLast, 0.5));
+  motion.tell({});
+  const Pose predicted = motion.predict(kLast, robot_rig(), 0.5);
+  EXPECT_THAT(predicted * inverse(kLast), PoseNear(kLast * inverse(before), 1e-9, 1e-9));
+}
+
+TEST(MotionModel, GoesAsTheBodyWasToldRatherThanAsItMovedBefore) {
+  const Rig rig = robot_rig();
+  MotionModel motion;
+  motion.reach(kVelocity);
+  motion.tell(kAhead);
+  const Pose predicted = motion.predict(kLast, rig, 0.1);
+  EXPECT_THAT(inverse(body_pose(rig, kLast)) * body_pose(rig, predicted), PoseNear(kAhead, 1e-12, 1e-12));
+}
+
+TEST(MotionModel, AddsUpWhatItIsToldUntilAPoseIsReached) {
+  const Rig rig = robot_rig();
+  MotionModel motion;
+  motion.reach(kVelocity);
+  motion.lose();
+  motion.tell(kAhead);
+  motion.tell(kAhead);
+  EXPECT_THAT(inverse(body_pose(rig, kLast)) * body_pose(rig, motion.predict(kLast, rig, 0.2)),
+              PoseNear(kAhead * kAhead, 1e-12, 1e-12));
+  motion.reach(kVelocity);
+  motion.tell(kAhead);
+  EXPECT_THAT(inverse(body_pose(rig, kLast)) * body_pose(rig, motion.predict(kLast, rig, 0.1)),
+              PoseNear(kAhead, 1e-12, 1e-12));
+}
+
+TEST(MotionModel, IsNotToldAfterAGapUntilAPoseIsReached) {
+  MotionModel motion;
+  motion.reach(kVelocity);
+  motion.tell({});
+  motion.tell(kAhead);
+  EXPECT_FALSE(motion.is_told());
+  motion.reach(kVelocity);
+  motion.tell(kAhead);
+  EXPECT_TRUE(motion.is_told());
+  motion.forget_told();
+  EXPECT_FALSE(motion.is_told());
+}
+
+TEST(MotionModel, KnowsNoVelocityOnceThePoseIsLost) {
+  MotionModel motion;
+  motion.reach(kVelocity);
+  EXPECT_EQ(motion.velocity(), kVelocity);
+  motion.lose();
+  EXPECT_EQ(motion.velocity(), Vector6(Vector6::Zero()));
+}
+
+TEST(MotionModel, FollowsATurnOfTheCamera) {
+  const Pose turn{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()};
+  MotionModel motion, turned;
+  motion.reach(kVelocity);
+  turned.reach(kVelocity);
+  turned.turn_camera(turn);
+  motion.tell({});
+  turned.tell({});
+  EXPECT_THAT(turned.predict(turn * kLast, robot_rig(), 0.01),
+              PoseNear(turn * motion.predict(kLast, robot_rig(), 0.01), 1e-6, 1e-6));
+}
+
+TEST(MotionModel, FollowsAChangeOfLengths) {
+  MotionModel motion;
+  motion.reach(kVelocity);
+  motion.scale_lengths(2.0);
+  EXPECT_EQ(motion.velocity().head<3>(), 2.0 * kVelocity.head<3>());
+  EXPECT_EQ(motion.velocity().tail<3>(), kVelocity.tail<3>());
+}
+
+TEST(VelocityBetween, IsZeroWhereNoTimeWentBy) {
+  EXPECT_EQ(velocity_between(kLast, Pose{}, 0.0), Vector6(Vector6::Zero()));
+}
+
+}  // namespace
+}  // namespace byre
