@@ -17,6 +17,12 @@ Pose camera_from_world(const MapView& map, const AnchoredPose& pose) {
   return pose.camera_from_keyframe * camera_from_world(map, pose.keyframe);
 }
 
+Vector6 AnchoredTrajectory::velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const {
+  const double elapsed = to_seconds(time - poses_.back().time);
+  if (elapsed <= 0.0) return Vector6::Zero();
+  return log_pose(camera_from_map * inverse(camera_from_world(map, poses_.back()))) / elapsed;
+}
+
 void AnchoredTrajectory::keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked) {
   hindsight_.note(poses_.size() - 1, rig, features, tracked);
 }

@@ -74,6 +74,14 @@ TEST_F(AnchoredFrames, StayInTheirPlaceInATurnedCameraWhetherItsKeyframesTurnOrN
   EXPECT_THAT(camera_from_world(map_, trajectory_[1]), PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
 }
 
+TEST_F(AnchoredFrames, TellTheVelocityFromTheLastOfThem) {
+  const Vector6 velocity = (Vector6() << 0.1, 0.0, 1.0, 0.0, 0.2, 0.0).finished();
+  const Timestamp later = trajectory_.back().time + std::chrono::milliseconds(100);
+  const Pose camera_from_map = exp_pose(0.1 * velocity) * camera_from_world(map_, trajectory_.back());
+  EXPECT_LT((trajectory_.velocity_to(later, camera_from_map, map_) - velocity).norm(), 1e-9);
+  EXPECT_TRUE(trajectory_.velocity_to(trajectory_.back().time, camera_from_map, map_).isZero());
+}
+
 TEST_F(AnchoredFrames, LieWhereTheKeyframeDoesThatTheyBecome) {
   trajectory_.anchor_last_to(keyframes_[0]);
   EXPECT_EQ(trajectory_.back().keyframe, keyframes_[0]);

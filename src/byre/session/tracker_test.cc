@@ -27,7 +27,7 @@ class TrackerOnAMap : public ::testing::Test {
   // The motion that led to a frame.
   MotionModel motion_to(std::size_t frame) const {
     MotionModel motion;
-    motion.reach(velocity_between(true_pose(frame - 1), true_pose(frame), 0.1));
+    motion.reach(log_pose(true_pose(frame) * inverse(true_pose(frame - 1))) / 0.1);
     motion.tell({});
     return motion;
   }

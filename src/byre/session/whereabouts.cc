@@ -42,9 +42,7 @@ double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig
     return 0.0;
   }
   const Odometry::Step step = odometry_.follow(body, offset);
-  const AnchoredPose& last = trajectory_.back();
-  motion_.reach(velocity_between(camera_from_world(map, last), camera_pose(rig, step.smooth),
-                                 to_seconds(seen.frame.time - last.time)));
+  motion_.reach(trajectory_.velocity_to(seen.frame.time, camera_pose(rig, step.smooth), map));
   return step.metres;
 }
 

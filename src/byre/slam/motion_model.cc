@@ -27,9 +27,4 @@ Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, do
   return last_camera_from_world;
 }
 
-Vector6 velocity_between(const Pose& before, const Pose& after, double seconds) {
-  if (seconds <= 0.0) return Vector6::Zero();
-  return log_pose(after * inverse(before)) / seconds;
-}
-
 }  // namespace byre

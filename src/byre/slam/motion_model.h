@@ -37,7 +37,4 @@ class MotionModel {
   std::optional<Pose> told_ = Pose{};  // body's motion since the last pose
 };
 
-// The velocity that led from one camera_from_world to the next; zero where no time went by.
-Vector6 velocity_between(const Pose& before, const Pose& after, double seconds);
-
 }  // namespace byre

@@ -29,7 +29,7 @@ TEST(MotionModel, StandsStillWhereNothingIsKnown) {
 TEST(MotionModel, GoesOnAsItMovedBefore) {
   const Pose before = exp_pose(-0.5 * kVelocity) * kLast;
   MotionModel motion;
-  motion.reach(velocity_between(before, kLast, 0.5));
+  motion.reach(log_pose(kLast * inverse(before)) / 0.5);
   motion.tell({});
   const Pose predicted = motion.predict(kLast, robot_rig(), 0.5);
   EXPECT_THAT(predicted * inverse(kLast), PoseNear(kLast * inverse(before), 1e-9, 1e-9));
@@ -98,10 +98,6 @@ TEST(MotionModel, FollowsAChangeOfLengths) {
   motion.scale_lengths(2.0);
   EXPECT_EQ(motion.velocity().head<3>(), 2.0 * kVelocity.head<3>());
   EXPECT_EQ(motion.velocity().tail<3>(), kVelocity.tail<3>());
-}
-
-TEST(VelocityBetween, IsZeroWhereNoTimeWentBy) {
-  EXPECT_EQ(velocity_between(kLast, Pose{}, 0.0), Vector6(Vector6::Zero()));
 }
 
 }  // namespace
