@@ -1,5 +1,7 @@
 #include "byre/assessment/mission_errors.h"
 
+#include "byre/map/keyframe_path.h"
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -33,7 +35,7 @@ Map offline_map() {
 }
 
 MapAlignment aligned_map() {
-  return align_to_truth(offline_map(), Scale::fixed, truth());
+  return align_to_truth(keyframe_path(offline_map()), Scale::fixed, truth());
 }
 
 // Ten frames half a second apart, each off by so many metres along its own x axis, with a sigma of a centimetre.

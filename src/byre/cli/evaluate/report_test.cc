@@ -28,7 +28,7 @@ Trajectory scaled(Trajectory trajectory, double scale) {
   return trajectory;
 }
 
-EvaluationReport report_of(const Trajectory& estimate, Alignment alignment,
+EvaluationReport report_of(const Trajectory& estimate, PoseAlignment alignment,
                            const std::optional<ExpectedFrames>& expected = std::nullopt) {
   EvaluationProtocol protocol;
   protocol.label = "final";
@@ -90,7 +90,7 @@ TEST(EvaluationReport, LaysTheFirstPoseOnTheTrueOneWhereAsked) {
 }
 
 // 50 m along a line, with some sway.
-EvaluationReport report_of_line(double sway, double error, Alignment alignment) {
+EvaluationReport report_of_line(double sway, double error, PoseAlignment alignment) {
   Trajectory truth, estimate;
   for (int i = 0; i <= 500; ++i) {
     const Eigen::Vector3d place(0.1 * i, sway * std::sin(0.1 * i), 0.0);
