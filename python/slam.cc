@@ -159,6 +159,22 @@ SlamOptions options_of(const py::kwargs& fields) {
   return options;
 }
 
+std::string text_of(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  return py::str(value).cast<std::string>();
+}
+
+void set_settings(SlamOptions& options, const py::dict& settings) {
+  options.settings.clear();
+  for (const auto& [name, value] : settings) options.settings.emplace_back(py::str(name), text_of(value));
+}
+
+py::dict settings_of(const SlamOptions& options) {
+  py::dict settings;
+  for (const auto& [name, value] : options.settings) settings[py::str(name)] = value;
+  return settings;
+}
+
 void bind_options(py::module_& module) {
   py::class_<SlamOptions>(module, "SlamOptions", "How a Slam works; none needs to be given.")
       .def(py::init(&options_of))
@@ -173,7 +189,8 @@ void bind_options(py::module_& module) {
       .def_readwrite("image_threads", &SlamOptions::image_threads)
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
-      .def_readwrite("vocabulary", &SlamOptions::vocabulary);
+      .def_readwrite("vocabulary", &SlamOptions::vocabulary)
+      .def_property("settings", &settings_of, &set_settings, "Options of docs/options.md by name.");
 }
 
 void bind_slam_itself(py::module_& module) {

@@ -15,6 +15,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace byre {
 
@@ -37,11 +39,13 @@ struct SlamOptions {
   std::string recording = "live";                     // name of the frames in a kept map
   std::string site;                                   // place where the map was made, noted in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
+  // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
+  std::vector<std::pair<std::string, std::string>> settings{};
 };
 
 // One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.
 // Making one throws InputError: a calibration that makes no sense or cannot be rectified, a map or a vocabulary that
-// cannot be loaded.
+// cannot be loaded, settings that are none.
 // Later, whatever is wrong with a frame is told in its report.
 class Slam {
  public:

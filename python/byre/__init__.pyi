@@ -1,6 +1,6 @@
 import enum
 from os import PathLike
-from typing import Any, Iterator, Optional, Sequence, Union, overload
+from typing import Any, Dict, Iterator, Optional, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -273,6 +273,7 @@ class SlamOptions:
     recording: str
     site: str
     vocabulary: Optional[_Path]
+    settings: Dict[str, Union[bool, float, str]]
     def __init__(
         self,
         *,
@@ -286,6 +287,7 @@ class SlamOptions:
         recording: str = "live",
         site: str = "",
         vocabulary: Optional[_Path] = None,
+        settings: Dict[str, Union[bool, float, str]] = {},
     ) -> None: ...
 
 class Slam:

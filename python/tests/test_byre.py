@@ -189,6 +189,15 @@ def test_enumerations_are_those_of_python():
         byre.SlamOptions(worker=byre.Workers.none)
 
 
+def test_settings_are_those_of_the_page_of_options(room):
+    calibration = byre.Recording(room).calibration
+    options = byre.SlamOptions(settings={"tracking.search_radius_px": 20.5, "calibration.refine": False})
+    assert options.settings == {"tracking.search_radius_px": "20.5", "calibration.refine": "false"}
+    byre.Slam.mapping(calibration, options)
+    with pytest.raises(byre.InputError, match="did you mean 'features.max_count'"):
+        byre.Slam.mapping(calibration, byre.SlamOptions(settings={"features.max_counts": 500}))
+
+
 def test_arrays_that_are_no_images_are_refused(room, frames):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
     for image in (frames[0].left.astype(np.float64), frames[0].left.astype(">u2"), frames[0].left > 100):

@@ -3,6 +3,7 @@
 #include "byre/assessment/map_statistics.h"
 #include "byre/assessment/report_json.h"
 #include "byre/assessment/run_report.h"
+#include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 
 #include <algorithm>
@@ -31,8 +32,10 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
-// What decides how much is computed; all else is as the version has it.
+// What decides how much is computed, and what is not as the version has it.
 Json options_json(const EngineOptions& options) {
+  Json changed = Json::object();
+  for (const auto& [name, value] : changed_options(options)) changed[name] = value;
   return {{"max_features", options.extract.max_features},
           {"fast_threshold", options.extract.fast_threshold},
           {"min_fast_threshold", options.extract.min_fast_threshold},
@@ -41,7 +44,8 @@ Json options_json(const EngineOptions& options) {
           {"local_keyframes", options.session.local_keyframes},
           {"movable_keyframes", options.session.window.movable},
           {"anchor_keyframes", options.session.window.anchors},
-          {"loops", options.vocabulary.has_value()}};
+          {"loops", options.vocabulary.has_value()},
+          {"changed", changed}};
 }
 
 Json protocol_json(const MapProtocol& protocol) {

@@ -234,8 +234,7 @@ class BenchmarkRunner {
   }
 
   EngineOptions options_for(Arm arm, int run) const {
-    EngineOptions run_options;
-    run_options.pace = options_.pace;
+    EngineOptions run_options = options_.engine;
     run_options.vocabulary = vocabulary_;
     run_options.session.map_online = arm != Arm::localise_only;
     run_options.session.relocalise.seed = protocol_.seed_of_run(run);

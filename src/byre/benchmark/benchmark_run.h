@@ -18,7 +18,7 @@ struct BenchmarkOptions {
   std::filesystem::path data;     // folder in which the recordings lie
   std::filesystem::path output;   // folder in which maps and trajectories are put
   std::vector<std::string> only;  // names of cases; all when empty
-  Pace pace = Pace::paced;
+  EngineOptions engine;           // every run's, but for maps and seeds
 };
 
 // An offline map, made once for all cases on it.

@@ -22,10 +22,9 @@ class BenchmarkRun : public testing::Test {
  protected:
   BenchmarkRun() {
     const fs::path& folder = RenderedFixture::shared().folder();
-    options_ = {folder.parent_path(),
-                fs::path(testing::TempDir()) / ("byre_benchmark." + std::to_string(getpid())),
-                {},
-                Pace::same_thread};
+    options_.data = folder.parent_path();
+    options_.output = fs::path(testing::TempDir()) / ("byre_benchmark." + std::to_string(getpid()));
+    options_.engine.pace = Pace::same_thread;
     fs::create_directories(options_.output);
     protocol_.name = "room";
     protocol_.recordings = {{.name = "visit", .folder = folder.filename(), .range = {.last = 12}},

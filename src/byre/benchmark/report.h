@@ -3,6 +3,8 @@
 #include "byre/benchmark/benchmark_run.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace byre {
 
@@ -11,7 +13,8 @@ struct BenchmarkSetting {
   std::string protocol_file;
   std::string data;
   Pace pace = Pace::paced;
-  int cores = 0;  // of the machine
+  int cores = 0;                                                       // of the machine
+  std::vector<std::pair<std::string, std::string>> changed_options{};  // names and values, other than by default
 };
 
 // Tables in Markdown. The header says how the figures were made.

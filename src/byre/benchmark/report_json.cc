@@ -96,6 +96,8 @@ Json map_json(const MadeMap& map) {
 }
 
 Json protocol_json(const BenchmarkProtocol& protocol, const BenchmarkSetting& setting) {
+  Json changed = Json::object();
+  for (const auto& [name, value] : setting.changed_options) changed[name] = value;
   Json seeds = Json::array();
   for (int i = 0; i < protocol.runs; ++i) seeds.push_back(protocol.seed_of_run(i));
   return {{"program", "byre benchmark"},
@@ -105,6 +107,7 @@ Json protocol_json(const BenchmarkProtocol& protocol, const BenchmarkSetting& se
           {"data", setting.data},
           {"pace", name_of(setting.pace)},
           {"cores", setting.cores},
+          {"changed_options", changed},
           {"runs", protocol.runs},
           {"seeds", seeds},
           {"ate_alignment", "SE(3) of each run (Umeyama)"},

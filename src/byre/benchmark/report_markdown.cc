@@ -167,6 +167,7 @@ std::string header(const BenchmarkResult& result, const BenchmarkProtocol& proto
          "is, once, by its own keyframes\n"
       << "- **coverage** share of the recording's frames that have a pose; errors are over those that have truth too\n"
       << "- **RPE** RMSE over 1 frame, 1 s and 1 m of path\n";
+  for (const auto& [name, value] : setting.changed_options) text << "- **option** " << name << ": " << value << "\n";
   if (result.stopped) text << "- **stopped early**: what follows is what was measured until then\n";
   return text.str() + "\n";
 }

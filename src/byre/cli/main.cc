@@ -59,6 +59,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // also --help and --version, which succeed
     return app.exit(error) == done ? done : wrong_usage;
+  } catch (const byre::InputError& error) {  // by --print-options
+    return report(error.what(), bad_input);
   } catch (const std::exception& error) {
     return report(error.what(), failed);
   }

@@ -7,6 +7,7 @@
 #include "byre/slam/online_copy.h"
 #include "byre/system/engine.h"
 #include "byre/system/input_check.h"
+#include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 
 #include <utility>
@@ -44,12 +45,22 @@ Pace pace_of(Workers workers) {
   return Pace::live;
 }
 
+void apply_settings(const SlamOptions& options, EngineOptions& engine) {
+  for (const auto& [name, value] : options.settings) {
+    if (const auto fault = set_option(engine, name, value)) {
+      throw InputError("SlamOptions::settings", fault->reason, fault->remedy);
+    }
+  }
+}
+
 EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocabulary) {
   EngineOptions engine;
   engine.pace = pace_of(options.workers);
   engine.extract.max_features = options.max_features;
   engine.self_calibrate = options.refine_calibration;
+  engine.session.map_online = options.map_online;
   engine.vocabulary = vocabulary;
+  apply_settings(options, engine);
   return engine;
 }
 
@@ -190,7 +201,6 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   EngineOptions engine = engine_options(options, vocabulary);
   engine.offline = load_offline_map(map, vocabulary);
-  engine.session.map_online = options.map_online;
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
   parts->plan = load_plan_registration(map);
   return Slam(std::move(parts));

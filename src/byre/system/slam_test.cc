@@ -188,6 +188,21 @@ TEST(Slam, NeedsAMapThatCanBeLoaded) {
   EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
 }
 
+TEST(Slam, TakesOptionsByName) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  SlamOptions options = repeatable();
+  options.settings = {{"features.max_count", "150"}, {"tracking.search_radius_px", "20.5"}};
+  Slam slam = Slam::mapping(open_shared()->calibration(), options);
+  EXPECT_LE(slam.process(view_of(frames[0])).features, 150);
+  options.settings = {{"features.max_counts", "150"}};
+  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }),
+              HasSubstr("SlamOptions::settings: there is no option 'features.max_counts' (did you mean "
+                        "'features.max_count'?)"));
+  options.settings = {{"features.max_count", "nan"}};
+  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }),
+              HasSubstr("(give from 1 to 100000, in corners)"));
+}
+
 TEST(Slam, DropsWhatIsNoFrameAndGoesOn) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());

@@ -5,12 +5,14 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/options_file.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
 #include "byre/session/stopwatch.h"
+#include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 
 #include <iostream>
@@ -27,10 +29,18 @@ namespace fs = std::filesystem;
 
 struct BenchmarkCommandOptions {
   std::string protocol;
-  BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .pace = Pace::paced};
+  BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .engine = {}};
+  OptionsFile options_file;
+  std::optional<Pace> pace;
   std::optional<int> runs;
   std::optional<fs::path> vocabulary;
   bool quiet = false;
+
+  EngineOptions engine_options() const {
+    EngineOptions engine = read_engine_options(options_file);
+    if (pace) engine.pace = *pace;
+    return engine;
+  }
 };
 
 constexpr const char* kBenchmarkFooter = R"(Examples:
@@ -99,10 +109,12 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
   BenchmarkProtocol protocol = read_benchmark_protocol(file);
   if (options.runs) protocol.runs = *options.runs;
   if (options.run.output.empty()) options.run.output = "benchmark_" + protocol.name;
+  options.run.engine = options.engine_options();
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   make_folder(options.run.output);
-  const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.pace,
-                                 static_cast<int>(std::thread::hardware_concurrency())};
+  const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.engine.pace,
+                                 static_cast<int>(std::thread::hardware_concurrency()),
+                                 changed_options(options.run.engine)};
 
   limit_image_threads(1);
   const fs::path& folder = options.run.output;
@@ -142,10 +154,11 @@ Action declare_benchmark(CLI::App& command) {
       ->type_name("N")
       ->check(between(1, kMostRuns));
   add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...");
-  declare_pace(command, options->run.pace);
+  declare_pace(command, options->pace);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary to recognise places with (the one byre comes with)")
       ->type_name("FILE");
+  declare_options_file(command, options->options_file, [options = options.get()] { return options->engine_options(); });
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kBenchmarkFooter);
   return [options](std::ostream& result) { return run_benchmark_command(*options, result); };

@@ -3,6 +3,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/options_file.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
@@ -30,6 +31,7 @@ struct CalibrateOptions {
   OpenOptions open;
   FrameRange range;
   fs::path output;
+  OptionsFile options_file;
   bool json = false;
   bool quiet = false;
 };
@@ -64,7 +66,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   const auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, false);
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
-  EngineOptions run_options;
+  EngineOptions run_options = read_engine_options(options.options_file);
   run_options.vocabulary = open_vocabulary(std::nullopt);
   limit_image_threads(1);
   const InterruptCatcher interrupt({options.output});
@@ -92,6 +94,8 @@ Action declare_calibrate(CLI::App& command) {
       ->required();
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
+  declare_options_file(command, options->options_file,
+                       [options = options.get()] { return read_engine_options(options->options_file); });
   command.add_flag("--json", options->json, "Print what was found as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kCalibrateFooter);

@@ -25,7 +25,7 @@ FrameRange needed_range(const DrawOptions& options) {
 }
 
 EngineOptions run_options(const DrawOptions& options, StoredMap stored) {
-  EngineOptions run;
+  EngineOptions run = read_engine_options(options.options_file);
   run.vocabulary = open_vocabulary(options.vocabulary);
   add_words(stored, *run.vocabulary);
   run.offline = std::make_shared<const OfflineMap>(std::move(stored.map), *run.vocabulary);

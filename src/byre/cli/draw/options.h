@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/shared/options_file.h"
 #include "byre/recording.h"
 #include "byre/viewer/plan_picture.h"
 
@@ -30,6 +31,7 @@ struct DrawOptions {
   std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
   FrameRange range;
   OpenOptions open;
+  OptionsFile options_file;  // for running the recording
   bool quiet = false;
 
   const std::filesystem::path& map_file() const { return map ? *map : input; }

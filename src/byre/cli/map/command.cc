@@ -100,9 +100,7 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   protocol.camera = camera_of(recording, options.open);
   protocol.range = options.range;
   protocol.frames_in_range = recording.size();
-  protocol.options.pace = options.pace;
-  protocol.options.extract.refinement = options.refinement;
-  protocol.options.self_calibrate = !options.no_self_calibration;
+  protocol.options = options.engine_options();
   protocol.options.known = record.about.recordings.back().refined;
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;

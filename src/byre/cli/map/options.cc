@@ -111,6 +111,14 @@ std::vector<fs::path> MapOptions::outputs() const {
   return files;
 }
 
+EngineOptions MapOptions::engine_options() const {
+  EngineOptions engine = read_engine_options(options_file);
+  if (pace) engine.pace = *pace;
+  if (refinement) engine.extract.refinement = *refinement;
+  if (no_self_calibration) engine.self_calibrate = false;
+  return engine;
+}
+
 void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_files(command, options);
   declare_map_content(command, options);
@@ -127,6 +135,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
       ->type_name("none|stereo|all")
       ->transform(CLI::CheckedTransformer(refinements).description(""));
   declare_trajectory_format(command, options.trajectory_format);
+  declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kMapFooter);

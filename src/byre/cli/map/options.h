@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/shared/options_file.h"
 #include "byre/playback/map_run.h"
 #include "byre/trajectory_file.h"
 
@@ -28,14 +29,16 @@ struct MapOptions {
   std::string site;
   FrameRange range;
   OpenOptions open;  // how to take the recording
-  Pace pace = Pace::paced;
-  Refinement refinement = Refinement::all;
+  OptionsFile options_file;
+  std::optional<Pace> pace;
+  std::optional<Refinement> refinement;
   bool no_loops = false;
   bool no_self_calibration = false;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for
+  EngineOptions engine_options() const;                // by the file and the command line; not the maps
 };
 
 // The options must outlive the parsing of the command line.

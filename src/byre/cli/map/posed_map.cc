@@ -21,7 +21,7 @@ PosedRun run_with_progress(Recording& recording, const MapOptions& options, cons
   Progress progress(std::cerr, progress_style(options.quiet), recording.size());
   const Stopwatch watch;
   PosedRunOptions run_options;
-  run_options.extract.refinement = options.refinement;
+  run_options.extract = options.engine_options().extract;
   PosedRunHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
   hooks.after_frame = [&](int done) { progress.update(done, watch.seconds(), "poses given"); };

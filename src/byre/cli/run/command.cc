@@ -58,9 +58,7 @@ MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
   protocol.camera = camera_of(recording, options.open);
   protocol.range = options.range;
   protocol.frames_in_range = recording.size();
-  protocol.options.pace = options.pace;
-  protocol.options.session.map_online = !options.localise_only;
-  protocol.options.session.track = options.track;
+  protocol.options = options.engine_options();
   protocol.options.vocabulary = open_vocabulary(options.vocabulary);
   if (!options.map) return protocol;
   protocol.offline = options.map->string();

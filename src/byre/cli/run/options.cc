@@ -107,20 +107,20 @@ void require_consistent(const RunOptions& options) {
 }
 
 // How points of the two maps go together; the defaults were measured.
-void declare_tracking(CLI::App& command, TrackOptions& track) {
+void declare_tracking(CLI::App& command, RunOptions& options) {
   std::map<std::string, OfflinePolicy> policies;
   for (const OfflinePolicy known : {OfflinePolicy::first, OfflinePolicy::together}) {
     policies.emplace(name_of(known), known);
   }
   command
-      .add_option(
-          "--offline-weight", track.offline_weight,
-          formatted("Weight of a measured offline point, against 1 of an online one (%g)", track.offline_weight))
+      .add_option("--offline-weight", options.offline_weight,
+                  formatted("Weight of a measured offline point, against 1 of an online one (%g)",
+                            TrackOptions{}.offline_weight))
       ->type_name("FACTOR")
       ->check(between(1e-3, 1e3));
   command
       .add_option(
-          "--offline-policy", track.offline_policy,
+          "--offline-policy", options.offline_policy,
           "Offline points first, so that their pose guides the search for online ones, or both together (first)")
       ->type_name("first|together")
       ->transform(CLI::CheckedTransformer(policies).description(""));
@@ -136,15 +136,25 @@ std::vector<fs::path> RunOptions::outputs() const {
   return files;
 }
 
+EngineOptions RunOptions::engine_options() const {
+  EngineOptions engine = read_engine_options(options_file);
+  if (pace) engine.pace = *pace;
+  if (offline_weight) engine.session.track.offline_weight = *offline_weight;
+  if (offline_policy) engine.session.track.offline_policy = *offline_policy;
+  if (localise_only) engine.session.map_online = false;
+  return engine;
+}
+
 void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
-  declare_tracking(command, options.track);
+  declare_tracking(command, options);
   declare_watching(command, options.view);
   declare_trajectory_format(command, options.trajectory_format);
+  declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kRunFooter);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/shared/options_file.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/view_options.h"
 #include "byre/playback/map_run.h"
@@ -35,13 +36,16 @@ struct RunOptions {
   std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
   FrameRange range;
   OpenOptions open;  // how to take the recording
-  Pace pace = Pace::paced;
-  TrackOptions track;
+  OptionsFile options_file;
+  std::optional<Pace> pace;
+  std::optional<double> offline_weight;
+  std::optional<OfflinePolicy> offline_policy;
   ViewOptions view;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // those asked for
+  EngineOptions engine_options() const;                // by the file and the command line; not the maps
 };
 
 // The options must outlive the parsing of the command line.

@@ -76,7 +76,7 @@ void require_sense(const FrameRange& range) {
   }
 }
 
-void declare_pace(CLI::App& command, Pace& pace) {
+void declare_pace(CLI::App& command, std::optional<Pace>& pace) {
   std::map<std::string, Pace> paces;
   for (const Pace known : {Pace::same_thread, Pace::paced, Pace::live}) paces.emplace(name_of(known), known);
   command.add_option("--pace", pace, "Where mapping runs and how fast frames are fed (paced)")

@@ -2,6 +2,8 @@
 
 #include "byre/playback/map_run.h"
 
+#include <optional>
+
 namespace CLI {
 class App;
 }
@@ -24,6 +26,6 @@ void declare_frame_range(CLI::App& command, FrameRange& range);
 void require_sense(const FrameRange& range);
 
 // --pace. The pace must outlive the parsing of the command line.
-void declare_pace(CLI::App& command, Pace& pace);
+void declare_pace(CLI::App& command, std::optional<Pace>& pace);
 
 }  // namespace byre::cli

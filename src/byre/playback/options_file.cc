@@ -1,0 +1,33 @@
+#include "byre/playback/options_file.h"
+
+#include "byre/dataset/settings_file.h"
+#include "byre/input_error.h"
+#include "byre/system/option_table.h"
+
+namespace byre {
+
+void read_options(const std::filesystem::path& path, EngineOptions& options) {
+  for (const Setting& setting : read_settings(path)) {
+    if (const auto fault = set_option(options, setting.name, setting.text)) {
+      throw InputError(path.string() + ":" + std::to_string(setting.line), fault->reason, fault->remedy);
+    }
+  }
+}
+
+// Precondition: names have one group at most, and those of a group follow one another.
+std::string options_file(const EngineOptions& options) {
+  std::string text;
+  std::string group;
+  for (const EngineOption& option : option_table()) {
+    const std::size_t dot = option.name.find('.');
+    const std::string its_group = dot == std::string::npos ? "" : option.name.substr(0, dot);
+    if (its_group != group && !its_group.empty()) text += its_group + ":\n";
+    group = its_group;
+    const std::string word = group.empty() ? option.name : "  " + option.name.substr(dot + 1);
+    const std::string unit = option.unit.empty() ? "" : option.unit + ", ";
+    text += word + ": " + option.get(options) + "  # " + option.meaning + " (" + unit + option.range + ")\n";
+  }
+  return text;
+}
+
+}  // namespace byre

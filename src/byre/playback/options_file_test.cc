@@ -1,0 +1,72 @@
+#include "byre/playback/options_file.h"
+
+#include "byre/dataset/test_folder.h"
+#include "byre/system/option_table.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+
+class OptionsFile : public TestFolder {
+ protected:
+  EngineOptions read(const std::string& text) const {
+    write("options.yaml", text);
+    EngineOptions options;
+    read_options(folder_ / "options.yaml", options);
+    return options;
+  }
+  std::string error(const std::string& text) const {
+    return error_of([&] { read(text); });
+  }
+};
+
+// Every option at the other end of its range, or another of its words.
+EngineOptions all_changed() {
+  EngineOptions options;
+  for (const EngineOption& option : option_table()) {
+    const std::string before = option.get(options);
+    std::string words = option.range;
+    std::ranges::replace(words, '|', ' ');
+    std::istringstream stream(words);
+    for (std::string word; option.get(options) == before && stream >> word;) option.set(options, word);
+    EXPECT_NE(option.get(options), before) << option.name;
+  }
+  return options;
+}
+
+TEST_F(OptionsFile, SetsWhatItNamesAndNothingElse) {
+  const EngineOptions options = read("pace: live\ntracking:\n  search_radius_px: 20.5\n");
+  EXPECT_EQ(options.pace, Pace::live);
+  EXPECT_EQ(options.session.track.search_radius, 20.5f);
+  EngineOptions back = options;
+  back.pace = EngineOptions{}.pace;
+  back.session.track.search_radius = EngineOptions{}.session.track.search_radius;
+  EXPECT_EQ(options_file(back), options_file({}));
+}
+
+TEST_F(OptionsFile, IsReadBackAsItWasWritten) {
+  const EngineOptions options = all_changed();
+  EXPECT_NE(options_file(options), options_file({}));
+  EXPECT_EQ(options_file(read(options_file(options))), options_file(options));
+  EXPECT_EQ(options_file(read(options_file({}))), options_file({}));
+}
+
+TEST_F(OptionsFile, SaysWhatIsWrongInWhichLineAndWhatToDo) {
+  EXPECT_THAT(error("tracking:\n  serch_radius_px: 3\n"),
+              HasSubstr("options.yaml:2: there is no option 'tracking.serch_radius_px' (did you mean "
+                        "'tracking.search_radius_px'?)"));
+  EXPECT_THAT(error("health:\n  trusted_error_m: wide\n"),
+              HasSubstr("options.yaml:2: 'wide' is no value of health.trusted_error_m (give from 0.000001 to 1000, in "
+                        "metres)"));
+  EXPECT_THAT(error("pace: fast\n"), HasSubstr("options.yaml:1: 'fast' is no value of pace (give inline|paced|live)"));
+  EXPECT_THAT(error("tracking: 5\n"), HasSubstr("there is no option 'tracking'"));
+  EXPECT_THAT(error("map_online:\n"), HasSubstr("'' is no value of map_online (give true|false)"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Writes the table of options into a page, as "byre map --print-options" tells them.
+
+Usage: options_table.py PROGRAM PAGE [--check]        PROGRAM is byre, PAGE docs/options.md
+
+The table stands between two lines of the page, BEGIN and END below. Exit code: 0 the page is as it should be, 1 it was
+not, and with --check it still is not, 2 the page has no such lines, or the program's options are not understood.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+from typing import Iterator, NamedTuple
+
+BEGIN = "<!-- The table is written by tools/options_table.py. -->"
+END = "<!-- End of the table. -->"
+LINE = re.compile(r"(?P<indent> *)(?P<word>\w+): (?P<value>\S+)  # (?P<meaning>.*) \((?P<facts>[^()]*)\)")
+GROUP = re.compile(r"(\w+):")
+
+
+class Option(NamedTuple):
+    name: str
+    unit: str
+    range: str
+    default: str
+    meaning: str
+
+    def row(self) -> str:
+        accepted = self.range.replace("|", ", ")
+        return f"| `{self.name}` | {self.unit} | {self.default} | {accepted} | {self.meaning} |"
+
+
+def options_in(text: str) -> Iterator[Option]:
+    group = ""
+    for line in text.splitlines():
+        if found := GROUP.fullmatch(line):
+            group = found[1] + "."
+        elif found := LINE.fullmatch(line):
+            *unit, accepted = found["facts"].split(", ")
+            name = (group if found["indent"] else "") + found["word"]
+            yield Option(name, "".join(unit), accepted, found["value"], found["meaning"])
+        else:
+            raise ValueError(f"not an option: {line}")
+
+
+def table_of(text: str) -> str:
+    rows = [option.row() for option in options_in(text)]
+    if not rows:
+        raise ValueError("no options")
+    return "\n".join(["| option | unit | default | accepted | meaning |", "|---|---|---|---|---|", *rows])
+
+
+def with_table(page: str, table: str) -> str:
+    if page.count(BEGIN) != 1 or page.count(END) != 1:
+        raise ValueError(f"the page lacks the lines '{BEGIN}' and '{END}'")
+    before, rest = page.split(BEGIN)
+    return f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.split(END)[1]}"
+
+
+def main(arguments: list[str]) -> int:
+    names = [argument for argument in arguments if not argument.startswith("-")]
+    if len(names) != 2 or any(argument not in (*names, "--check") for argument in arguments):
+        print(__doc__, file=sys.stderr)
+        return 2
+    program, path = names[0], pathlib.Path(names[1])
+    printed = subprocess.run([program, "map", "--print-options"], capture_output=True, text=True, check=True).stdout
+    page = path.read_text(encoding="utf-8")
+    try:
+        wanted = with_table(page, table_of(printed))
+    except ValueError as error:
+        print(f"{path}: {error}", file=sys.stderr)
+        return 2
+    if page == wanted:
+        return 0
+    if "--check" in arguments:
+        print(f"{path}: the table is not up to date: run tools/options_table.py {program} {path}")
+    else:
+        path.write_text(wanted, encoding="utf-8")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
