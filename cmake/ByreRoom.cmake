@@ -54,23 +54,57 @@ function(byre_add_room room)
   endif()
 endfunction()
 
+# Consumers need C++20, Eigen and the same alignment; see ByreInstall.cmake for the headers.
+function(byre_set_usage library)
+  target_compile_features(${library} PUBLIC cxx_std_20)
+  target_compile_definitions(${library} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  target_link_libraries(${library} PUBLIC Eigen3::Eigen PRIVATE $<BUILD_INTERFACE:byre_flags>)
+endfunction()
+
 # A part of the library that can be linked alone, byre::<component>: the objects of its rooms, the components it needs
-# and the libraries it is linked with. Consumers need C++20, Eigen and the same alignment; see ByreInstall.cmake for the
-# headers.
+# and the libraries it is linked with. Static whatever BUILD_SHARED_LIBS says: see byre_add_shared_library.
 function(byre_add_component component)
   cmake_parse_arguments(PARSE_ARGV 1 part "" "" "ROOMS;NEEDS;LINKS")
   set(library byre_component_${component})
-  add_library(${library})
+  add_library(${library} STATIC)
   add_library(byre::${component} ALIAS ${library})
   set_target_properties(${library} PROPERTIES OUTPUT_NAME byre_${component} EXPORT_NAME ${component})
   foreach(room IN LISTS part_ROOMS)
     target_sources(${library} PRIVATE $<TARGET_OBJECTS:byre_${room}>)
   endforeach()
   list(TRANSFORM part_NEEDS PREPEND byre_component_)
-  target_compile_features(${library} PUBLIC cxx_std_20)
-  target_compile_definitions(${library} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
-  target_link_libraries(${library} PUBLIC Eigen3::Eigen ${part_NEEDS} PRIVATE ${part_LINKS} $<BUILD_INTERFACE:byre_flags>)
+  byre_set_usage(${library})
+  target_link_libraries(${library} PUBLIC ${part_NEEDS} PRIVATE ${part_LINKS})
   set_property(GLOBAL APPEND PROPERTY BYRE_COMPONENTS ${component})
+endfunction()
+
+# libbyre.so, byre::shared: the objects of the component core and those that read calibrations, so that it needs neither
+# image files nor videos. Programs see what the public headers declare, but for recordings.
+function(byre_add_shared_library)
+  add_library(byre_shared SHARED)
+  target_sources(byre_shared PRIVATE
+    "$<FILTER:$<TARGET_OBJECTS:byre_dataset>,INCLUDE,/(calibration_file|calibration_fields|camera_fields)[.]cc>")
+  add_library(byre::shared ALIAS byre_shared)
+  get_target_property(objects byre_component_core SOURCES)
+  get_target_property(links byre_component_core LINK_LIBRARIES)
+  target_sources(byre_shared PRIVATE ${objects})
+  byre_set_usage(byre_shared)
+  target_link_libraries(byre_shared PRIVATE ${links} yaml-cpp)
+  set_target_properties(byre_shared PROPERTIES OUTPUT_NAME byre EXPORT_NAME shared LINKER_LANGUAGE CXX
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+
+  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+  set(script ${CMAKE_CURRENT_SOURCE_DIR}/cmake/make_exports.py)
+  set(exports ${CMAKE_CURRENT_BINARY_DIR}/byre_exports.map)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
+  list(FILTER headers EXCLUDE REGEX "/recording\\.h$")
+  # Before 1.0 a minor version may break the interface, so both numbers are in every program that is linked.
+  add_custom_command(OUTPUT ${exports} DEPENDS ${script} ${headers} VERBATIM
+    COMMAND Python3::Interpreter ${script} ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${exports} ${headers})
+  target_sources(byre_shared PRIVATE ${exports})
+  set_target_properties(byre_shared PROPERTIES LINK_DEPENDS ${exports})
+  target_link_options(byre_shared PRIVATE
+                      LINKER:--version-script=${exports} LINKER:--as-needed LINKER:--no-undefined)
 endfunction()
 
 # All components as one, byre::byre.

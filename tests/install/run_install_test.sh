@@ -11,19 +11,27 @@ prefix=$work/prefix
 
 fail() { echo "run_install_test.sh: $1" >&2; exit 1; }
 
-build() { # FOLDER NAME
-  cmake -S "$1" -B "$work/$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix"
+build() { # FOLDER NAME OPTION...
+  cmake -S "$1" -B "$work/$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" "${@:3}"
   cmake --build "$work/$2"
 }
 
 cmake --install "$build_dir" --prefix "$prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 
-build "$source_dir/tests/install" consumer
-said=$("$work/consumer/consumer")
-echo "$said"
-[[ $said == "initialising, no image" ]] || fail "the consumer of byre::core was told something else"
-libraries=$(ldd "$work/consumer/consumer")
-! grep -E "yaml|embree|imgcodecs|videoio|boost" <<<"$libraries" || fail "byre::core is linked with what it has no use for"
+for component in core shared; do
+  build "$source_dir/tests/install" "$component" -DBYRE_COMPONENT="$component"
+  (cd "$work" && "$component/consumer") >"$work/$component.txt"
+done
+cat "$work/core.txt"
+[[ $(head -n 1 "$work/core.txt") == "initialising, no image" ]] || fail "a frame without images was taken for something else"
+[[ $(sed -n 21p "$work/core.txt") == "tracking, none, "* ]] || fail "the consumer does not know where it is"
+[[ $(tail -n 1 "$work/core.txt") == "no-such.byre" ]] || fail "an error did not name what it is about"
+cmp "$work/core.txt" "$work/shared.txt" || fail "byre::core and byre::shared give different poses"
+! ldd "$work/core/consumer" "$work/shared/consumer" | grep -E "embree|imgcodecs|videoio|boost" ||
+  fail "a consumer is linked with what it has no use for"
+ldd "$work/shared/consumer" | grep -q "libbyre\.so\.0 => $prefix/" || fail "byre::shared is not the library that was installed"
+"$source_dir/tests/install/check_exports.py" "$(find "$prefix" -name libbyre.so)" "$prefix/include/byre" ||
+  fail "exports are wrong"
 
 # The installed program uses what was installed with it.
 byre=$prefix/bin/byre
