@@ -37,3 +37,14 @@ function(byre_install_data)
   set_source_files_properties(src/byre/input/data_file.cc PROPERTIES COMPILE_DEFINITIONS
     "BYRE_DATA_IN_PREFIX=\"${CMAKE_INSTALL_DATADIR}/byre\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
 endfunction()
+
+# Sets a variable, for install(DESTINATION), to a folder below the prefix: to the first one given, or to the second when
+# the prefix is Debian's own, /usr, which is known no sooner than at the installation.
+function(byre_install_dir variable folder debian_folder component)
+  install(CODE "
+    set(BYRE_${variable} ${folder})
+    if(CMAKE_INSTALL_PREFIX MATCHES \"/usr$\")
+      set(BYRE_${variable} ${debian_folder})
+    endif()" COMPONENT ${component})
+  set(${variable} "\${BYRE_${variable}}" PARENT_SCOPE)
+endfunction()

@@ -9,11 +9,11 @@ packages=(
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
   libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libembree-dev libboost-dev
   # the program
-  libcli11-dev
+  libcli11-dev python3
   # the package for Python
   pybind11-dev python3-dev python3-numpy python3-pytest
   # tests, fuzzing, benchmarks, rules
-  libgtest-dev libgmock-dev clang libbenchmark-dev clang-format python3
+  libgtest-dev libgmock-dev clang libbenchmark-dev clang-format zsh
 )
 # Of tests in a browser, which are skipped without. Node may come from anywhere: Debian's npm does not go together with
 # another's Node.

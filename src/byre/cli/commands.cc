@@ -37,6 +37,7 @@ constexpr std::array kCommands = {
     Command{"simulate", "Render a recording of a made-up barn, with its truth and floor plan", declare_simulate},
     Command{"import-colmap", "Make a map of a COLMAP model and its images", declare_import_colmap},
     Command{"export-colmap", "Write a map as a COLMAP model", declare_export_colmap},
+    Command{"completion", "Print the script by which a shell completes byre's commands", declare_completion},
 };
 
 bool writes_files(CLI::App& command) {

@@ -40,5 +40,6 @@ Action declare_vocabulary(CLI::App& command);
 Action declare_simulate(CLI::App& command);
 Action declare_import_colmap(CLI::App& command);
 Action declare_export_colmap(CLI::App& command);
+Action declare_completion(CLI::App& command);
 
 }  // namespace byre::cli
