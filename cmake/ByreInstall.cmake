@@ -1,4 +1,5 @@
-# What `cmake --install` lays down: the library, its headers, and the package that find_package(byre) reads.
+# What `cmake --install` lays down: the library, its headers, and the package that find_package(byre) reads. Each file
+# belongs to a component, which ByrePackages.cmake makes a package of.
 include(CMakePackageConfigHelpers)
 
 # Its headers are those of include/byre, which name the standard library and Eigen alone; those of the rooms stay home.

@@ -12,6 +12,8 @@ packages=(
   libcli11-dev python3
   # the package for Python
   pybind11-dev python3-dev python3-numpy python3-pytest
+  # packages
+  dpkg-dev file
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev clang libbenchmark-dev clang-format zsh
 )

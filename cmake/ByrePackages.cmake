@@ -1,0 +1,105 @@
+# Packages of Debian, which CPack makes of what is built: one of each component of the installation. Run by
+# scripts/package.sh.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME byre)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
+set(CPACK_PACKAGE_CONTACT "byre maintainers <maintainers@byre.invalid>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+    WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON) # of the same version, see CPACK_COMPONENT_<component>_DEPENDS below
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+# Documents that policy wants in every package.
+file(READ ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE license)
+string(REGEX MATCH "Copyright \\(c\\) ([^\n]*)" found "${license}")
+set(byre_copyright ${CMAKE_MATCH_1})
+string(REGEX REPLACE ".*Copyright \\(c\\) [^\n]*\n\n" "" byre_license "${license}")
+string(STRIP "${byre_license}" byre_license)
+string(REPLACE "\n\n" "\n.\n" byre_license "${byre_license}")
+string(REPLACE "\n" "\n " byre_license " ${byre_license}")
+string(TIMESTAMP byre_date "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH where that is set
+set(byre_debian_dir ${CMAKE_CURRENT_BINARY_DIR}/debian)
+configure_file(cmake/debian/copyright.in ${byre_debian_dir}/copyright @ONLY)
+configure_file(cmake/debian/changelog.in ${byre_debian_dir}/changelog @ONLY)
+find_program(BYRE_GZIP gzip DOC "gzip, which packs the change log of packages")
+if(BYRE_GZIP)
+  execute_process(COMMAND ${BYRE_GZIP} -9nkf ${byre_debian_dir}/changelog)
+endif()
+
+# A package of one component: PACKAGE is its name; SECTION is Debian's; NEEDS are components; DEPENDS and RECOMMENDS are
+# packages, beside those of the shared libraries that are found in it. Scripts that dpkg runs are in
+# cmake/debian/<component>.
+function(byre_add_package component)
+  cmake_parse_arguments(PARSE_ARGV 1 debian "" "PACKAGE;SECTION;SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;ARCHITECTURE" "NEEDS")
+  string(TOUPPER ${component} upper)
+  file(GLOB scripts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/debian/${component}/*)
+  install(FILES ${byre_debian_dir}/copyright DESTINATION share/doc/${debian_PACKAGE} COMPONENT ${component}
+          EXCLUDE_FROM_ALL)
+  install(FILES ${byre_debian_dir}/changelog.gz DESTINATION share/doc/${debian_PACKAGE} RENAME changelog.Debian.gz
+          COMPONENT ${component} EXCLUDE_FROM_ALL OPTIONAL)
+  set(CPACK_COMPONENT_${upper}_DEPENDS ${debian_NEEDS} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${debian_PACKAGE} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${debian_SECTION} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_DESCRIPTION "${debian_SUMMARY}\n${debian_DESCRIPTION}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${debian_DEPENDS}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_RECOMMENDS "${debian_RECOMMENDS}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA "${scripts}" PARENT_SCOPE)
+  if(debian_ARCHITECTURE)
+    set(CPACK_DEBIAN_${upper}_PACKAGE_ARCHITECTURE ${debian_ARCHITECTURE} PARENT_SCOPE)
+  else()
+    set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON PARENT_SCOPE)
+  endif()
+  list(APPEND CPACK_COMPONENTS_ALL ${component})
+  set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} PARENT_SCOPE)
+endfunction()
+
+set(about "byre follows a stereo camera, or one camera alone, maps what it sees, and\ntells at each frame where the robot is and how well it knows.")
+if(BYRE_ARCH)
+  set(processors "\nIt is made for processors with the instructions of ${BYRE_ARCH}.")
+endif()
+
+set(CPACK_COMPONENTS_ALL)
+byre_add_package(data PACKAGE byre-data SECTION science ARCHITECTURE all
+  SUMMARY "visual SLAM for robots - data"
+  DESCRIPTION "${about}\n.\nThis package holds the visual vocabulary by which places are recognised,\nand the protocols of benchmarks.")
+if(BYRE_BUILD_CLI)
+  byre_add_package(program PACKAGE byre SECTION science NEEDS data
+    SUMMARY "visual SLAM for robots - program"
+    DESCRIPTION "${about}${processors}\n.\nThis package holds the program, its manual pages, and completion for\nbash and zsh.")
+endif()
+byre_add_package(runtime PACKAGE libbyre${PROJECT_VERSION_MAJOR} SECTION libs NEEDS data
+  SUMMARY "visual SLAM for robots - shared library"
+  DESCRIPTION "${about}${processors}\n.\nThis package holds the library for robots' own programs.")
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=") # before 1.0 a minor version may break the interface
+byre_add_package(development PACKAGE libbyre-dev SECTION libdevel NEEDS runtime DEPENDS libeigen3-dev
+  RECOMMENDS "libceres-dev, libopencv-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libembree-dev"
+  SUMMARY "visual SLAM for robots - development files"
+  DESCRIPTION "${about}\n.\nThis package holds the headers, the package for CMake, and the static\nlibraries. Programs that are linked with those need the recommended packages.")
+if(BYRE_BUILD_PYTHON)
+  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  byre_add_package(python PACKAGE python3-byre SECTION python NEEDS data
+    DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy"
+    SUMMARY "visual SLAM for robots - Python 3"
+    DESCRIPTION "${about}${processors}\n.\nThis package holds the library for Python, with arrays of numpy in and out.")
+endif()
+
+# All that packages are made of.
+get_property(components GLOBAL PROPERTY BYRE_COMPONENTS)
+list(TRANSFORM components PREPEND byre_component_)
+set(packaged byre_shared byre_manual byre_python ${components})
+add_custom_target(byre_packaged)
+foreach(target IN LISTS packaged)
+  if(TARGET ${target})
+    add_dependencies(byre_packaged ${target})
+  endif()
+endforeach()
+
+include(CPack)

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Makes packages of a built byre, installs them into a new folder with a package database of its own, uses what is there
+# as somebody does who has nothing else, and removes them.
+# Usage: run_package_test.sh BUILD_DIR       Exit code 77: skipped, as dpkg is not here
+set -euo pipefail
+
+build_dir=${1:?usage: run_package_test.sh BUILD_DIR}
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+for tool in dpkg dpkg-deb dpkg-shlibdeps cpack; do
+  command -v "$tool" >/dev/null || { echo "Skipped: no $tool on this system"; exit 77; }
+done
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+root=$work/root
+packages=$work/packages
+
+fail() { echo "run_package_test.sh: $1" >&2; exit 1; }
+
+# Packages of the system are not in the folder's database, and scripts run outside of it.
+dpkg_here() {
+  dpkg --root="$root" --log=/dev/null --force-not-root --force-depends --force-script-chrootless "$@"
+}
+
+field() { # PACKAGE FIELD
+  dpkg-deb --field "$packages/$1"_*.deb "$2"
+}
+
+require_depends() { # PACKAGE NEEDED...
+  local needed depends
+  depends=$(field "$1" Depends)
+  for needed in "${@:2}"; do
+    [[ ", $depends" == *", $needed"* ]] || fail "$1 does not depend on $needed but on: $depends"
+  done
+}
+
+cpack --config "$build_dir/CPackConfig.cmake" -B "$packages" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
+names=(byre byre-data libbyre0 libbyre-dev)
+[[ ! -f $build_dir/python/byre/__init__.py ]] || names+=(python3-byre)
+for name in "${names[@]}"; do
+  [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "there is no package $name"
+done
+version=$(field byre Version)
+require_depends byre "byre-data (= $version)" libyaml-cpp libopencv-videoio
+require_depends libbyre0 "byre-data (= $version)" libyaml-cpp libopencv-core
+[[ $(field libbyre0 Depends) != *videoio* ]] || fail "the shared library needs videos"
+require_depends libbyre-dev "libbyre0 (= $version)" libeigen3-dev
+
+mkdir -p "$root/var/lib/dpkg/updates" "$root/var/lib/dpkg/info"
+touch "$root/var/lib/dpkg/status" "$root/var/lib/dpkg/available"
+dpkg_here --install "$packages"/*.deb >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; exit 1; }
+unset BYRE_DATA BYRE_VOCABULARY
+usr=$root/usr
+byre=$usr/bin/byre
+
+"$byre" --version
+[[ "$("$byre" --version) " == "byre ${version%-*} " ]] || fail "the program has another version than its package, $version"
+[[ $("$byre" vocabulary show) == "vocabulary   $usr/share/byre/default.vocabulary"* ]] || fail "the vocabulary is not found"
+"$build_dir/tests/recordings/render_room" "$work/room" --frames 20 --rate 10 --laps 0.1 2>/dev/null
+"$byre" map "$work/room" -o "$work/room.byre" --quiet >/dev/null
+"$byre" validate "$work/room.byre"
+
+pages=$usr/share/man/man1
+for command in $("$byre" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p'); do
+  page=$pages/byre-$command.1.gz
+  [[ -f $page ]] || fail "byre $command has no manual page"
+  zcat "$page" | grep -q "^byre\\\\-${command//-/\\\\-} \\\\- " || fail "$page has no name"
+done
+zcat "$pages/byre-map.1.gz" | grep -qF '\fB\-o,\-\-output MAP\fR' || fail "byre-map(1) does not know the option --output"
+if command -v man >/dev/null; then
+  shown=$(MANPATH=$usr/share/man man byre-map 2>&1 | cat)
+  [[ $shown == *"byre-map - turn a recording into a map"* ]] || fail "man does not show byre-map(1): $shown"
+fi
+# shellcheck disable=SC2016
+completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pa); COMP_CWORD=2; _byre; echo "${COMPREPLY[@]}"' - \
+  "$usr/share/bash-completion/completions/byre")
+[[ $completed == "--pace" ]] || fail "bash completes --pa as: $completed"
+[[ -f $usr/share/zsh/vendor-completions/_byre ]] || fail "there is no completion for zsh"
+
+{
+  cmake -S "$source_dir/tests/install" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$usr" -DBYRE_COMPONENT=shared
+  cmake --build "$work/consumer"
+} >"$work/consumer.log" 2>&1 || { cat "$work/consumer.log"; exit 1; }
+ldd "$work/consumer/consumer" | grep -q "libbyre\.so\.0 => $usr/" || fail "the consumer does not use the package's library"
+said=$("$work/consumer/consumer")
+[[ $(sed -n 21p <<<"$said") == "tracking, none, "* ]] || fail "the consumer does not know where it is: $said"
+
+if [[ -d $usr/lib/python3/dist-packages/byre ]]; then
+  require_depends python3-byre "byre-data (= $version)" python3-numpy "python3 (>= 3."
+  PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$usr/lib/python3/dist-packages /usr/bin/python3 - "$work/room" "$root" <<'PYTHON'
+import sys
+import byre
+assert byre.__file__.startswith(sys.argv[2]), byre.__file__
+recording = byre.Recording(sys.argv[1])
+slam = byre.Slam.mapping(recording.calibration)
+print("byre for Python", byre.__version__, "has", [slam.process(images).state for images in recording][-1])
+PYTHON
+fi
+
+for name in "${names[@]}"; do
+  [[ -f $usr/share/doc/$name/copyright ]] || fail "$name does not tell its licence"
+done
+dpkg_here --purge "${names[@]}" >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; exit 1; }
+left=$(find "$root" -mindepth 1 -path "$root/var" -prune -o -print)
+[[ -z $left ]] || fail "the packages have left behind: $left"
+echo "${#names[@]} packages of byre $version were made, used and removed"
