@@ -1,5 +1,5 @@
 #include "byre/cli/commands.h"
-#include "byre/cli/completion_script.h"
+#include "byre/cli/completion/script.h"
 
 #include <memory>
 #include <ostream>

@@ -1,6 +1,6 @@
-#include "byre/cli/completion_script.h"
+#include "byre/cli/completion/script.h"
 
-#include "byre/cli/file_arguments.h"
+#include "byre/cli/shared/file_arguments.h"
 
 #include <algorithm>
 #include <cstdint>

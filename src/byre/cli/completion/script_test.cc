@@ -1,10 +1,10 @@
 // Completes command lines in the shells themselves, for all that the commands declare: a new option is covered by
 // itself.
 
-#include "byre/cli/completion_script.h"
+#include "byre/cli/completion/script.h"
 
 #include "byre/cli/commands.h"
-#include "byre/cli/program_fixture.h"
+#include "byre/cli/shared/program_fixture.h"
 
 #include <set>
 #include <sstream>
