@@ -1,6 +1,6 @@
+#include "byre/assessment/localisation_report.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/localise/report.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/pose_options.h"

@@ -1,5 +1,5 @@
+#include "byre/archive/scale_by_distance.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/scale/scale_by_distance.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/input/formatted.h"

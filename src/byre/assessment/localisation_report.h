@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace byre::cli {
+namespace byre {
 
 // Errors in the map's frame: the map is aligned to the truth once, by its own keyframes, not by what was localised.
 struct LocalisationErrors {
@@ -34,4 +34,4 @@ std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
 std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
                     const std::optional<LocalisationErrors>& errors);
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace byre::cli {
+namespace byre {
 
 // A place of a map as a command line names it: "x,y,z", a position in units of the map; "point:N", a map point by its
 // number; or "time:SECONDS", the camera at the keyframe whose time is nearest, which must be within a second.
@@ -22,4 +22,4 @@ struct ScaledMap {
 ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, const std::string& second,
                             double metres);
 
-}  // namespace byre::cli
+}  // namespace byre

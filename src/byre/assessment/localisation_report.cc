@@ -1,4 +1,4 @@
-#include "byre/cli/localise/report.h"
+#include "byre/assessment/localisation_report.h"
 
 #include "byre/input/formatted.h"
 #include "byre/map/keyframe_path.h"
@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -188,4 +188,4 @@ std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
   return json.dump(1) + "\n";
 }
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/cli/scale/scale_by_distance.h"
+#include "byre/archive/scale_by_distance.h"
 
 #include "byre/input_error.h"
 #include "byre/simulation/simulated_mission.h"
@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using ::testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST(ScaleByDistance, RefusesAMapWhoseScaleIsKnown) {
 }
 
 }  // namespace
-}  // namespace byre::cli
+}  // namespace byre

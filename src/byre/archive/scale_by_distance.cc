@@ -1,4 +1,4 @@
-#include "byre/cli/scale/scale_by_distance.h"
+#include "byre/archive/scale_by_distance.h"
 
 #include "byre/input/formatted.h"
 #include "byre/input_error.h"
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 // The whole text as a number; empty when it is none.
@@ -106,4 +106,4 @@ ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, c
   return scaled;
 }
 
-}  // namespace byre::cli
+}  // namespace byre

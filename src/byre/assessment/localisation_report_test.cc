@@ -1,9 +1,9 @@
-#include "byre/cli/localise/report.h"
+#include "byre/assessment/localisation_report.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using nlohmann::json;
@@ -79,4 +79,4 @@ TEST(LocaliseReport, CountsFramesThatAreFarOff) {
 }
 
 }  // namespace
-}  // namespace byre::cli
+}  // namespace byre
