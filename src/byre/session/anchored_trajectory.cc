@@ -69,8 +69,7 @@ void AnchoredTrajectory::settle_all(const MapView& map, const TrackOptions& trac
 void AnchoredTrajectory::settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking) {
   AnchoredPose& anchored = poses_[seen.number];
   const Pose keyframe_from_world = camera_from_world(map, anchored.keyframe);
-  const auto pose =
-      pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
+  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 

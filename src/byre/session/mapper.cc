@@ -7,15 +7,15 @@
 
 namespace byre {
 
-Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
+Mapper::Mapper(const Rig& rig, const SessionOptions& options, std::unique_ptr<Executor> local,
                std::unique_ptr<Executor> global, MapperKnowledge knowledge)
     : options_(options),
       offline_(std::move(knowledge.offline)),
       local_(std::move(local)),
-      global_(std::move(global), {options.mapping}),
+      global_(std::move(global), {mapping_options(options)}),
       loop_closer_(options.loops) {
   if (knowledge.vocabulary) places_.emplace(*std::move(knowledge.vocabulary));
-  if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
+  if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, mapping_options(options));
 }
 
 std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
@@ -203,7 +203,8 @@ void Mapper::start_job() {
   MapWindow window = cut_window(map(), pending_, options_.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
-  local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+  local_.start(
+      [window = std::move(window), options = mapping_options(options_)] { return extend_map(window, options); });
 }
 
 void Mapper::index_place(KeyframeId id) {
@@ -238,9 +239,9 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
   return recalibrate(*refined, rig);
 }
 
-FinishReport Mapper::finish_map(const FinishOptions& options, const FinishHooks& hooks) {
+FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
-  FinishReport report = byre::finish_map(online_, *places_, options, hooks);
+  FinishReport report = byre::finish_map(online_, *places_, finish_options(options_), hooks);
   loop_closer_.follow(report.length_changes);
   return report;
 }
@@ -248,7 +249,7 @@ FinishReport Mapper::finish_map(const FinishOptions& options, const FinishHooks&
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
   const MapWindow whole = whole_map(map());
-  const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
+  const MapDelta adjusted = adjust_map(whole, {}, {mapping_options(options_)}, hooks.should_stop);
   LengthChanges changes = apply_correction(adjusted, whole, online_);
   loop_closer_.follow(changes);
   return changes;

@@ -4,6 +4,7 @@
 #include "byre/session/global_lane.h"
 #include "byre/session/loop_closer.h"
 #include "byre/session/segments.h"
+#include "byre/session/session_options.h"
 #include "byre/session/shutter.h"
 #include "byre/session/worker.h"
 #include "byre/slam/finishing.h"
@@ -20,16 +21,6 @@
 #include <vector>
 
 namespace byre {
-
-struct MapperOptions {
-  int recording = 0;                      // index that new keyframes get, see Keyframe::recording
-  int min_initial_points = 100;           // stereo points of the first keyframe
-  MonocularStartOptions monocular_start;  // start with a rig that has no baseline
-  WindowOptions window;                   // window of local mapping
-  MappingOptions mapping;
-  LoopOptions loops;
-  double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
-};
 
 // Where a part of the online map really lies in the offline one.
 struct OnlineCorrection {
@@ -49,7 +40,7 @@ struct MapperKnowledge {
 // are done. Called from the session's thread.
 class Mapper {
  public:
-  Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
+  Mapper(const Rig& rig, const SessionOptions& options, std::unique_ptr<Executor> local,
          std::unique_ptr<Executor> global, MapperKnowledge knowledge);
 
   MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
@@ -101,7 +92,7 @@ class Mapper {
   // relative to keyframes are to follow.
   LengthChanges finish();
   std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
-  FinishReport finish_map(const FinishOptions& options, const FinishHooks& hooks);
+  FinishReport finish_map(const FinishHooks& hooks);
   LengthChanges adjust_around_offline(const FinishHooks& hooks);
 
  private:
@@ -115,7 +106,7 @@ class Mapper {
   std::uint32_t next_keyframe_number() const { return newest_ ? newest_->number + 1 : 0; }
 
   // Constant after construction.
-  MapperOptions options_;
+  SessionOptions options_;
   std::shared_ptr<const OfflineMap> offline_;
 
   Worker<MapDelta> local_;

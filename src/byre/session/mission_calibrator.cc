@@ -4,8 +4,7 @@
 
 namespace byre {
 
-MissionCalibrator::MissionCalibrator(const Calibration& given, double prior_sigmas,
-                                     std::unique_ptr<Executor> executor)
+MissionCalibrator::MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor)
     : on_map_(given, prior_sigmas), calibrator_(given, {}), worker_(std::move(executor)) {}
 
 // Looks become rare: what many frames have told, a few more do not change.

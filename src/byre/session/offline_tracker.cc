@@ -6,8 +6,7 @@
 
 namespace byre {
 
-OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options,
-                               Lanes lanes)
+OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const SessionOptions& options, Lanes lanes)
     : options_(options),
       offline_(std::move(offline)),
       mission_(offline_, options.mission),

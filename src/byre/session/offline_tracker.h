@@ -5,6 +5,7 @@
 #include "byre/session/mission.h"
 #include "byre/session/mission_calibrator.h"
 #include "byre/session/place_search.h"
+#include "byre/session/session_options.h"
 #include "byre/session/whereabouts.h"
 #include "byre/session/worker.h"
 #include "byre/slam/focal_check.h"
@@ -14,12 +15,6 @@
 #include <vector>
 
 namespace byre {
-
-struct OfflineTrackerOptions {
-  MissionOptions mission;
-  TrackOptions track;
-  LocaliseOptions relocalise;
-};
 
 // What a mission on an offline map adds to a session: the way in that map, places looked for in it beside tracking,
 // what it says of the online map's place and of the cameras. Called from the session's thread.
@@ -31,7 +26,7 @@ class OfflineTracker {
     std::unique_ptr<Executor> calibration;
   };
 
-  OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options, Lanes lanes);
+  OfflineTracker(std::shared_ptr<const OfflineMap> offline, const SessionOptions& options, Lanes lanes);
 
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
@@ -83,7 +78,7 @@ class OfflineTracker {
   std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
                                                 Segments::Frame frame);
 
-  OfflineTrackerOptions options_;              // constant after construction
+  SessionOptions options_;                     // constant after construction
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;

@@ -19,7 +19,7 @@ class OnAnOfflineMap : public ::testing::Test {
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
   Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), map_}};
   OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
-  Whereabouts whereabouts_{{.on_offline_map = true, .registration = {}, .hindsight = {}}};
+  Whereabouts whereabouts_{{}, true};
 
   HybridTrack track_of(std::size_t frame, int inliers = 100) const {
     HybridTrack track;

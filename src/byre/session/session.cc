@@ -6,49 +6,20 @@
 #include <utility>
 
 namespace byre {
-namespace {
-
-MapperOptions mapper_options(const SessionOptions& options) {
-  return {.recording = options.recording,
-          .min_initial_points = options.min_initial_points,
-          .monocular_start = options.monocular_start,
-          .window = options.window,
-          .mapping = mapping_options(options),
-          .loops = options.loops,
-          .max_drift_to_fuse = options.max_drift_to_fuse};
-}
-
-TrackerOptions tracker_options(const SessionOptions& options) {
-  return {.local_keyframes = options.local_keyframes,
-          .min_kept_share = options.min_kept_share,
-          .track = options.track,
-          .relocalise = options.relocalise};
-}
-
-OfflineTrackerOptions offline_options(const SessionOptions& options) {
-  return {.mission = options.mission, .track = options.track, .relocalise = options.relocalise};
-}
-
-WhereaboutsOptions whereabouts_options(const SessionOptions& options, bool on_offline_map) {
-  return {
-      .on_offline_map = on_offline_map, .registration = options.mission.registration, .hindsight = options.hindsight};
-}
-
-}  // namespace
 
 Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary,
                  std::shared_ptr<const OfflineMap> offline)
     : options_(options),
       rig_(rig),
-      mapper_(rig, mapper_options(options), std::move(lanes.local),
-              offline ? make_inline_executor() : std::move(lanes.global), {std::move(vocabulary), offline}),
-      tracker_(tracker_options(options)),
-      whereabouts_(whereabouts_options(options, offline != nullptr)),
+      mapper_(rig, options, std::move(lanes.local), offline ? make_inline_executor() : std::move(lanes.global),
+              {std::move(vocabulary), offline}),
+      tracker_(options),
+      whereabouts_(options, offline != nullptr),
       input_watch_(options.image),
       shutter_(rig.readout_time) {
   if (!offline) options_.map_online = true;  // there is nothing else to track
   if (!offline) return;
-  mission_.emplace(std::move(offline), offline_options(options),
+  mission_.emplace(std::move(offline), options,
                    OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
 }
 
@@ -296,7 +267,7 @@ void Session::finish() {
 
 FinishReport Session::finish_map(const FinishHooks& hooks) {
   if (const auto turn = mapper_.calibrate_at_last(rig_, hooks.should_stop)) take_turn(*turn);
-  FinishReport report = mapper_.finish_map(finish_options(options_), hooks);
+  FinishReport report = mapper_.finish_map(hooks);
   whereabouts_.follow(report.length_changes);
   return report;
 }

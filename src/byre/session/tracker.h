@@ -2,6 +2,7 @@
 
 #include "byre/session/mapper.h"
 #include "byre/session/mission.h"
+#include "byre/session/session_options.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/motion_model.h"
 
@@ -10,18 +11,11 @@
 
 namespace byre {
 
-struct TrackerOptions {
-  int local_keyframes = 15;     // keyframes of either map, whose points are looked for in a frame
-  double min_kept_share = 0.5;  // share of the last inliers; fewer, and the pose is sought without prediction too
-  TrackOptions track;
-  LocaliseOptions relocalise;  // where the frame is looked for in the whole map
-};
-
 // Finds where a frame was taken from: by prediction, or from nothing. Reads the maps, and changes nothing but what it
 // keeps from frame to frame. Called from the session's thread.
 class Tracker {
  public:
-  explicit Tracker(const TrackerOptions& options) : options_(options) {}
+  explicit Tracker(const SessionOptions& options) : options_(options) {}
 
   // What frames are tracked on.
   struct Scene {
@@ -65,7 +59,7 @@ class Tracker {
   const std::vector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
   std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted);
 
-  TrackerOptions options_;  // constant after construction
+  SessionOptions options_;  // constant after construction
 
   std::optional<KeyframeId> reference_;  // online, whose points are looked for
   int last_inliers_ = 0;                 // in the last frame tracked

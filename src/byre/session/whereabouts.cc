@@ -51,17 +51,16 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
   Progress progress{0.0, confirmation_.is_proven(), last_believed_.has_value()};
   if (!seen.from_nothing) {
-    confirmation_ =
-        confirmed_further(confirmation_, track.offline_expected, track.offline_inliers, options_.registration);
-  } else if (options_.on_offline_map) {
-    confirmation_ = confirmation_of(evidence_of_find(seen.frame.time, body), options_.registration);
+    confirmation_ = confirmed_further(confirmation_, track.offline_expected, track.offline_inliers, registration_);
+  } else if (on_offline_map_) {
+    confirmation_ = confirmation_of(evidence_of_find(seen.frame.time, body), registration_);
   }
   progress.step = move_to(seen, body, rig, map);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
   const KeyframeId anchor = anchor_of(track);
   trajectory_.add({seen.frame.time, anchor, track.tracked.camera_from_world * inverse(camera_from_world(map, anchor)),
                    seen.segment});
-  if (options_.on_offline_map) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
+  if (on_offline_map_) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
   has_pose_ = true;
   if (!confirmation_.is_believed()) return progress;
   trajectory_.believe_all();

@@ -4,6 +4,7 @@
 #include "byre/session/anchored_trajectory.h"
 #include "byre/session/confirmation.h"
 #include "byre/session/odometry.h"
+#include "byre/session/session_options.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/motion_model.h"
 
@@ -12,12 +13,6 @@
 
 namespace byre {
 
-struct WhereaboutsOptions {
-  bool on_offline_map = false;  // finds are to be confirmed, and sightings kept
-  RegistrationOptions registration;
-  HindsightOptions hindsight;
-};
-
 // The keyframe that a tracked frame's pose is kept relative to.
 KeyframeId anchor_of(const HybridTrack& track);
 
@@ -25,7 +20,9 @@ KeyframeId anchor_of(const HybridTrack& track);
 // maps, and changes nothing but itself. Called from the session's thread.
 class Whereabouts {
  public:
-  explicit Whereabouts(const WhereaboutsOptions& options) : options_(options), trajectory_(options.hindsight) {}
+  // on_offline_map: finds are to be confirmed, and sightings kept.
+  Whereabouts(const SessionOptions& options, bool on_offline_map)
+      : registration_(options.mission.registration), on_offline_map_(on_offline_map), trajectory_(options.hindsight) {}
 
   bool has_pose() const { return has_pose_; }  // in the last frame
   const Confirmation& confirmation() const { return confirmation_; }
@@ -76,7 +73,9 @@ class Whereabouts {
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
 
-  WhereaboutsOptions options_;  // constant after construction
+  // Constant after construction.
+  RegistrationOptions registration_;
+  bool on_offline_map_;
 
   AnchoredTrajectory trajectory_;
   MotionModel motion_;
