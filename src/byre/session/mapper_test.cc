@@ -97,7 +97,8 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
   rig.baseline = 0.0;
   SimulationOptions options;
   options.landmarks = 8000;
-  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(30, 10.0, 2.0, 0.25), options);
+  options.noise_seed = 2;
+  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(120, 10.0, 2.0, 1.0), options);
   Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
   EXPECT_TRUE(mapper.can_begin(rig));
   std::size_t frame = 0;
