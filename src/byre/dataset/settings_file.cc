@@ -22,6 +22,7 @@ int line_of(const YAML::Node& node) {
 
 YAML::Node load_yaml(const fs::path& path) {
   refuse_pipe(path);
+  if (fs::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
   try {
     return YAML::LoadFile(path.string());
   } catch (const YAML::BadFile&) {

@@ -12,8 +12,7 @@ void PrintTo(const Confirmation& confirmation, std::ostream* stream) {
 
 namespace {
 
-constexpr RegistrationOptions kOptions{
-    .confirmations = 3, .confirmations_of_jump = 10, .proving_share = 0.06, .without_proof = 1.0, .max_speed = 3.0};
+constexpr RegistrationOptions kOptions{.confirmations = 3, .proving_share = 0.06, .max_speed = 3.0};
 
 TEST(ConfirmationOfAFind, FollowsTheTable) {
   struct Row {
