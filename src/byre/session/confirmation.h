@@ -28,7 +28,7 @@ struct FindEvidence {
 // What a find needs:
 //   find                                        frames to believe      frames to prove
 //   the first                                   confirmations          confirmations
-//   farther off than the robot can have moved   confirmations_of_jump  confirmations
+//   farther off than the robot can have moved   kConfirmationsOfJump   confirmations
 //   nearer, not long after a proven pose        confirmations          none
 //   nearer                                      confirmations          confirmations
 Confirmation confirmation_of(const FindEvidence& find, const RegistrationOptions& options);
