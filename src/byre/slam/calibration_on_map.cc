@@ -17,8 +17,8 @@ constexpr int kMaxRows = 60;    // stereo matches of a frame whose rows are look
 constexpr double kIndependence = 0.1;
 
 constexpr double kHuberWidth = 2.0;       // sigmas
-constexpr double kSystematicSigma = 0.2;  // pixels, of what neither noise nor the calibration explains
-constexpr int kMaxPoints = 120;           // of a frame
+constexpr double kSystematicSigma = 0.2;  // pixels, errors that neither noise nor the calibration explains
+constexpr int kMaxPoints = 120;           // most points of a frame that are asked
 
 using ByPose = Eigen::Matrix<double, 3, 6>;
 using ByCalibration = Eigen::Matrix<double, 3, kCalibrationParameters>;

@@ -19,7 +19,7 @@ Positions positions_of(const MapWindow& window) {
   return positions;
 }
 
-// Of the points that the correction leaves.
+// Positions of the points that the correction leaves.
 Positions positions_after(const MapDelta& correction, const MapWindow& before) {
   Positions positions = positions_of(before);
   for (const UpdatedPoint& updated : correction.updated_points) positions[updated.id] = updated.point.position_in_world;
@@ -67,7 +67,7 @@ class WorldMotion {
     }
   }
 
-  // Of a keyframe that came later: that of its nearest ancestor. Parents are older, so this ends.
+  // Motion about a keyframe; for one that came later, that of its nearest ancestor. Parents are older, so this ends.
   Similarity of(std::optional<KeyframeId> id) const {
     while (id) {
       const auto known = motions_.find(*id);
@@ -128,7 +128,7 @@ std::vector<MovedKeyframe> carried_keyframes(const WorldMotion& motion, const Ma
   return carried;
 }
 
-// Of all keyframes the map ever had.
+// Changes of length at all keyframes the map ever had.
 LengthChanges length_changes(const WorldMotion& motion, const Map& map) {
   LengthChanges changes;
   for (KeyframeId id{map.origin(), 0};; ++id.number) {

@@ -75,7 +75,7 @@ void append_observation_changes(const MapWindow& before, const MapWindow& after,
   }
 }
 
-// Of an offline keyframe only what the online map keeps of it can change.
+// Changes about an offline keyframe: only what the online map keeps of its views can change.
 void append_foreign_view_changes(const MapWindow& before, const MapWindow& after, std::size_t keyframe,
                                  MapDelta& delta) {
   const WindowKeyframe& now = after.keyframes[keyframe];

@@ -37,7 +37,7 @@ struct NewObservation {
 struct RemovedObservation {
   OnlineKeyframeId keyframe;
   int feature = 0;
-  PointId point;  // that it saw; if it sees another by now, that one stays
+  PointId point;  // point that the feature saw; if it sees another by now, that one stays
 };
 
 // An offline keyframe is found to see an online point: kept with the point, so that nothing offline changes.
@@ -48,13 +48,13 @@ struct NewForeignView {
 
 struct RemovedForeignView {
   OnlinePointId point;
-  Observation observation;  // if it is of another point by now, that one keeps it
+  Observation observation;  // view of the point that is gone; if it is of another point by now, that one keeps it
 };
 
 struct NewPoint {
   MapPoint point;
-  std::vector<NewObservation> observations;  // their sightings' points are set when the point gets its id,
-  std::vector<ForeignView> foreign_views;    // and so are those of these
+  std::vector<NewObservation> observations;  // sightings, whose point is set when the new point gets its id
+  std::vector<ForeignView> foreign_views;    // foreign views, whose point is set when the new point gets its id
 };
 
 // All that mapping may write. Names only online things, so an offline map cannot change.

@@ -12,7 +12,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   CalibrationVector along = directions.eigenvectors().transpose() * expected;
   CalibrationVector variances = directions.eigenvalues().cwiseInverse();
   int determined = 0;
-  double squared_sigmas = 0.0;  // by which the change along all determined directions differs from none
+  double squared_sigmas = 0.0;  // squared distance of the change from none, in sigmas, over all determined directions
   for (int i = 0; i < kCalibrationParameters; ++i) {
     if (directions.eigenvalues()[i] >= kMinGain * kMinGain * prior_information) {
       ++determined;

@@ -48,7 +48,7 @@ class DriftedLap {
     return true_camera_from_world(mission, frame_at(mission, map.find_keyframe(id)->frame.time));
   }
 
-  // Of a keyframe's position, in metres, after the map was laid over the truth as well as it goes.
+  // Largest error of a keyframe's position, metres, after the map was laid over the truth as well as it goes.
   double worst_error(const Map& adjusted, Scale scale) const {
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const KeyframeId id : adjusted.keyframe_ids()) {

@@ -11,7 +11,7 @@ namespace byre {
 struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
-  PlaceNoise noise;  // of the search for loops
+  PlaceNoise noise;  // noise put on the places that the search for loops is given
 };
 
 // How sound a map is by what can be known without any truth.
@@ -26,11 +26,11 @@ struct MapQuality {
 
 struct FinishReport {
   int loops = 0;                       // places found again that the map did not know of
-  std::vector<double> loop_drifts;     // pixels by which their two sides had drifted apart, see apparent_drift
-  std::vector<double> loop_residuals;  // metres by which they still disagree with what was seen
-  int keyframes_removed = 0;           // found redundant
-  int points_removed = 0;              // found weak
-  LengthChanges length_changes;        // by which what lies relative to a keyframe is to follow; see apply_correction
+  std::vector<double> loop_drifts;     // pixels by which both sides of a loop had drifted apart, see apparent_drift
+  std::vector<double> loop_residuals;  // metres by which a loop still disagrees with what was seen
+  int keyframes_removed = 0;           // keyframes found redundant
+  int points_removed = 0;              // points found weak
+  LengthChanges length_changes;        // growth that what lies relative to a keyframe must follow, see apply_correction
   MapQuality before;
   MapQuality after;
 };

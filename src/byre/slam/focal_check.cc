@@ -82,7 +82,7 @@ double FocalCheck::error() const {
 double FocalCheck::sigmas() const {
   const Parabola cost(sum_);
   if (cost.curvature <= 0.0 || sum_.as_it_is <= 0.0) return 0.0;
-  const double variance = sum_.as_it_is / sum_.points;  // of a point's error
+  const double variance = sum_.as_it_is / sum_.points;  // variance of a point's error
   return cost.slope / std::sqrt(cost.curvature * variance * weight_);
 }
 

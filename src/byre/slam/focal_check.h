@@ -46,7 +46,7 @@ class FocalCheck {
  private:
   FocalCheckOptions options_;
   FocalEvidence sum_;
-  double weight_ = 0.0;  // of all frames in the sum
+  double weight_ = 0.0;  // number of frames in the sum, older ones counting less
   bool is_off_ = false;
   int frames_ = 0;
   int asked_ = 0;

@@ -18,7 +18,7 @@ constexpr int kMaxNeighbours = 10;          // neighbours of a keyframe in the p
 constexpr int kFusionNeighbours = 10;       // keyframes on each side of a loop whose points are fused
 constexpr int kSecondBundleIterations = 6;  // iterations after outliers were taken out
 
-constexpr int kMinOfflineSightings = 30;  // that tell where a keyframe, or a whole map, lies in the offline one
+constexpr int kMinOfflineSightings = 30;  // offline points seen that tell where a keyframe, or a whole map, lies
 
 using IndexOfKeyframe = std::map<KeyframeId, int>;
 
@@ -79,7 +79,7 @@ double length_of_a_metre(const MapWindow& window) {
 // matter.
 constexpr double kPositionSigma = 0.003;  // metres
 constexpr double kRotationSigma = 0.001;  // radians
-constexpr double kScaleSigma = 0.003;     // of the logarithm
+constexpr double kScaleSigma = 0.003;     // natural logarithm of the scale
 
 // The better the more points they share.
 Matrix6 covisible_information(int shared_points, double metre) {
@@ -90,8 +90,8 @@ Matrix6 covisible_information(int shared_points, double metre) {
   return Matrix6((weights * (shared_points / 100.0)).asDiagonal());
 }
 
-// Of a loop: what its matches leave open, and as much again as neighbours leave open, for points may err together. It
-// has the say of so many links.
+// The edge of a loop: uncertain by what its matches leave open, and by as much again as neighbours leave open, for
+// points may err together. It has the say of so many links.
 PoseGraphEdge graph_edge(const LoopEdge& loop, int place, int keyframe, double metre, double links) {
   return {.first = place,
           .second = keyframe,

@@ -10,7 +10,7 @@ namespace byre {
 namespace {
 
 constexpr int kFramesPerKeyframe = 3;
-constexpr std::uint32_t kFirstNew = 10;  // of 20 keyframes
+constexpr std::uint32_t kFirstNew = 10;  // number of the newer half's first keyframe, of 20
 
 SimulatedMission lap() {
   SimulationOptions options = without_noise();

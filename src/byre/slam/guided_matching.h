@@ -9,8 +9,8 @@ namespace byre {
 
 // Where a view should show a map point.
 struct Projection {
-  StereoPixel predicted;  // pixels
-  int octave = 0;         // in which its corner should be found
+  StereoPixel predicted;  // u, v, disparity; pixels
+  int octave = 0;         // octave in which its corner should be found
 };
 
 // Empty outside the camera's frustum, and where distance or angle are such that the descriptor no longer holds.

@@ -10,7 +10,7 @@
 namespace byre {
 
 struct HindsightOptions {
-  std::size_t frames = 2000;  // that wait for the end; what comes before those is settled earlier. 10 kB each
+  std::size_t frames = 2000;  // most frames that wait for the end, 10 kB each; older ones are settled earlier
 };
 
 // A point and where a frame saw it.

@@ -22,7 +22,7 @@ struct MeanError {
   double rotation = 0.0;  // radians
 };
 
-// Of the online keyframes in the frame of the offline map, without any alignment.
+// Errors of the online keyframes in the frame of the offline map, without any alignment.
 MeanError mean_error(const HybridScene& scene) {
   MeanError mean;
   for (const KeyframeId id : scene.online.keyframe_ids()) {

@@ -22,11 +22,11 @@ struct HybridScene {
   SimulatedMission first;   // made the offline map
   SimulatedMission second;  // 10 cm beside it
   Map offline{Origin::offline};
-  Map online{Origin::online};  // of the second visit: a keyframe every second frame
+  Map online{Origin::online};  // map of the second visit: a keyframe every second frame
   std::map<int, PointId> known_points;
 
   MapView view() const { return {&offline, online}; }
-  Pose true_pose(KeyframeId id) const {  // of an online keyframe
+  Pose true_pose(KeyframeId id) const {  // true pose of an online keyframe
     return true_camera_from_world(second, static_cast<std::size_t>(kFramesPerKeyframe) * id.number);
   }
 };

@@ -168,8 +168,8 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
 
 // A thing that was moved fits a pose of its own too, but does not fill the image. Precondition: the pose is sound.
 bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
-  constexpr int kMinParts = 4;       // a third of the image,
-  constexpr double kMinShare = 0.6;  // and so much of what tells at all
+  constexpr int kMinParts = 4;       // image regions where the points must fit, a third of all
+  constexpr double kMinShare = 0.6;  // share of the regions that tell anything where they must fit
   const Support support = support_of(query, offline, measured);
   return support.fitting >= kMinParts && support.fitting >= kMinShare * support.telling;
 }
@@ -228,7 +228,7 @@ Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& f
   // A compromise between what stayed and what moved fits fewer offline points than the online pose does. Against an
   // online map it takes more of them than agree by chance, where walls hide what should be in view.
   if (opinions.maps_disagree && opinions.offline_stands) {
-    constexpr double kMinShare = 0.04;  // of those in the frustum
+    constexpr double kMinShare = 0.04;  // least share of the offline points in the frustum
     const MeasuredPoints& points = found.measured.offline;
     const auto inliers = static_cast<double>(std::ranges::count(opinions.offline->inliers, true));
     if (inliers < kMinShare * static_cast<double>(found.expected.offline.size())) {

@@ -23,18 +23,18 @@ bool is_within(const Agreement& agreement, const DriftBound& drift);
 // A frame tracked on the points of an offline and an online map.
 struct HybridTrack {
   TrackedFrame tracked;
-  std::optional<KeyframeId> offline_reference;  // of each map, the keyframe that shares most points
+  std::optional<KeyframeId> offline_reference;  // offline keyframe that shares most points
   std::optional<KeyframeId> online_reference;
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
   std::optional<Pose> from_offline;  // camera_from_world, as offline points alone have it
-  std::optional<Pose> from_online;   // as online points alone have it
-  bool maps_disagree = false;        // those two are farther apart than their covariances explain
+  std::optional<Pose> from_online;   // camera_from_world, as online points alone have it
+  bool maps_disagree = false;        // both poses are farther apart than their covariances explain
   // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
   bool offline_stands = false;
-  std::optional<FocalEvidence> focal;   // of the offline points, where they were asked
-  std::vector<PointId> offline_agreed;  // inliers, and
+  std::optional<FocalEvidence> focal;   // what offline points say of the focal length, where they were asked
+  std::vector<PointId> offline_agreed;  // offline points that fit the pose
   std::vector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
 
   // The online map does not lie where it should.

@@ -43,7 +43,7 @@ class HybridWindow : public ::testing::Test {
             })->point;
   }
 
-  // Of an offline keyframe: the first that sees no point.
+  // The first feature of an offline keyframe that sees no point.
   int free_feature(KeyframeId id) const {
     const std::vector<Sighting>& sightings = scene_.offline.find_keyframe(id)->sightings;
     const auto sees_none = [](const Sighting& sighting) { return !sighting.point; };

@@ -20,9 +20,9 @@ struct MonocularStartOptions {
 struct MonocularStart {
   Map map;
   KeyframeId first;
-  KeyframeId second;             // of the frame that was tried
-  double median_parallax = 0.0;  // radians, of the points
-  double direction_sigma = 0.0;  // radians, of the translation between the two, where it is known least
+  KeyframeId second;             // keyframe of the frame that was tried
+  double median_parallax = 0.0;  // radians, over the points of the map
+  double direction_sigma = 0.0;  // radians, translation between both keyframes in the direction where it is known least
 };
 
 struct MonocularAttempt {

@@ -9,8 +9,8 @@ namespace byre {
 // What speaks against the images of a frame themselves.
 struct InputEvidence {
   bool is_repeated = false;                   // the image is the last one again, bit by bit
-  double frozen_seconds = 0.0;                // for so long
-  ImageFault right_fault = ImageFault::none;  // of the right image, where the left one has none
+  double frozen_seconds = 0.0;                // seconds for which the image has been the same
+  ImageFault right_fault = ImageFault::none;  // fault of the right image, where the left one has none
   bool cameras_disagree = false;              // the right image hardly shows what the left one does, or on other rows
 };
 

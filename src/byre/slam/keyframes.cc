@@ -16,7 +16,7 @@ bool has_trustworthy_disparity(const Keypoint& keypoint) {
   return keypoint.has_disparity() && keypoint.disparity_sigma < kMaxRelativeDisparitySigma * keypoint.disparity;
 }
 
-// Of a point triangulated from (u, v, disparity), in world.
+// Covariance of a point triangulated from (u, v, disparity), in world.
 Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world, const Eigen::Vector3d& point_in_camera,
                                   double pixel_sigma, double disparity_sigma) {
   const Eigen::Matrix3d point_from_pixel = rig.projection_jacobian(point_in_camera).inverse();

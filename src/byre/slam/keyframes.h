@@ -18,7 +18,7 @@ struct KeyframeOptions {
 };
 
 inline constexpr int kMaxPending = 3;           // most keyframes that wait for mapping
-inline constexpr int kMaxPendingWhenWeak = 10;  // the same where fewer than min_tracked points are left
+inline constexpr int kMaxPendingWhenWeak = 10;  // most that wait where fewer than min_tracked points are left
 inline constexpr int kMaxWaitForDepth = 8;      // frames that a keyframe waits for one with disparities
 inline constexpr int kEnoughOffline = 300;      // offline points tracked in a place that needs no keyframe
 
@@ -29,7 +29,7 @@ struct KeyframeEvidence {
   int pending = 0;            // keyframes mapping has not worked on yet
   int without_depth = 0;      // frames, with this one, since one had disparities; none where the rig gives no such
   double turn = 0.0;          // radians, rotation from the reference keyframe
-  int offline_inliers = 0;    // of the points tracked, those of an offline map
+  int offline_inliers = 0;    // tracked points of an offline map
   double shift_share = 0.0;   // translation from the reference keyframe over the median depth of the tracked points
 };
 

@@ -89,7 +89,7 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
 
 // Whether two poses cannot both be right about where the camera is.
 bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapView& map) {
-  constexpr double kMaxShift = 0.05;  // of the median depth
+  constexpr double kMaxShift = 0.05;  // share of the median depth
   constexpr double kMaxTurn = 0.05;   // radians
   const Pose motion = one.camera_from_world * inverse(other.camera_from_world);
   return motion.translation.norm() > kMaxShift * median_depth(one, map) ||

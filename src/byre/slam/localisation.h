@@ -16,11 +16,11 @@ enum class LocalisationFailure : std::uint8_t {
   none,
   too_few_features,     // the image is dark, blurred or blank
   no_similar_keyframe,  // nothing in the map looks like it
-  too_few_matches,      // of the frame's features with the points of the places that do
+  too_few_matches,      // too few features of the frame match points of the places that look like it
   geometry_disagrees,   // no pose explains the matches
   too_few_inliers,      // a pose was found, but too few of the points around it are where they should be
   clustered,            // the points that agree lie in a small part of the image
-  uncertain,            // they leave the pose open by more than is useful
+  uncertain,            // the points that agree leave the pose open by more than is useful
   ambiguous             // two places explain the image
 };
 
@@ -39,9 +39,9 @@ struct LocaliseOptions {
 struct Localisation {
   std::optional<TrackedFrame> tracked;  // empty when the frame was not found
   LocalisationFailure failure = LocalisationFailure::too_few_features;
-  int places = 0;   // tried
-  int matches = 0;  // by words, at the place that came furthest; zero before any was tried
-  int inliers = 0;  // of its last step
+  int places = 0;   // places tried
+  int matches = 0;  // matches by words at the place that came furthest; zero before any was tried
+  int inliers = 0;  // features that agreed with a pose in the last step it came to
 };
 
 // Finds a frame in the map without any guess of its pose: places that share visual words, matches of their points,

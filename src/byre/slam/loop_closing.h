@@ -16,16 +16,16 @@ namespace byre {
 struct LoopEdge {
   KeyframeId keyframe;
   KeyframeId place;
-  Pose keyframe_from_place;              // of their cameras
-  Matrix6 covariance = Matrix6::Zero();  // of delta in exp_pose(delta) * keyframe_from_place
+  Pose keyframe_from_place;              // motion between both cameras
+  Matrix6 covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * keyframe_from_place
   double scale = 1.0;                    // other than 1 only for a keyframe without stereo
-  double scale_sigma = 0.0;              // of its logarithm
+  double scale_sigma = 0.0;              // standard deviation of the scale's logarithm
 };
 
 // To see what place recognition may get wrong before the map does: candidates in random order, some of them missing.
 struct PlaceNoise {
-  double dropped_share = 0.0;  // of the candidates
-  std::uint64_t seed = 0;      // 0: no noise at all
+  double dropped_share = 0.0;  // share of the candidates that are left out
+  std::uint64_t seed = 0;      // seed of the order and of what is left out; 0: no noise at all
 };
 
 inline constexpr int kMinConfirmations = 3;  // frames, not only keyframes, that must find the place again
@@ -49,13 +49,13 @@ struct LoopHypothesis {
   // Where things lie in the older part of the map, given where they lie in the newer one: the drift in between.
   // point_in_old = old_from_new * (scale * point_in_new), see drift_of.
   Pose old_from_new;
-  Matrix6 covariance =
-      Matrix6::Zero();        // of the keyframe's camera in the older part, as TrackedFrame::match_covariance
-  double median_depth = 0.0;  // metres, of the points that say so
+  // Covariance of the keyframe's camera in the older part, as TrackedFrame::match_covariance.
+  Matrix6 covariance = Matrix6::Zero();
+  double median_depth = 0.0;  // metres, over the points that say so
   int confirmations = 0;
   int misses = 0;
   double scale = 1.0;        // other than 1 only for a keyframe without stereo
-  double scale_sigma = 0.0;  // of its logarithm
+  double scale_sigma = 0.0;  // standard deviation of the scale's logarithm
 };
 
 inline Similarity drift_of(const LoopHypothesis& hypothesis) {

@@ -57,7 +57,7 @@ class LoopInAMap : public testing::Test {
 
   KeyframeId newest() const { return map_.keyframe_ids().back(); }
 
-  static constexpr std::uint32_t kFirstNew = 12;  // of 24 keyframes
+  static constexpr std::uint32_t kFirstNew = 12;  // number of the newer half's first keyframe, of 24
   const SimulatedMission mission_;
   const Pose new_from_old_;
   Map map_{Origin::online};

@@ -156,7 +156,7 @@ class GrowingHalf : public testing::Test {
     correction_ = difference(before_, after);
   }
 
-  static constexpr std::uint32_t kFirstNew = 8;  // of 24 keyframes
+  static constexpr std::uint32_t kFirstNew = 8;  // number of the first keyframe that the correction moves, of 24
   static inline const Similarity kGrowth{1.2, {rotation_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}}};
   static constexpr KeyframeId kNew{Origin::online, 20};
   Map map_ = DriftedLap(monocular_rig(), {}).map;

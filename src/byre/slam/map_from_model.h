@@ -8,7 +8,7 @@ namespace byre {
 
 struct ModelPoint {
   Eigen::Vector3d position_in_world;
-  std::vector<int> images;  // that saw it when the model was made: indices into SfmModel::images
+  std::vector<int> images;  // images that saw the point when the model was made: indices into SfmModel::images
 };
 
 // A structure-from-motion model, its images replaced by what byre extracts from them.

@@ -47,7 +47,7 @@ class ModelOfAMission : public testing::Test {
     return mission_.landmark_of_feature[kFramesApart * seen.keyframe.number][static_cast<std::size_t>(seen.feature)];
   }
 
-  // Of the model's points in the map: how many of their observations show the landmark they are.
+  // Share of the observations of the model's points in the map that show the landmark they are.
   double right_share(const ModelMap& made) const {
     int right = 0, all = 0;
     for (std::uint32_t i = 0; i < made.model_points.size(); ++i) {
@@ -68,7 +68,7 @@ class ModelOfAMission : public testing::Test {
 
   SimulatedMission mission_;
   SfmModel model_;
-  std::vector<int> landmarks_;  // that the model's points are
+  std::vector<int> landmarks_;  // landmarks that the model's points are
 };
 
 class ModelOfACleanMission : public ModelOfAMission {

@@ -10,7 +10,7 @@ namespace byre {
 struct PosedFrame {
   Frame frame;
   Pose camera_from_world;
-  int rig = 0;  // that took it: which of those given beside
+  int rig = 0;  // index of the rig that took it, among those given beside
 };
 
 struct KnownPoseOptions {
@@ -28,7 +28,7 @@ struct KnownPoseOptions {
 Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
                    const KnownPoseOptions& options);
 
-// Of a map, for each keyframe in ascending order: others whose views overlap with its own, most overlap first.
+// Keyframes of a map whose views overlap, for each in ascending order those that overlap with it, most overlap first.
 std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const KnownPoseOptions& options);
 
 }  // namespace byre

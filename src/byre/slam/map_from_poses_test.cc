@@ -27,8 +27,8 @@ std::vector<PosedFrame> posed_frames(const SimulatedMission& mission, std::size_
 }
 
 struct Placement {
-  double right_share = 0.0;      // of the points, within 5 cm of the landmark they show
-  double mean_observations = 0;  // of a point
+  double right_share = 0.0;      // share of the points that lie within 5 cm of the landmark they show
+  double mean_observations = 0;  // observations of a point, on average
 };
 
 Placement placement(const Map& map, const SimulatedMission& mission) {

@@ -12,10 +12,10 @@ struct MappingOptions {
   float search_radius = 3.0f;             // pixels at octave 0, about where a point of another keyframe should be
   double pose_sigma = 0.5;                // pixels that errors of the poses may add between two views
   double max_relative_depth_sigma = 0.1;  // a new point's depth must be known to this share of itself
-  double redundant_share = 0.9;           // of a keyframe's points offline or seen by three others: it is redundant
-  double offline_weight = 2.0;            // of a sighting of an offline point in bundle adjustment; others have 1
-  int first_bundle_iterations = 5;        // before outliers are taken out
-  int second_bundle_iterations = 8;       // after
+  double redundant_share = 0.9;           // share of a redundant keyframe's points offline or seen by three others
+  double offline_weight = 2.0;            // weight of sightings of offline points in bundle adjustment; others have 1
+  int first_bundle_iterations = 5;        // iterations before outliers are taken out
+  int second_bundle_iterations = 8;       // iterations after outliers were taken out
 };
 
 // One mapping job: new points between the new keyframes and their neighbours, online and offline, points seen twice

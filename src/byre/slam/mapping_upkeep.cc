@@ -88,8 +88,8 @@ void refresh_view(const MapWindow& window, WindowPoint& point) {
   if (sum.norm() > 1e-3f) point.point.mean_viewing_direction = sum.normalized();
 }
 
-// Of the points the keyframe sees, the share that is there without it: those that three others at least see too, and
-// offline ones. Online points are reached through online keyframes, so that an offline keyframe is no substitute.
+// Share of the points a keyframe sees that are there without it: those that three others at least see too, and offline
+// ones. Online points are reached through online keyframes, so that an offline keyframe is no substitute.
 double redundant_share(const MapWindow& window, const WindowKeyframe& keyframe) {
   constexpr int kOthers = 3;
   int seen = 0;

@@ -41,7 +41,7 @@ std::vector<ModelView> find_candidates(const SfmModel& model, const ModelPoint& 
   return candidates;
 }
 
-// Of each image the candidate most like the descriptor.
+// The candidate most like the descriptor in each image.
 std::vector<ModelView> most_alike(const SfmModel& model, const std::vector<ModelView>& candidates,
                                   const Descriptor& descriptor, int max_distance) {
   std::vector<ModelView> chosen;

@@ -16,7 +16,7 @@ class OfflineMap {
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
 
-  const std::vector<SourceRecording>& recordings() const { return recordings_; }  // that it was made from
+  const std::vector<SourceRecording>& recordings() const { return recordings_; }  // what the map was made from
 
   // How exactly its frame is known where a keyframe stands: what a keyframe's pose is uncertain by relative to the
   // others on the whole, the median of them. The same in all directions.

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// Of the points as their reference views see them.
+// Median depth of the points as their reference views see them.
 double median_depth(const Map& map) {
   std::vector<double> depths;
   for (const PointId id : map.point_ids()) {

@@ -14,8 +14,8 @@ struct NodeFeature {
   auto operator<=>(const NodeFeature&) const = default;
 };
 
-using NodeFeatures = std::vector<NodeFeature>;   // ascending
-using NodeRange = std::span<const NodeFeature>;  // of one node
+using NodeFeatures = std::vector<NodeFeature>;   // features in ascending order of their nodes
+using NodeRange = std::span<const NodeFeature>;  // features of one node
 
 template <typename Choose>
 NodeFeatures features_by_node(std::span<const Word> words, const Vocabulary& vocabulary, int levels_up, Choose choose) {

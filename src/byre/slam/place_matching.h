@@ -9,9 +9,9 @@
 namespace byre {
 
 struct PlaceMatchOptions {
-  int levels_up = 2;  // of the vocabulary: features are compared with those below the same node, this far above words
-  int max_distance = 60;    // bits
-  float max_ratio = 0.85f;  // best over second best
+  int levels_up = 2;        // levels of the vocabulary above words: features below the same node there are compared
+  int max_distance = 60;    // bits between descriptors
+  float max_ratio = 0.85f;  // best over second best distance
 };
 
 // A feature of a frame that looks like a map point.

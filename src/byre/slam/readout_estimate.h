@@ -9,7 +9,7 @@ namespace byre {
 struct ReadoutEvidence {
   double information = 0.0;  // 1 / s^2
   double right_side = 0.0;   // 1 / s
-  int points = 0;            // that were asked
+  int points = 0;            // points that were asked
 
   ReadoutEvidence& operator+=(const ReadoutEvidence& other);
 };
@@ -45,8 +45,8 @@ class ReadoutEstimator {
 
     void add(const ReadoutEvidence& block);
     double change() const { return sum.right_side / sum.information; }  // seconds
-    double sigma() const;                                               // of it, seconds
-    double effect() const;  // on what is measured, but for what the pose takes up; sigmas, root mean square
+    double sigma() const;                                               // sigma of the change, seconds
+    double effect() const;  // effect on what is measured, but for what the pose takes up; sigmas, root mean square
   };
 
   bool is_sure() const;

@@ -7,8 +7,8 @@
 namespace byre {
 namespace {
 
-constexpr double kInformation = 1e6;  // of a frame: it knows a readout time to a millisecond
-constexpr int kPoints = 300;          // of a frame: 20 ms move each by more than a sigma
+constexpr double kInformation = 1e6;  // information of a frame, 1 / s^2: it knows a readout time to a millisecond
+constexpr int kPoints = 300;          // points of a frame: 20 ms move each by more than a sigma
 
 // The readout time after frames that all say it is to change by so many seconds.
 double after(ReadoutEstimator& estimator, double change, int frames) {

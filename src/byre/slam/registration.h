@@ -9,11 +9,11 @@
 namespace byre {
 
 struct RegistrationOptions {
-  int confirmations = 3;        // frames that must say the same before it is believed
-  double proving_share = 0.06;  // share of the offline points in view that so many frames must see before a pose found
-                                // from nothing is trusted: fewer agree by chance where a building repeats itself
-  double max_speed = 3.0;       // metres a second, highest speed of the robot
-  int max_misses = 2;           // frames that say something else, before it is given up
+  int confirmations = 3;  // frames that must say the same before it is believed
+  // Share of the offline points in view that confirming frames must see to be trusted: fewer agree by chance.
+  double proving_share = 0.06;
+  double max_speed = 3.0;  // metres a second, highest speed of the robot
+  int max_misses = 2;      // frames that say something else, before it is given up
 };
 
 inline constexpr int kConfirmationsOfJump = 10;  // frames, where the robot was carried or went faster than it can

@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// Of the camera in the middle of a frame, per second.
+// Velocity of the camera in the middle of a frame, per second.
 inline Vector6 true_velocity(const SimulatedMission& mission, std::size_t frame) {
   const std::size_t before = frame == 0 ? 0 : frame - 1, after = std::min(frame + 1, mission.truth.size() - 1);
   const Pose motion = true_camera_from_world(mission, after) * inverse(true_camera_from_world(mission, before));

@@ -15,7 +15,7 @@ struct LogRatio {
   double sigma = 0.0;
 };
 
-// Of the depth over the depth.
+// Variance of the depth as a share of the depth.
 double relative_depth_variance(const MapPoint& point, const Pose& camera_from_world, double depth) {
   const Eigen::RowVector3d forward_in_world = camera_from_world.rotation.toRotationMatrix().row(2);
   return forward_in_world.dot(point.covariance * forward_in_world.transpose()) / (depth * depth);

@@ -13,13 +13,13 @@ namespace byre {
 struct DepthPair {
   double newer = 0.0;
   double older = 0.0;
-  double sigma = 0.0;  // of the logarithm of their ratio
+  double sigma = 0.0;  // standard deviation of the logarithm of their ratio
 };
 
 // By how much the scale of a map has drifted.
 struct ScaleDrift {
   double old_per_new = 1.0;  // lengths of the older part for each of the newer
-  double sigma = 0.0;        // of its logarithm
+  double sigma = 0.0;        // standard deviation of the logarithm of old_per_new
 };
 
 // The features by which a keyframe sees points of its own and, where it was found in the older part, points of that.

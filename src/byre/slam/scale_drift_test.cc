@@ -31,7 +31,7 @@ TEST(EstimateScaleDrift, IsExactOnCleanDepths) {
 
 TEST(EstimateScaleDrift, KnowsHowUncertainItIs) {
   constexpr unsigned kTrials = 100;
-  double sum = 0.0;  // of squared errors, in sigmas: chi-square
+  double sum = 0.0;  // squared errors, in sigmas: chi-square
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const auto drift = estimate_scale_drift(pairs_of(50, 0.9, 0.04, seed), 15);
     ASSERT_TRUE(drift);

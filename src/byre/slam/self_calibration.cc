@@ -26,10 +26,10 @@ constexpr double kFocalSigmas = 0.25;
 constexpr double kHuberWidth = 2.0;  // sigmas
 // The disparities of one corner in many keyframes, and those of its neighbours, are measured on the same surface and
 // err alike: together they tell less than their sigmas say.
-constexpr double kSharedDisparityError = 3.0;  // times their sigma
+constexpr double kSharedDisparityError = 3.0;  // factor on the sigma of each disparity
 constexpr double kMedianOfChiSquare2 = 1.386;
 constexpr double kMedianOfChiSquare3 = 2.366;
-constexpr double kSigmasOfMedian = 1.4826;  // by which the median of absolute deviations is multiplied
+constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over the median of absolute deviations, if normal
 
 // Keyframes of the rig, all or blocks of neighbours spread over the run.
 std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
@@ -184,7 +184,7 @@ Learned with_shared_error(const Learned& learned, const CalibrationVector& error
           learned.right_side - scale * told * error.dot(learned.right_side)};
 }
 
-// Of both focal lengths alike.
+// An error of both focal lengths alike.
 CalibrationVector focal_error(double sigmas) {
   CalibrationVector error = CalibrationVector::Zero();
   error[kLeftCamera] = error[kRightCamera] = sigmas;

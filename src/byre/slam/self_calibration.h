@@ -9,7 +9,7 @@
 namespace byre {
 
 struct SelfCalibrationOptions {
-  int max_keyframes = 250;    // those that take part: the time grows with their cube
+  int max_keyframes = 250;    // most keyframes that take part: the time grows with their cube
   double prior_sigmas = 2.0;  // how far off a calibration is taken to be at first, in sigmas of a good one
 };
 

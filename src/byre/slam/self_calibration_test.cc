@@ -100,7 +100,7 @@ class MapOfErringCamera {
   const Calibration given_;
   const Calibration truth_;
   const Rectification rectification_;
-  const float sigma_;  // of the noise, pixels
+  const float sigma_;  // pixels of noise
   std::vector<Eigen::Vector3d> points_;
   MapWindow window_;
   std::mt19937_64 random_{5};

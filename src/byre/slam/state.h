@@ -33,15 +33,15 @@ enum class OfflineView : std::uint8_t { held, off_the_map, blinded, changed };
 
 struct OfflineEvidence {
   int expected = 0;  // offline points in the frustum of the pose, predicted where there is no other
-  int inliers = 0;   // of those
+  int inliers = 0;   // offline points that fit the pose
   bool image_is_faulty = false;
-  int features = 0;  // in the image
+  int features = 0;  // features in the image
 };
 
 struct OfflineViewOptions {
-  int min_inliers = 20;   // that hold a pose
-  int min_expected = 40;  // fewer in the frustum: off the map
-  int min_features = 50;  // fewer in the image: blinded
+  int min_inliers = 20;   // least offline inliers that hold a pose
+  int min_expected = 40;  // offline points in the frustum; with fewer, off the map
+  int min_features = 50;  // features in the image; with fewer, blinded
 };
 
 OfflineView view_of_offline(const OfflineEvidence& evidence, const OfflineViewOptions& options);

@@ -23,7 +23,7 @@ std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const Point
   return judged;
 }
 
-// Of the nearest judged points about one of them, the share that has moved.
+// Share of the nearest judged points about one of them that has moved.
 double share_around(const std::vector<JudgedPoint>& judged, std::size_t point) {
   std::vector<std::pair<double, bool>> others;  // squared metres, moved
   others.reserve(judged.size());

@@ -10,12 +10,12 @@
 namespace byre {
 
 struct SuspensionOptions {
-  int frames = 8;            // by which a point was found elsewhere more often than in its place
-  int frames_to_return = 3;  // in which a suspended point was found in its place again, one after the other
+  int frames = 8;            // surplus of frames that find a point elsewhere over frames that find it in its place
+  int frames_to_return = 3;  // frames, one after the other, that find a suspended point in its place again
 };
 
-// Of the points that were found elsewhere, those that lie among others of them: a thing that was moved is a cluster in
-// space, and a point that disagrees alone, among neighbours in place, was mistaken for another. All ascending.
+// Points found elsewhere that lie among others of them: a thing that was moved is a cluster in space, and a point that
+// disagrees alone, among neighbours in place, was mistaken for another. All ascending.
 std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
                                     std::span<const PointId> moved);
 
@@ -25,9 +25,9 @@ class Suspension {
  public:
   explicit Suspension(const SuspensionOptions& options) : options_(options) {}
 
-  // Of one frame whose pose offline points hold: which of them were found in their places, and which elsewhere.
+  // Notes one frame whose pose offline points hold: the points found in their places, and those found elsewhere.
   void note(std::span<const PointId> agreed, std::span<const PointId> moved);
-  // The same of suspended ones, which were looked for again.
+  // Notes where suspended points were found when they were looked for again.
   void note_again(std::span<const PointId> agreed, std::span<const PointId> moved);
 
   bool is_suspended(PointId id) const;

@@ -18,18 +18,18 @@ struct TrackedFeature {
 
 struct TrackedFrame {
   Pose camera_from_world;
-  // Of delta in exp_pose(delta) * camera_from_world, relative to the map's origin: what the matches leave open, and
-  // what the reference keyframe's own pose does.
+  // Covariance of delta in exp_pose(delta) * camera_from_world, relative to the map's origin: what the matches leave
+  // open, and what the reference keyframe's own pose does.
   Matrix6 covariance = Matrix6::Zero();
-  Matrix6 match_covariance = Matrix6::Zero();  // of that, what the matches leave open: relative to the map around it
+  Matrix6 match_covariance = Matrix6::Zero();  // what the matches leave open, relative to the map around the camera
   KeyframeId reference;                        // the keyframe that shares most points
   std::vector<TrackedFeature> features;        // inliers only, ascending
   std::vector<TrackedFeature> outliers;        // matches that are not where the pose has their points
   int expected = 0;                            // map points in the frustum
-  int matches = 0;                             // of those, matched before outliers were taken out
+  int matches = 0;                             // expected points matched, before outliers were taken out
 };
 
-// Of the outliers, the features where the point's very patch was found, ascending: what they show has moved, or moves.
+// Outliers where the point's very patch was found, as features, ascending: what they show has moved, or moves.
 std::vector<int> contradicting_features(const TrackedFrame& tracked, const Features& features);
 
 // A map point as it was matched in a frame.

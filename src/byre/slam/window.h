@@ -15,7 +15,7 @@ struct WindowKeyframe {
   KeyframeId id;                      // an offline keyframe is always an anchor
   Keyframe keyframe;                  // sightings' pixels hold; which point they see is told by point_of_feature
   std::vector<int> point_of_feature;  // index into MapWindow::points, kNoPoint or kPointElsewhere
-  bool movable = false;               // else an anchor: it sees the same points and stays put
+  bool movable = false;               // whether mapping may move it; an anchor sees the same points and stays put
   bool is_new = false;                // mapping has not worked on it yet
   bool removed = false;
 };
@@ -50,8 +50,8 @@ struct WindowOptions {
   int anchors = 16;                // online keyframes
   int offline_anchors = 8;         // offline keyframes
   int min_offline_sightings = 30;  // see hold_the_world
-  // Of offline points, by the movable keyframes: so many hold the window better than online anchors, which may have
-  // drifted, and these are left out.
+  // Sightings of offline points by the movable keyframes: so many hold the window better than online anchors, which may
+  // have drifted and are left out then.
   int sightings_in_place_of_anchors = 200;
 };
 
