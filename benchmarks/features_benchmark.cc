@@ -18,7 +18,7 @@ struct RenderedPair {
   ImageFrame images;
 };
 
-// Of EuRoC's resolution. One for the whole process: rendering it takes longer than most benchmarks.
+// A pair of EuRoC's resolution. One for the whole process: rendering it takes longer than most benchmarks.
 const RenderedPair& rendered_pair() {
   static const RenderedPair pair = [] {
     limit_image_threads(1);

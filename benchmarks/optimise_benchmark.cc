@@ -161,7 +161,7 @@ class Building {
  private:
   static constexpr double kPixelSigma = 0.8;
   static constexpr double kDisparitySigma = 0.4;
-  static constexpr double kOutliers = 0.03;  // of the observations
+  static constexpr double kOutliers = 0.03;  // share of the observations that are outliers
 
   Pose true_camera_from_world(int pose) const {
     const double radius = poses_ / 3.0 / (2.0 * std::numbers::pi);
@@ -186,7 +186,7 @@ class Building {
            rig.contains(rig.project(point_in_camera).head<2>());
   }
 
-  // Of both rounds, those near the given one first.
+  // Poses of both rounds that see a point, those near the given one first.
   std::vector<int> poses_that_see(const Eigen::Vector3d& point_in_world, int near) const {
     constexpr int kReach = 15;
     std::vector<int> poses;
@@ -217,7 +217,7 @@ class Building {
     }
   }
 
-  // Of the newest point.
+  // Adds what a pose sees of the newest point.
   void add_observation(int pose) {
     BundleObservation observation{.pose = pose, .point = static_cast<int>(problem_.points.size()) - 1, .measured = {}};
     observation.measured =

@@ -24,7 +24,7 @@ void load_vocabulary(benchmark::State& state) {
 }
 BENCHMARK(load_vocabulary)->Unit(benchmark::kMillisecond);
 
-// Of the features of one frame.
+// Finds the words of the features of one frame.
 void find_words(benchmark::State& state) {
   const Vocabulary vocabulary = default_vocabulary();
   std::mt19937_64 random(1);

@@ -50,7 +50,7 @@ const Vocabulary& vocabulary() {
   return trained;
 }
 
-// Of the first so many halls, each frame of a lap through them a keyframe.
+// The map of the first so many halls, each frame of a lap through them a keyframe.
 std::shared_ptr<const OfflineMap> map_of(int keyframes) {
   static std::map<int, std::shared_ptr<const OfflineMap>> made;
   if (made.contains(keyframes)) return made[keyframes];

@@ -16,7 +16,7 @@ void find_expected_points(benchmark::State& state) {
   SimulationOptions options;
   options.landmarks = 12000;
   const auto mission = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.5), options);
-  const Map map = true_map(mission, 2, Origin::online);  // of the even frames; looked for in an odd one
+  const Map map = true_map(mission, 2, Origin::online);  // map of the even frames; looked for in an odd one
   const MapView view(nullptr, map);
   constexpr int kFrame = 21;
   const Pose prediction_error{rotation_exp({0.003, 0.003, 0.003}), {0.01, 0.01, 0.01}};

@@ -31,8 +31,8 @@ void run(const char* folder) {
   options.max_drift_to_fuse = 0.0;
   Session session(extractor.rig(), options, Lanes(make_live_executor(), make_live_executor()),
                   Vocabulary::load(default_vocabulary_path()));
-  double copy_ms = 0.0, slowest_ms = 0.0;  // of the frame that began the correction, and of those since
-  int frames = -1;                         // since it began; -1: there is none
+  double copy_ms = 0.0, slowest_ms = 0.0;  // times of the frame that began the correction, and of the slowest since
+  int frames = -1;                         // frames since the correction began; -1: there is none
   const Clock::time_point begin = Clock::now();
   for (int i = 0; i < recording->size(); ++i) {
     const auto images = recording->read(i);

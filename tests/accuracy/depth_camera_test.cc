@@ -16,7 +16,7 @@ TEST(DepthCameraInFreiburg1, FollowsEveryFrameInMetresThoughFewHaveDepth) {
   if (!folder) GTEST_SKIP() << missing(kRecording);
   const MappedRecording mapped = map_recording(*folder, {}, make_paced_executor(4), {.camera = CameraChoice::rgbd});
   EXPECT_LE(frames_without_pose(mapped), 5);
-  // Of 52 mm of movement about its middle while the camera turns; its shutter rolls.
+  // The error is a part of 52 mm of movement about the middle while the camera turns; its shutter rolls.
   EXPECT_LE(position_error(mapped.final, load_truth(*folder)), 0.032);
 }
 

@@ -17,7 +17,7 @@ namespace byre {
 struct MappedRecording {
   std::vector<Timestamp> frame_times;
   Trajectory causal;  // poses as they were published when their frame came
-  Trajectory final;   // the same frames after all corrections
+  Trajectory final;   // poses of all these frames after the last correction
   Map map{Origin::online};
 };
 

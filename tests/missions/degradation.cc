@@ -46,7 +46,7 @@ cv::Mat white_noise(cv::Size size, double sigma, std::uint64_t seed) {
 cv::Mat smooth_noise(cv::Size size, double sigma, double pixels, std::uint64_t seed) {
   cv::Mat noise;
   cv::GaussianBlur(white_noise(size, 1.0, seed), noise, {}, pixels);
-  const double left = 1.0 / (2.0 * std::sqrt(kPi) * pixels);  // of a deviation of one, by the blur
+  const double left = 1.0 / (2.0 * std::sqrt(kPi) * pixels);  // deviation that the blur leaves of one
   return noise * (sigma / left);
 }
 

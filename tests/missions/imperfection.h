@@ -15,7 +15,7 @@ namespace byre {
 struct Imperfection {
   CameraCondition condition = CameraCondition::good;
   std::uint64_t calibration_seed = 1;
-  double focal_factor = 1.0;  // by which the focal lengths that it is told are too long
+  double focal_factor = 1.0;  // told focal lengths over the true ones
 
   bool operator==(const Imperfection&) const = default;
 };

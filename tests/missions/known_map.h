@@ -37,8 +37,8 @@ Trajectory truth_of(const RecordingName& name);
 struct MapRecipe {
   RecordingName recording;
   FrameRange range{};
-  bool from_true_poses = false;  // of frames too far apart for tracking
-  Imperfection imperfection{};   // of the camera that saw it
+  bool from_true_poses = false;  // frames at their true poses, where they are too far apart for tracking
+  Imperfection imperfection{};   // imperfection of the camera that saw the recording
 };
 
 std::string name_of(const MapRecipe& recipe);  // different for different recipes of these tests

@@ -14,7 +14,7 @@ namespace byre {
 // Which map the mission is given.
 struct MapChoice {
   MapRecipe recipe;
-  double share_deleted = 0.0;  // of its points
+  double share_deleted = 0.0;  // share of the map's points that are deleted
   std::optional<Span> hole{};  // seconds of its recording of which it knows nothing
   bool is_of_another_place = false;
   bool is_absent = false;  // plain SLAM, its frame laid on the truth by the first pose
@@ -23,7 +23,7 @@ struct MapChoice {
 // What the robot must get right beyond never trusting a wrong pose for long.
 struct Demand {
   bool recovers = true;            // trusted again soon after the disturbance
-  double min_trusted_share = 0.0;  // of all frames
+  double min_trusted_share = 0.0;  // least share of all frames that are trusted
   bool is_never_wrong = false;     // no frame is trusted that is off by more than kMaxTrustedError
   std::optional<Doubt> doubt{};    // is told within kMaxTimeToDoubt of when the disturbance begins
 };
@@ -37,7 +37,7 @@ struct MissionCase {
   std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
   Demand demand{};
   std::optional<double> mapped_again_after{};  // seconds: when it comes back from outside the mapped area
-  Imperfection imperfection{};                 // of the mission's camera
+  Imperfection imperfection{};                 // imperfection of the mission's camera
 };
 
 inline constexpr double kMaxWrongTrust = 0.5;   // seconds

@@ -12,8 +12,8 @@ namespace byre {
 
 // One image pair that the robot is given.
 struct MissionStep {
-  int frame = 0;                                         // of the recording
-  Timestamp time{};                                      // as the robot is told
+  int frame = 0;                                         // number of the frame in the recording
+  Timestamp time{};                                      // time that the robot is told
   std::function<ImageFrame(const ImageFrame&)> disturb;  // what is done to the images; empty: nothing
 };
 
@@ -23,7 +23,7 @@ struct MissionPlan {
   // From when on nothing disturbs any more; the first step's where nothing ever does, empty where it does to the end.
   std::optional<Timestamp> undisturbed_from;
 
-  // Of the first step whose images are disturbed; of the first one where none is.
+  // Time of the first step whose images are disturbed; of the very first where none is.
   Timestamp disturbed_from() const;
 };
 

@@ -36,7 +36,7 @@ double share(std::ptrdiff_t count, std::size_t of) {
   return of == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(of);
 }
 
-// Of the poses that are said to be of use.
+// Share of the poses said to be of use that lie within the bound of their covariance.
 double share_within_bound(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map) {
   if (!truth_from_map) return 0.0;
   std::ptrdiff_t within = 0;

@@ -25,8 +25,8 @@ struct MissionScore {
   double worst_trusted_error = 0.0;  // infinite for a trusted pose on the wrong map
   double longest_wrong_trust = 0.0;  // seconds in a row in which poses off by more than kMaxTrustedError were trusted
   std::optional<double> recovery;    // seconds from when nothing disturbs any more to the first trusted pose
-  double rmse = 0.0;                 // of all poses whose truth is known
-  std::optional<double> time_to_doubt;  // see below; where it was asked for
+  double rmse = 0.0;                 // metres, over all poses whose truth is known
+  std::optional<double> time_to_doubt;  // seconds until the doubt asked for is told, see time_to_doubt
   double within_bound = 0.0;  // share of errors inside the 95 % bound of the covariance; untrusted poses apart
 };
 
@@ -41,7 +41,7 @@ MissionScore score(std::span<const MissionFrame> frames, const std::optional<Sim
 // nobody steers by one. Empty where none has it.
 std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, Doubt doubt, Timestamp from);
 
-// Of the pose a report gives: empty without pose or truth, infinite on a map of another place.
+// Metres that the pose of a report is off: empty without pose or truth, infinite on a map of another place.
 std::optional<double> position_error(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map);
 
 }  // namespace byre

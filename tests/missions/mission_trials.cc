@@ -160,7 +160,7 @@ void write_png(const Image& image, const fs::path& file) {
   if (!cv::imwrite(file.string(), pixels)) throw InputError(file.string(), "cannot be written");
 }
 
-// Of each case's first image pairs that are disturbed: when the disturbance begins, and when it has come.
+// Writes each case's image pairs when its disturbance begins, and when it has come.
 void dump(const MissionCase& mission_case, const fs::path& folder) {
   if (missing_recording(mission_case)) return;
   const auto recording = open_recording(*find(mission_case.recording), mission_case.range);

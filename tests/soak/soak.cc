@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFramesPerMission = 600;  // at 20 Hz
-constexpr int kVisits = 4;              // that differ; later missions are like earlier ones, at another time
+constexpr int kVisits = 4;              // visits that differ; later missions are like earlier ones, at another time
 constexpr double kWrong = 0.2;          // metres
-constexpr double kTolerance = 0.05;     // of memory and descriptors
+constexpr double kTolerance = 0.05;     // share by which memory and descriptors may differ from where they settled
 
 SimulatedMission visit(double laps, int frames, std::uint64_t noise_seed) {
   SimulationOptions options;
@@ -37,7 +37,7 @@ SimulatedMission visit(double laps, int frames, std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 20.0, 2.0, laps), options);
 }
 
-// Of the simulated rig, as a map file tells it.
+// The recording of the simulated rig, as a map file tells it.
 SourceRecording source() {
   const Rig rig = simulated_rig();
   const Camera camera{CameraModel::pinhole, rig.width, rig.height, rig.focal, rig.focal, rig.cx, rig.cy};
@@ -84,9 +84,9 @@ struct Tally {
   int frames = 0;
   int with_pose = 0;
   int trusted = 0;
-  int trusted_wrong = 0;  // by more than kWrong
+  int trusted_wrong = 0;  // trusted poses off by more than kWrong
   int mapped = 0;         // keyframes
-  int broken_maps = 0;    // that were kept, and have faults when they are read again
+  int broken_maps = 0;    // maps that were kept, and have faults when they are read again
 
   void add(const Tally& other) {
     frames += other.frames;

@@ -75,7 +75,7 @@ class Cameras {
   std::map<std::uint32_t, int> index_of_;
   std::vector<Calibration> calibrations_;
   std::vector<Rig> rigs_;
-  std::optional<Extractor> extractor_;  // of the camera used_
+  std::optional<Extractor> extractor_;  // extractor for the camera used_
   int used_ = -1;
 };
 

@@ -14,8 +14,8 @@
 namespace byre {
 
 struct ColmapImportOptions {
-  std::optional<double> metres_per_unit;  // of the model; without it the map's scale is unknown
-  Pose body_from_camera;                  // of all cameras
+  std::optional<double> metres_per_unit;  // metres per unit of the model; without it the map's scale is unknown
+  Pose body_from_camera;                  // place of each camera on the body, the same for all
   ExtractOptions extract;
   ModelMapOptions map;
 };
@@ -24,15 +24,15 @@ struct ColmapImportOptions {
 struct ImportedImage {
   std::string name;
   int features = 0;
-  int points_in_model = 0;    // that the image saw when the model was made
-  int points_attached = 0;    // of those and others, that one of its features shows now
+  int points_in_model = 0;    // points that the image saw when the model was made
+  int points_attached = 0;    // points of the map that a feature of the image shows now
   double median_error = 0.0;  // pixels, between measured features and projected points; references are not counted
 };
 
 struct ColmapImport {
   StoredMap stored;
   std::vector<ImportedImage> images;      // one per keyframe
-  std::vector<std::uint64_t> colmap_ids;  // which point of the model point n of the map is; those beyond are byre's own
+  std::vector<std::uint64_t> colmap_ids;  // model's point that point n of the map is; those beyond are byre's own
   int points_in_model = 0;
   std::vector<std::string> warnings;
 };

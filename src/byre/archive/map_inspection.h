@@ -51,8 +51,8 @@ struct MapInspection {
   Distribution observations_per_point;
   ReprojectionErrors errors;
   std::optional<BoundingBox> points_in_world;  // none without points
-  double path_length = 0.0;                    // of the body from keyframe to keyframe, over all recordings
-  std::vector<PartSize> memory;                // of the map once it is loaded, by what is kept
+  double path_length = 0.0;                    // metres, way of the body from keyframe to keyframe, over all recordings
+  std::vector<PartSize> memory;                // memory of the map once it is loaded, by what is kept
   std::vector<std::string> faults;
 };
 

@@ -26,7 +26,7 @@ StoredMap simulated_map(int keyframes = 60) {
 }
 
 TEST(Inspect, CountsWhatTheMapHolds) {
-  const StoredMapScene scene(4, 9);  // and a keyframe without features; three keyframes see 8 points, the last sees 8
+  const StoredMapScene scene(4, 9);  // keyframes: three see 8 points, the fourth 8 others, one more has no features
   const MapInspection inspection = inspect(scene.stored());
   EXPECT_EQ(inspection.counts.keyframes, 5);
   EXPECT_EQ(inspection.counts.keyframes_with_words, 2);

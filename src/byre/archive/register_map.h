@@ -22,15 +22,15 @@ struct Registering {
   std::vector<PlanCorrespondence> correspondences;
   PlanFit fit;
   double largest_path_sigma = 0.0;  // metres: how well the plan knows the place of the path where it knows it worst
-  std::optional<PlanScale> measured_scale;  // of a map that was metric before
-  bool has_baseline = false;                // which is where the map's scale is from
+  std::optional<PlanScale> measured_scale;  // scale by the picks, of a map that was metric before
+  bool has_baseline = false;                // whether the map has a baseline, where its scale is from
 };
 
 // A map whose scale was to be mended, and where it lies then.
 struct MendedMap {
   StoredMap stored;
-  Registering registering;  // of that map; but its scale is as measured before
-  double factor = 1.0;      // lengths now, of one before; 1 where there was nothing to mend
+  Registering registering;  // place of the mended map; but its scale is as measured before
+  double factor = 1.0;      // length now over length before; 1 where there was nothing to mend
 };
 
 // Throws InputError, naming the file of the picks or of the map, for what cannot be registered.

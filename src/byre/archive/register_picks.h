@@ -9,8 +9,8 @@
 namespace byre {
 
 struct PickOptions {
-  double sigma = PlanCorrespondence{}.sigma;  // metres, of picks that say nothing else
-  double positions_scale = 1.0;  // of positions that picks give: lengths in the map now, of one when they were picked
+  double sigma = PlanCorrespondence{}.sigma;  // metres, for picks that say nothing else
+  double positions_scale = 1.0;               // lengths in the map now over those when its positions were picked
 };
 
 // Correspondences of a map and a plan from a table (CSV) whose first line names its columns: docs/floor_plan.md has the

@@ -11,7 +11,7 @@ namespace byre {
 
 // Errors in the map's frame: the map is aligned to the truth once, by its own keyframes, not by what was localised.
 struct LocalisationErrors {
-  std::vector<PoseError> errors;  // of the frames that were found and have truth
+  std::vector<PoseError> errors;  // errors of the frames that were found and have truth
   int alignment_keyframes = 0;    // zero: the truth is taken for given in the map's frame
 };
 
@@ -24,8 +24,8 @@ LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored
 struct LocaliseProtocol {
   std::string map;
   std::string input;                          // recording, or number of images
-  int frames = 0;                             // asked for
-  std::optional<PlanRegistration> plan = {};  // of the map, when poses are wanted on it too
+  int frames = 0;                             // number of frames asked for
+  std::optional<PlanRegistration> plan = {};  // place of the map on its plan, when poses are wanted on it too
 };
 
 std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,

@@ -29,16 +29,16 @@ struct FrameCounts {
   int frames = 0;
   int with_pose = 0;
   int unreadable = 0;
-  int without_right_image = 0;  // of those readable
+  int without_right_image = 0;  // readable frames that came without a right image
   int with_depth_image = 0;
-  int keyframes = 0;  // that became one
+  int keyframes = 0;  // frames that became keyframes
   int lost_episodes = 0;
   int lost = 0;    // frames in these episodes
   int resets = 0;  // how often a map was given up for a new one
   int relocalisations = 0;
-  int loops = 0;                                 // found on the way
-  int corrections = 0;                           // of the whole map, taken over on the way
-  std::optional<int> frames_to_first;            // processed before the first with a pose; empty when none had one
+  int loops = 0;                                 // loops found on the way
+  int corrections = 0;                           // corrections of the whole map taken over on the way
+  std::optional<int> frames_to_first;            // frames before the first with a pose; empty when none had one
   std::map<TwoViewFailure, int> refused_starts;  // frames with which one camera could not begin a map, by the reason
 
   double coverage() const { return frames > 0 ? static_cast<double>(with_pose) / frames : 0.0; }

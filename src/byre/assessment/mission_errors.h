@@ -13,11 +13,11 @@ struct MissionErrors {
   // True: in the frame of the offline map, which alone was aligned to the truth. False: of a run without one, whose
   // causal and final trajectories were each aligned to the truth.
   bool in_map_frame = false;
-  int alignment_poses = 0;          // of the run that made the map; zero: the truth is taken for given in its frame
-  std::vector<PoseError> causal;    // as published
-  std::vector<PoseError> trusted;   // of those, of frames reported as trusted
-  std::vector<PoseError> degraded;  // of those, of frames reported as degraded
-  std::vector<PoseError> final;     // as recomputed after the last frame
+  int alignment_poses = 0;          // poses of the run that made the map; zero: the truth is given in the map's frame
+  std::vector<PoseError> causal;    // errors of poses as published
+  std::vector<PoseError> trusted;   // errors of published poses reported as trusted
+  std::vector<PoseError> degraded;  // errors of published poses reported as degraded
+  std::vector<PoseError> final;     // errors of poses as recomputed after the last frame
   int wrongly_trusted = 0;          // frames trusted and yet off by more than kFarMetres
   double longest_wrong_trust_s = 0.0;
   std::optional<double> within_bound;  // share of causal positions within the 95 % bound of their covariance

@@ -20,7 +20,7 @@ struct KeyframeRate {
 // What a mission on a map came to.
 struct MissionStatistics {
   int frames = 0;
-  int missing = 0;  // of these frames, that could not be read: none of what follows is known of them
+  int missing = 0;  // frames that could not be read: none of what follows is known of them
   int trusted = 0;
   int degraded = 0;
   int untrusted = 0;
@@ -31,9 +31,9 @@ struct MissionStatistics {
   int navigation_errors = 0;
   KeyframeRate in_known_places;     // offline points held the pose
   KeyframeRate in_changed_or_new;   // the rest of the frames with a pose
-  ErrorStatistics offline_inliers;  // of frames with a pose
-  ErrorStatistics online_inliers;   // of frames with a pose
-  int most_suspended = 0;           // offline points at a time
+  ErrorStatistics offline_inliers;  // offline inliers of frames with a pose
+  ErrorStatistics online_inliers;   // online inliers of frames with a pose
+  int most_suspended = 0;           // most offline points suspended at a time
 };
 
 // So many frames are missing that what is said of the others does not stand for the mission.

@@ -19,9 +19,9 @@ struct MapProtocol {
   int frames_in_range = 0;
   EngineOptions options;
   std::string extended;                  // the map that was gone on with; empty for none
-  std::vector<std::string> recordings;   // of the whole map
+  std::vector<std::string> recordings;   // recordings of the whole map
   std::string offline;                   // the map of a mission; empty for none
-  std::optional<PlanRegistration> plan;  // that the map lies on, and poses are given in; empty: in the map's frame
+  std::optional<PlanRegistration> plan;  // plan that the map lies on and poses are given in; empty: in the map's frame
   std::string program = "byre map";
   bool is_metric = true;  // false for one camera that maps from nothing: lengths are in units of the map's own
 };

@@ -34,23 +34,23 @@ struct MadeMap {
 struct BenchmarkRunResult {
   std::uint64_t seed = 0;
   RunMeasures measures;
-  std::vector<std::string> warnings;  // of the recording
+  std::vector<std::string> warnings;  // warnings of the recording
 };
 
 struct ArmResult {
   Arm arm = Arm::no_map;
   std::vector<BenchmarkRunResult> runs;
-  std::vector<TracePoint> final_trace;   // of the first run
-  std::vector<TracePoint> causal_trace;  // of the first run
+  std::vector<TracePoint> final_trace;   // way by final poses of the first run
+  std::vector<TracePoint> causal_trace;  // way by causal poses of the first run
 
-  std::vector<RunMeasures> measures() const;  // of each run
+  std::vector<RunMeasures> measures() const;  // measures of each run
 };
 
 struct CaseResult {
   BenchmarkCase what;
-  std::vector<ArmResult> arms;  // those begun
+  std::vector<ArmResult> arms;  // arms begun
   RecordingFormat format = RecordingFormat::euroc;
-  Trajectory truth;  // while the recording lasts
+  Trajectory truth;  // true poses while the recording lasts
   CameraChoice camera = CameraChoice::stereo;
 };
 
@@ -61,9 +61,9 @@ struct SkippedCase {
 
 struct BenchmarkResult {
   std::vector<MadeMap> maps;
-  std::vector<CaseResult> cases;  // those begun
+  std::vector<CaseResult> cases;  // cases begun
   std::vector<SkippedCase> skipped;
-  bool stopped = false;  // by who was asked, between two runs or in one that was then left out
+  bool stopped = false;  // stopped by who was asked, between two runs or in one that was then left out
 };
 
 struct BenchmarkHooks {

@@ -11,8 +11,8 @@ namespace byre {
 
 // What a run is compared with.
 struct RunTruth {
-  const Trajectory& poses;          // at the times of the recording
-  std::optional<MapAlignment> map;  // of the offline map of the run; empty for a run without one
+  const Trajectory& poses;          // true poses at the times of the recording
+  std::optional<MapAlignment> map;  // alignment of the run's offline map to the truth; empty for a run without one
   Scale scale = Scale::fixed;       // free for one camera without a map
 };
 

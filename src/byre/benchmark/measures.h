@@ -29,7 +29,7 @@ struct TrajectoryMeasures {
 struct BehaviourMeasures {
   Figure first_pose;             // seconds from the first frame to the first pose
   Figure losses;                 // how often tracking failed
-  Figure trusted_share;          // of all frames
+  Figure trusted_share;          // share of all frames reported as trusted
   Figure trusted_map_error_max;  // metres
   Figure trusted_wrong;          // frames reported as trusted that are off by more than kFarMetres
   Figure longest_wrong_trust;    // seconds that such frames lasted without a break
@@ -40,10 +40,10 @@ struct BehaviourMeasures {
 };
 
 struct CostMeasures {
-  Figure frame_ms_mean;   // of the frame thread, from images in memory to the report
-  Figure frame_ms_p99;    // 99th percentile
-  Figure peak_memory_mb;  // resident, of the whole program during this run
-  Figure cpu_seconds;     // of all threads, decoding and finishing included
+  Figure frame_ms_mean;   // milliseconds on the frame thread, from images in memory to the report
+  Figure frame_ms_p99;    // milliseconds, 99th percentile
+  Figure peak_memory_mb;  // megabytes resident, of the whole program during this run
+  Figure cpu_seconds;     // seconds in all threads, decoding and finishing included
 };
 
 struct RunMeasures {
@@ -70,9 +70,9 @@ std::span<const Measure<CostMeasures>> cost_measures();
 
 // One figure over the runs that have it.
 struct RunSummary {
-  int runs = 0;  // that have it
+  int runs = 0;  // runs that have the figure
   double mean = 0.0;
-  double median = 0.0;  // between the middle two of an even number
+  double median = 0.0;  // median, or the mean of the middle two of an even number
   double worst = 0.0;
 };
 

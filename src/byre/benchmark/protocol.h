@@ -26,7 +26,7 @@ struct BenchmarkRecording {
   std::filesystem::path folder;  // relative to the folder of data
   FrameRange range = {};
   OpenOptions open = {};                            // a calibration is relative to the folder of data
-  std::optional<std::filesystem::path> truth = {};  // relative likewise; else that which comes with the recording
+  std::optional<std::filesystem::path> truth = {};  // in the folder of data; empty: what comes with the recording
   Timestamp truth_offset{0};                        // added to the truth's time stamps
 };
 
@@ -46,11 +46,11 @@ struct PublishedFigures {
 };
 
 struct BenchmarkProtocol {
-  std::string name;  // of its file, without what follows the point
+  std::string name;  // name of the protocol's file without its ending
   std::string title;
   std::string about;
   int runs = 1;
-  std::vector<std::uint64_t> seeds;  // of the first runs; those after them count on
+  std::vector<std::uint64_t> seeds;  // seeds of the first runs; later runs count on from the last
   std::vector<BenchmarkRecording> recordings;
   std::vector<BenchmarkCase> cases;
   std::vector<PublishedFigures> published;

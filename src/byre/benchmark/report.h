@@ -13,7 +13,7 @@ struct BenchmarkSetting {
   std::string protocol_file;
   std::string data;
   Pace pace = Pace::paced;
-  int cores = 0;                                                       // of the machine
+  int cores = 0;                                                       // cores of the machine
   std::vector<std::pair<std::string, std::string>> changed_options{};  // names and values, other than by default
 };
 

@@ -23,10 +23,10 @@ class YamlValue {
   std::string text() const;
   double number(double least, double most) const;
   int whole_number(int least, int most) const;
-  std::vector<YamlValue> entries() const;                        // of a list that is not empty
+  std::vector<YamlValue> entries() const;                        // entries of a list that is not empty
   std::vector<std::pair<YamlValue, YamlValue>> fields() const;   // names and values, as they stand in the file
-  YamlValue operator[](const std::string& name) const;           // of a field that must be there
-  std::optional<YamlValue> find(const std::string& name) const;  // of one that need not
+  YamlValue operator[](const std::string& name) const;           // value of a field that must be there
+  std::optional<YamlValue> find(const std::string& name) const;  // value of a field that may be missing
 
   // Throws InputError for a field that is none of these, and for one that is given twice.
   void require_fields(std::initializer_list<std::string_view> names) const;

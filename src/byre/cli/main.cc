@@ -57,9 +57,9 @@ int main(int argc, char** argv) {
   declare_commands(app, action);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {  // also --help and --version, which succeed
+  } catch (const CLI::ParseError& error) {  // parse errors, and --help and --version, which succeed
     return app.exit(error) == done ? done : wrong_usage;
-  } catch (const byre::InputError& error) {  // by --print-options
+  } catch (const byre::InputError& error) {  // bad input read by --print-options
     return report(error.what(), bad_input);
   } catch (const std::exception& error) {
     return report(error.what(), failed);

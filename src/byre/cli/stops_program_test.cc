@@ -30,8 +30,8 @@ unsigned wanted_seed() {
 
 // How a stopped process ended.
 struct End {
-  int signal = 0;  // that killed it
-  int code = -1;   // else
+  int signal = 0;  // signal that killed it, or 0
+  int code = -1;   // exit code, or -1 where it was killed
 };
 
 class Stops : public ProgramTest {
@@ -115,7 +115,7 @@ class Stops : public ProgramTest {
     return is_there("room.byre") ? fs::last_write_time(folder_ / "room.byre") : fs::file_time_type::min();
   }
 
-  // Of what is there, everything is whole.
+  // Expects that everything there is whole.
   void expect_whole_files() const {
     if (is_there("room.byre")) expect_sound_map();
     for (const char* const name : {"final.txt", "causal.txt"}) {

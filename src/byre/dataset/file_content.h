@@ -18,8 +18,8 @@ enum class FileContent : std::uint8_t {
   json,
   trajectory,
   yaml,
-  table,  // CSV
-  text,   // of any other kind
+  table,  // table of comma-separated values
+  text,   // text of any other kind
   other,
 };
 

@@ -8,7 +8,7 @@ namespace byre {
 
 // A named word of a YAML file.
 struct Setting {
-  std::string name;  // with those of the groups that it is in, and dots between
+  std::string name;  // full name: the groups that it is in, then its own, with dots between
   std::string text;
   int line = 0;  // as an editor counts them, from 1
 };

@@ -29,7 +29,7 @@ constexpr int kStages = 6;
 struct KnownBarn {
   StoredMap stored;  // lies on the plan
   FloorPlan plan;
-  Trajectory path;  // of the first visit, in the map
+  Trajectory path;  // path of the first visit, in the map
 };
 
 CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {

@@ -14,11 +14,11 @@ namespace byre {
 
 struct DemoOptions {
   std::filesystem::path output = "byre_demo";  // folder for the page, the recordings and what is made of them
-  std::uint64_t seed = 1;                      // of the barn
-  double duration_s = 50.0;                    // of the first visit; the second takes a quarter longer
+  std::uint64_t seed = 1;                      // seed of the barn
+  double duration_s = 50.0;                    // seconds of the first visit; the second takes a quarter longer
   double frame_rate_hz = 8.0;
   int image_divisor = 1;                            // 1: 752 x 480 pixels
-  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary that comes with byre
 };
 
 // How the work of a demonstration is done, so that whoever asked for it can tell how far it is.

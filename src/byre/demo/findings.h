@@ -25,7 +25,7 @@ struct DemoMoment {
 struct DemoArm {
   Arm arm = Arm::hybrid;
   RunMeasures measures;
-  double close_share = 0.0;  // of all frames, those that published a position within kCloseMetres of the truth
+  double close_share = 0.0;  // share of all frames that published a position within kCloseMetres of the truth
   std::vector<DemoMoment> moments;
 };
 
@@ -38,7 +38,7 @@ struct TimeSpan {
 
 // What a demonstration came to.
 struct DemoFindings {
-  int map_frames = 0;  // of the first visit
+  int map_frames = 0;  // frames of the first visit
   int map_keyframes = 0;
   int map_points = 0;
   double map_ate = 0.0;  // metres RMSE, final poses

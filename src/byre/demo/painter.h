@@ -27,9 +27,9 @@ class DemoPainter {
   FrameView view_;
   std::optional<Timestamp> first_;
   PlanPath way_;     // poses as published, with their verdicts
-  MapScene online_;  // as after the last frame
+  MapScene online_;  // map after the last frame
   std::optional<FrameScene> best_;
-  int best_points_ = -1;  // of the kind that is fewer in it
+  int best_points_ = -1;  // points of the rarer kind, offline or online, in the best frame; -1: there is none
 };
 
 }  // namespace byre

@@ -27,7 +27,7 @@ double true_path(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 bool is_nearly_a_line(const EvaluationReport& report) {
-  constexpr double kThinnest = 0.01;     // of the length; less is the unevenness of a floor, or of a hand
+  constexpr double kThinnest = 0.01;     // least share of the length; less is the unevenness of a floor, or of a hand
   constexpr double kErrorsAcross = 3.0;  // the width in errors of the position from which on it tells a turn
   const double width = report.true_spread[1];
   const double error = report.ate ? report.ate->translation.rmse : 0.0;

@@ -13,7 +13,7 @@ enum class PoseAlignment { se3, sim3, origin, none };
 
 // How figures were made; without it they cannot be compared with others.
 struct EvaluationProtocol {
-  std::string label = "not stated";  // which poses these are: causal or final
+  std::string label = "not stated";  // kind of the poses, causal or final
   PoseAlignment alignment = PoseAlignment::se3;
   AssociationOptions association;
 };
@@ -36,7 +36,7 @@ struct EvaluationReport {
   RelativePoseError rpe_frame;
   RelativePoseError rpe_second;
   RelativePoseError rpe_metre;
-  SegmentErrors segments;                                 // of KITTI; none where the path is shorter than 100 m
+  SegmentErrors segments;  // errors of KITTI's segments; none where the path is shorter than 100 m
   Eigen::Vector3d true_spread = Eigen::Vector3d::Zero();  // see principal_spread
 };
 

@@ -9,7 +9,7 @@ namespace byre {
 // Where the frame of a map lies in that of the truth.
 struct MapAlignment {
   Similarity truth_from_map;
-  int poses = 0;  // that it rests on; zero: the truth is taken for given in the map's frame
+  int poses = 0;  // poses that the alignment rests on; zero: the truth is taken for given in the map's frame
 };
 
 // By poses of the map itself, never by what is found or tracked in it: its keyframes (keyframe_path), or all frames of

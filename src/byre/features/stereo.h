@@ -12,9 +12,9 @@ struct StereoOptions {
   double max_width_share = 0.25;    // largest disparity as a share of the image's width
   float max_ratio = 0.85f;          // best over second best sum of absolute differences, elsewhere on the row
   float max_vertical_error = 1.2f;  // octave pixels that rectification may be off
-  float min_similarity = 0.85f;     // of the refined match, see Alignment
+  float min_similarity = 0.85f;     // similarity of the refined match, see Alignment
   float min_sigma = 0.08f;          // octave pixels
-  bool refine = true;               // else whole octave pixels, for comparison
+  bool refine = true;               // false: whole octave pixels, for comparison
 };
 
 struct StereoMatch {

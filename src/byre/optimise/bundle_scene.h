@@ -13,8 +13,8 @@ struct BundleSceneOptions {
   int fixed_poses = 2;
   int moving_poses = 4;
   int points = 80;
-  int fixed_points = 0;          // the first ones
-  double mono_fraction = 0.25;   // of the observations
+  int fixed_points = 0;          // first points, which stay fixed
+  double mono_fraction = 0.25;   // share of the observations without disparity
   double noise = 0.0;            // sigmas
   double start_position = 0.05;  // metres, of moving poses and points
   double start_rotation = 0.02;  // radians

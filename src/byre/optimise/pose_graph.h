@@ -39,7 +39,7 @@ struct PoseGraphOptions {
   int max_iterations = 50;  // for each loss
   RobustLoss loss = RobustLoss::huber;
   double loss_width = 4.0;     // sigmas of an edge's whole error; 4 is the 99 % quantile of one that is right
-  bool scale_is_free = false;  // of nodes that move, unless known: similarities, not rigid motions (Strasdat 2010)
+  bool scale_is_free = false;  // moving nodes are similarities unless their scale is known (Strasdat 2010)
   int threads = 1;             // one keeps the order of sums, hence the result, reproducible
 };
 

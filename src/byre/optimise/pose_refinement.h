@@ -21,7 +21,7 @@ struct PoseObservation {
 };
 
 struct PoseRefinementOptions {
-  int rounds = 4;  // of choosing inliers, then solving robustly on them
+  int rounds = 4;  // times that inliers are chosen and then solved on robustly
   int iterations_per_round = 5;
   double huber_width = 1.5;          // sigmas
   double max_variance_factor = 9.0;  // see PoseRefinement::variance_factor

@@ -17,7 +17,7 @@ namespace byre {
 // One frame looked for in a map, without a thought of the others.
 struct LocalisedFrame {
   std::string name;                     // its image file, or its time stamp in seconds
-  Timestamp time{};                     // of an image: as its name says, else as many seconds as its place in the list
+  Timestamp time{};                     // time in an image's name, else as many seconds as its place in the list
   std::optional<Pose> world_from_body;  // empty when it was not found
   Localisation localisation;
   double extract_seconds = 0.0;
@@ -42,7 +42,7 @@ struct SearchableMap {
         recordings(stored.recordings),
         index(index_of(stored.map, vocabulary)) {}
 
-  bool is_metric;  // else disparities, which are, cannot be compared with it
+  bool is_metric;  // whether disparities, which are metric, can be compared with the map
   const Map& map;
   const std::vector<SourceRecording>& recordings;
   Map nothing_online{Origin::online};

@@ -19,10 +19,10 @@ struct PosedRunOptions {
 // A map made from a recording and the poses of its frames.
 struct PosedRun {
   Map map{Origin::offline};
-  Trajectory trajectory;  // of the frames that are in the map, as given
-  int frames = 0;         // looked at
-  int without_pose = 0;   // left out because the trajectory says nothing of their time
-  int unreadable = 0;     // left out because their images cannot be read
+  Trajectory trajectory;  // given poses of the frames that are in the map
+  int frames = 0;         // frames looked at
+  int without_pose = 0;   // frames left out because the trajectory says nothing of their time
+  int unreadable = 0;     // frames left out because their images cannot be read
   std::vector<std::string> warnings;
 };
 

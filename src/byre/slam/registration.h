@@ -10,7 +10,7 @@ namespace byre {
 
 struct RegistrationOptions {
   int confirmations = 3;  // frames that must say the same before it is believed
-  // Share of the offline points in view that confirming frames must see to be trusted: fewer agree by chance.
+  // Share of offline points in view that frames must see before a pose found from nothing is trusted: rooms repeat.
   double proving_share = 0.06;
   double max_speed = 3.0;  // metres a second, highest speed of the robot
   int max_misses = 2;      // frames that say something else, before it is given up

@@ -60,7 +60,7 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
   if (before) session_.continue_map(std::move(*before));
 }
 
-// Of cameras that are known, or that a map before lies by, the readout time alone.
+// Refines the readout time alone of cameras that are known, or that a map before lies by.
 void Engine::refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended) {
   if (known_ || is_extended) {
     session_.refine_readout(known_.value_or(RefinedCalibration{given}));

@@ -32,9 +32,9 @@ struct EngineOptions {
   Pace pace = Pace::paced;
   ExtractOptions extract;
   SessionOptions session;
-  bool self_calibrate = true;               // refine the calibration given from what is mapped
-  std::optional<RefinedCalibration> known;  // what the cameras are known to be by now, of which the readout time alone
-                                            // is refined; empty: what the offline map knows, if anything
+  bool self_calibrate = true;  // refine the calibration given from what is mapped
+  // What the cameras are known to be; only their readout time is refined. Empty: what the offline map knows, if any.
+  std::optional<RefinedCalibration> known;
   SelfCalibrationOptions self_calibration;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
@@ -42,22 +42,22 @@ struct EngineOptions {
 
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
 struct StageSeconds {
-  double decode = 0.0;  // ahead, in a thread of its own; not in total
+  double decode = 0.0;  // decoding ahead, in a thread of its own; not in total
   double rectify = 0.0;
   double extract = 0.0;
-  double stereo = 0.0;  // or reading depths
+  double stereo = 0.0;  // stereo matching, or reading depths
   double track = 0.0;
   double map = 0.0;         // windows, deltas, new points, and jobs where they run on this thread
-  double map_submit = 0.0;  // of map: handing jobs to the executor, so the whole job where it runs on this thread
+  double map_submit = 0.0;  // part of map: handing jobs to the executor, so the whole job where it runs on this thread
   double total = 0.0;       // from the images in memory to the report
 };
 
 // What finishing a map changed, and how sound it is now.
 struct Finishing {
   FinishReport report;
-  bool cut_short = false;           // by who asked it to stop
+  bool cut_short = false;           // finishing stopped early, by who asked it to
   double seconds = 0.0;             // wall time
-  std::vector<std::string> faults;  // of the map as it is kept
+  std::vector<std::string> faults;  // faults of the map as it is kept
 };
 
 // A camera rig's front end and the session that its frames go to. Call it from one thread.
@@ -83,7 +83,7 @@ class Engine {
   void finish() { session_.finish(); }
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
   Finishing finish_map(const FinishHooks& hooks);
-  double finish_mission(const FinishHooks& hooks);  // likewise, on one; wall time, seconds
+  double finish_mission(const FinishHooks& hooks);  // finishes a mission, after finish(); wall time, seconds
 
   const Rig& rig() const { return extractor_.rig(); }
   const Map& online() const { return session_.map().online(); }

@@ -26,10 +26,10 @@ class InputCheck {
 
   InputFault note(const CameraImages& images);
   InputFault note(const Frame& frame);
-  InputFault note(InputFault fault);  // that was found elsewhere
+  InputFault note(InputFault fault);  // fault that was found elsewhere
 
   InputFault last() const { return last_; }
-  // Of the images looked at last.
+  // Whether the right image or the depths of the images looked at last may be used.
   bool may_use_right() const { return is_right_sound_; }
   bool may_use_depth() const { return is_depth_sound_; }
 
@@ -48,7 +48,7 @@ class InputCheck {
   Rig rig_;
   InputCheckOptions options_;
 
-  std::optional<Timestamp> last_time_;  // of a frame that was not dropped
+  std::optional<Timestamp> last_time_;  // time of the last frame that was not dropped
   InputFault last_ = InputFault::none;
   bool is_right_sound_ = false;
   bool is_depth_sound_ = false;

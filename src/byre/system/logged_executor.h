@@ -9,7 +9,7 @@ namespace byre {
 
 struct JobLog {
   std::vector<double> job_seconds;  // wall time of each finished job, in order
-  double submit_seconds = 0.0;  // of the calling thread: the jobs themselves when they run inline, else next to none
+  double submit_seconds = 0.0;      // calling thread's time: of whole jobs where they run inline, else next to none
 };
 
 // Does as the other executor, and notes what it did in a log that must outlive it.

@@ -2,7 +2,7 @@
 
 namespace byre {
 
-// Of the whole program, from its start.
+// What the whole program has used since its start.
 struct ResourceUse {
   double cpu_seconds = 0.0;  // user and system, of all threads
   double peak_memory_mb = 0.0;

@@ -89,7 +89,7 @@ struct Slam::Parts {
   // How the body has moved since the frame that the engine saw last.
   std::optional<Pose> take_motion(const std::optional<Pose>& last_from_body, bool is_dropped);
   FrameReport noted(FrameReport report);
-  // Of a map that is gone on with, that anything was added to it.
+  // Whether anything was mapped; where a map is gone on with, whether anything was added to it.
   bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
   FrameReport dropped(Timestamp time) const;
   StoredMap kept() const;
@@ -101,16 +101,16 @@ struct Slam::Parts {
   StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
   std::shared_ptr<const OfflineMap> offline;
   bool is_extended = false;
-  std::optional<PlanRegistration> plan;  // of the map that poses are in
+  std::optional<PlanRegistration> plan;  // place of the map that poses are in on its floor plan
 
   Engine engine;
   InputCheck input;
   ImageFrame buffer;                           // holds the images while they are looked at
-  std::optional<Pose> unseen_motion = Pose{};  // over frames that were dropped since; empty: not known
-  State state = State::initialising;           // after the last frame
-  std::optional<Timestamp> first_time;         // of the frames that were not dropped
+  std::optional<Pose> unseen_motion = Pose{};  // motion over frames that were dropped since; empty: not known
+  State state = State::initialising;           // state after the last frame
+  std::optional<Timestamp> first_time;         // time of the first frame that was not dropped
   Timestamp last_time{};
-  bool had_pose = false;  // of any frame, in the map
+  bool had_pose = false;  // whether any frame had a pose in the map
   bool is_finished = false;
 };
 

@@ -13,10 +13,10 @@ namespace byre {
 
 // What of a mission is to be drawn beside its way.
 struct MissionPainting {
-  bool keeps_frame = false;    // for a picture of what the camera saw
-  std::optional<double> at_s;  // moment of that frame, from the recording's first; else the last one
+  bool keeps_frame = false;    // whether a frame is kept for a picture of what the camera saw
+  std::optional<double> at_s;  // moment of the frame kept, from the recording's first; empty: the last one
   std::optional<std::filesystem::path> video;
-  double speed = 1.0;  // of the video, in times of the recording's own
+  double speed = 1.0;  // speed of the video over that of the recording
   HeightBand heights;
 };
 
@@ -24,10 +24,10 @@ struct MissionPainting {
 struct PaintedMission {
   PlanPath way;                     // poses as published, with their verdicts
   std::optional<FrameScene> frame;  // empty when no frame could be read up to then
-  std::optional<double> frame_s;    // its time, from the recording's first frame
-  std::optional<Rig> rig;           // that took it
+  std::optional<double> frame_s;    // time of the frame, from the recording's first
+  std::optional<Rig> rig;           // rig that took the frame
   int video_frames = 0;
-  bool plays_in_browsers = false;  // the video
+  bool plays_in_browsers = false;  // whether browsers play the video
 };
 
 // Looks at each frame of a run, and keeps and draws what was asked for.
@@ -49,7 +49,7 @@ class MissionPainter {
   const FrameView view_;
   std::size_t offline_points_ = 0;
   PlanPictureOptions plan_options_;
-  int every_ = 1;  // of so many frames one is filmed
+  int every_ = 1;  // frames for each that is filmed
   double video_rate_ = 1.0;
 
   PlanScene scene_;  // as after the last frame

@@ -24,18 +24,18 @@ struct DrawOptions {
   std::optional<std::filesystem::path> plan_picture;
   std::optional<std::filesystem::path> camera_picture;
   std::optional<std::filesystem::path> video;
-  std::optional<double> at_s;  // of the camera picture; else the last frame
-  double speed = 1.0;          // of the video, in times of the recording's own
-  int width = 1200;            // pixels, of the plan picture
+  std::optional<double> at_s;  // seconds into the recording of the camera picture; empty: the last frame
+  double speed = 1.0;          // speed of the video over that of the recording
+  int width = 1200;            // pixels, width of the plan picture
   HeightBand heights;
-  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary that comes with byre
   FrameRange range;
   OpenOptions open;
   OptionsFile options_file;  // for running the recording
   bool quiet = false;
 
   const std::filesystem::path& map_file() const { return map ? *map : input; }
-  std::vector<std::filesystem::path> outputs() const;  // those asked for
+  std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for
 };
 
 // The options must outlive the parsing of the command line.

@@ -31,7 +31,7 @@ struct EvaluateOptions {
   std::optional<fs::path> frames_of;
   OpenOptions open;
   std::optional<fs::path> aligned;
-  TrajectoryFormat format = TrajectoryFormat::tum;  // of what is written
+  TrajectoryFormat format = TrajectoryFormat::tum;  // format of the aligned trajectory written
   std::optional<fs::path> plot;
   EvaluationProtocol protocol;
   double time_offset_s = 0.0;

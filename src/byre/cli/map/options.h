@@ -22,8 +22,8 @@ struct MapOptions {
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> causal_trajectory;
   std::optional<std::filesystem::path> stats;
-  std::optional<std::filesystem::path> given_poses;  // a trajectory of the recording; else it is estimated
-  std::optional<std::filesystem::path> vocabulary;   // else the one that comes with byre
+  std::optional<std::filesystem::path> given_poses;  // trajectory of the recording; empty: it is estimated
+  std::optional<std::filesystem::path> vocabulary;   // empty: the vocabulary that comes with byre
   std::optional<std::filesystem::path> extended;     // a map to go on with
   std::optional<double> autosave_s;
   std::string site;
@@ -37,8 +37,8 @@ struct MapOptions {
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
-  std::vector<std::filesystem::path> outputs() const;  // those asked for
-  EngineOptions engine_options() const;                // by the file and the command line; not the maps
+  std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for
+  EngineOptions engine_options() const;                // options by the file and the command line; not the maps
 };
 
 // The options must outlive the parsing of the command line.

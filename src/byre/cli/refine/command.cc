@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 struct RefineOptions {
   fs::path map;
-  std::optional<fs::path> output;  // else the map is replaced
+  std::optional<fs::path> output;  // empty: the map is replaced
   std::optional<fs::path> vocabulary;
   bool json = false;
   bool quiet = false;

@@ -29,11 +29,11 @@ struct RunOptions {
   std::optional<std::filesystem::path> odometry;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> truth;
-  std::optional<std::filesystem::path> map_truth;       // of the map's own recording, where that is another
-  std::optional<std::filesystem::path> map_trajectory;  // of the run that made the map
+  std::optional<std::filesystem::path> map_truth;       // truth of the map's own recording, where that is another
+  std::optional<std::filesystem::path> map_trajectory;  // trajectory of the run that made the map
   bool align_scale = false;    // the map is laid on the truth with its scale, which an erring baseline changes
-  double time_offset_s = 0.0;  // added to the time stamps of both
-  std::optional<std::filesystem::path> vocabulary;  // else the one that comes with byre
+  double time_offset_s = 0.0;  // added to the time stamps of truth and map truth
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary that comes with byre
   FrameRange range;
   OpenOptions open;  // how to take the recording
   OptionsFile options_file;
@@ -44,8 +44,8 @@ struct RunOptions {
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   bool quiet = false;
 
-  std::vector<std::filesystem::path> outputs() const;  // those asked for
-  EngineOptions engine_options() const;                // by the file and the command line; not the maps
+  std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for
+  EngineOptions engine_options() const;                // options by the file and the command line; not the maps
 };
 
 // The options must outlive the parsing of the command line.

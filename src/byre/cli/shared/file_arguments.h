@@ -16,7 +16,7 @@ namespace byre::cli {
 // All give the option back. An empty name is refused, as that of a shell variable that is not set.
 CLI::Option* declare(CLI::Option* option, Input input);
 CLI::Option* declare(CLI::Option* option, Output output);
-CLI::Option* declare_text(CLI::Option* option);  // which is no file's name
+CLI::Option* declare_text(CLI::Option* option);  // text that is no file's name
 
 template <typename Value>
 CLI::Option* add_input(CLI::App& command, Input input, const std::string& name, Value& value, const std::string& help) {

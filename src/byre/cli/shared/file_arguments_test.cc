@@ -117,7 +117,7 @@ class FileArguments : public ProgramTest {
  protected:
   struct Given {
     std::string argument;
-    std::vector<fs::path> files;  // that are read for it
+    std::vector<fs::path> files;  // files read for the argument
   };
 
   Given given(Input input, const std::string& name) const {
@@ -255,7 +255,7 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
   }
   EXPECT_GT(pairs, 200);
   EXPECT_THAT(CommandLine().fault_of({"map", "rec", "--extend", "none.byre", "-o", "./none.byre"}),
-              HasSubstr("so it may not be written"));  // also where there is no such file
+              HasSubstr("so it may not be written"));  // fault found although there is no such file
 }
 
 TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
@@ -277,7 +277,7 @@ TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
         const Outcome outcome = run(line);
         EXPECT_EQ(outcome.exit_code, 2) << line << outcome.errors;
         EXPECT_EQ(bytes(), before) << line;
-        break;  // of all inputs the test above knows
+        break;  // one input is enough: the test above tries all
       }
     }
   }

@@ -12,18 +12,18 @@ namespace byre::cli {
 
 enum class Input : std::uint8_t {
   file,
-  recording,  // or the truth of one, or a trajectory
-  plan,       // with its image
+  recording,  // recording, truth of one, or trajectory
+  plan,       // floor plan with its image
   colmap_model,
-  images,  // files, or folders of them
-  folder,  // of other things, which are named elsewhere
+  images,  // image files, or folders of them
+  folder,  // folder of other things, which are named elsewhere
 };
 
 enum class Output : std::uint8_t {
   map,
   refined_map,  // the map that was read is replaced by it, unless another file is named
   updated_map,  // may be the map that was read
-  viewed_map,   // the same, with picks beside it
+  viewed_map,   // map that may be the one that was read, and picks beside it
   trajectory,
   json,
   picture,  // as its name ends: .svg or .png
