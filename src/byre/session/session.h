@@ -34,7 +34,7 @@ struct Lanes {
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
-  std::unique_ptr<Executor> calibration;  // of a mission's cameras
+  std::unique_ptr<Executor> calibration;  // calibrating a mission's cameras
 };
 
 // The one stateful object: give it frames in order of time. It has the tracker find each frame, and the mapper make

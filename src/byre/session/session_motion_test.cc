@@ -7,8 +7,8 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kDark = 20;   // the first frame that shows nothing,
-constexpr std::size_t kLight = 30;  // and the first that shows something again
+constexpr std::size_t kDark = 20;   // number of the first frame that shows nothing
+constexpr std::size_t kLight = 30;  // number of the first frame that shows something again
 
 SimulatedMission lap() {
   SimulationOptions options;
@@ -25,7 +25,7 @@ Frame dark(const Frame& frame, const Rig& rig) {
   return result;
 }
 
-// Of a robot that is blind for an eighth of a lap, and recognises no place.
+// Frames of a robot that is blind for an eighth of a lap, and recognises no place.
 std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told, bool has_vocabulary) {
   SessionOptions options;
   options.min_kept_share = 0.0;  // where the prediction leads astray, nothing else is tried

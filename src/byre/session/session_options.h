@@ -17,16 +17,16 @@ namespace byre {
 
 // Each leaf stands here once, and is handed to every function that needs it.
 struct SessionOptions {
-  int recording = 0;               // which one the keyframes made are of, see Keyframe::recording
+  int recording = 0;               // index that new keyframes get, see Keyframe::recording
   bool map_online = true;          // false: track on the offline map alone
   int min_initial_points = 100;    // stereo points of the first keyframe
-  int local_keyframes = 15;        // of either map, whose points are looked for in a frame
-  double min_kept_share = 0.5;     // of the last frame's inliers; fewer, and the pose is sought without prediction too
+  int local_keyframes = 15;        // keyframes of either map whose points are looked for in a frame
+  double min_kept_share = 0.5;     // share of the last inliers; with fewer the pose is sought without prediction too
   double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
-  MonocularStartOptions monocular_start;  // of a rig without a baseline
+  MonocularStartOptions monocular_start;  // start with a rig that has no baseline
   TrackOptions track;
   KeyframeOptions keyframes;
-  WindowOptions window;                                                         // of local mapping
+  WindowOptions window;                                                         // window of local mapping
   double max_relative_depth_sigma = MappingOptions{}.max_relative_depth_sigma;  // see there
   double redundant_share = MappingOptions{}.redundant_share;                    // see there
   LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost

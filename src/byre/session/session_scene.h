@@ -19,7 +19,7 @@ inline const Vocabulary& simulated_vocabulary() {
   return trained;
 }
 
-// Of a visit before, by its true poses; each fourth frame is a keyframe.
+// The map of a visit before, by its true poses; each fourth frame is a keyframe.
 inline std::shared_ptr<const OfflineMap> offline_map_of(const SimulatedMission& visit) {
   Map map = true_map(visit, 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
