@@ -16,8 +16,9 @@ Trajectory keyframe_path(const Map& map) {
     path.push_back({keyframe.frame.time, world_from_body(map, keyframe)});
   }
   std::ranges::stable_sort(path, {}, &StampedPose::time);
-  const auto repeated = std::ranges::unique(path, {}, &StampedPose::time);
-  path.erase(repeated.begin(), repeated.end());
+  const auto is_same_time = [](const StampedPose& a, const StampedPose& b) { return a.time == b.time; };
+  const auto repeated = std::unique(path.begin(), path.end(), is_same_time);
+  path.erase(repeated, path.end());
   return path;
 }
 
