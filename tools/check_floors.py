@@ -52,7 +52,6 @@ KEPT_IN = {
     r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
                             "archive", "viewer", "benchmark", "demo", "cli"},
     r"iostream|CLI/.*": {"cli"},
-    r"spdlog/.*": {"session", "viewer", "cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},

@@ -7,23 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace byre {
 namespace {
-
-Distribution distribution_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::ranges::sort(values);
-  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
-  const auto share = [&values](double share_below) { return quantile(values, share_below); };
-  return {static_cast<int>(values.size()),
-          sum / static_cast<double>(values.size()),
-          share(0.5),
-          share(0.95),
-          share(0.99),
-          values.back()};
-}
 
 int count_patches(const Keyframe& keyframe) {
   int patches = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/evaluation/distribution.h"
 #include "byre/map/map_file.h"
 
 #include <optional>
@@ -16,16 +17,6 @@ struct MapCounts {
   int features = 0;
   int observations = 0;
   int patches = 0;
-};
-
-// Percentiles are interpolated between their neighbours; all zero for none.
-struct Distribution {
-  int count = 0;
-  double mean = 0.0;
-  double p50 = 0.0;
-  double p95 = 0.0;
-  double p99 = 0.0;
-  double max = 0.0;
 };
 
 // How far observations are from where their points are projected to.

@@ -1,9 +1,7 @@
 #include "byre/assessment/map_statistics.h"
 
-#include "byre/trajectory_error.h"
+#include "byre/evaluation/distribution.h"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace byre {
@@ -30,17 +28,9 @@ void count_events(const FrameReport& report, FrameCounts& counts) {
 }  // namespace
 
 TimeSummary summarise_times(std::vector<double> seconds) {
-  TimeSummary summary;
-  if (seconds.empty()) return summary;
-  std::ranges::sort(seconds);
-  const auto quantile_ms = [&seconds](double share) { return kMillisecondsPerSecond * quantile(seconds, share); };
-  summary.count = static_cast<int>(seconds.size());
-  summary.mean_ms = kMillisecondsPerSecond * std::accumulate(seconds.begin(), seconds.end(), 0.0) / summary.count;
-  summary.p50_ms = quantile_ms(0.5);
-  summary.p95_ms = quantile_ms(0.95);
-  summary.p99_ms = quantile_ms(0.99);
-  summary.max_ms = kMillisecondsPerSecond * seconds.back();
-  return summary;
+  for (double& each : seconds) each *= kMillisecondsPerSecond;
+  const Distribution ms = distribution_of(std::move(seconds));
+  return {ms.count, ms.mean, ms.p50, ms.p95, ms.p99, ms.max};
 }
 
 TimeSummary summarise_stage(const std::vector<MappedFrame>& frames, double StageSeconds::*stage) {

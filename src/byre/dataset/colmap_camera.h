@@ -28,12 +28,9 @@ Camera camera_of(const ColmapCamera& camera, const std::string& place);
 // PINHOLE, OPENCV, OPENCV_FISHEYE, or FULL_OPENCV where there is a k3.
 ColmapCamera colmap_camera(const Camera& camera);
 
-// Between byre's pixels and COLMAP's: (0, 0) and (0.5, 0.5) are the centre of the top-left pixel.
+// From byre's pixels to COLMAP's: (0, 0) and (0.5, 0.5) are the centre of the top-left pixel.
 inline Eigen::Vector2d to_colmap_pixel(const Eigen::Vector2d& pixel) {
   return pixel + Eigen::Vector2d::Constant(0.5);
-}
-inline Eigen::Vector2d from_colmap_pixel(const Eigen::Vector2d& pixel) {
-  return pixel - Eigen::Vector2d::Constant(0.5);
 }
 
 }  // namespace byre

@@ -32,12 +32,6 @@ std::optional<fs::path> partner_of(Timestamp time, const std::vector<TimedFile>&
 
 }  // namespace
 
-std::vector<fs::path> paths_of(const std::vector<TimedFile>& files) {
-  std::vector<fs::path> paths;
-  for (const TimedFile& file : files) paths.push_back(file.path);
-  return paths;
-}
-
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right) {
   std::vector<FrameFiles> frames;
   for (const TimedFile& file : left) frames.push_back({file.time, file.path, partner_of(file.time, right)});

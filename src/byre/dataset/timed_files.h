@@ -14,8 +14,6 @@ struct TimedFile {
   std::filesystem::path path;
 };
 
-std::vector<std::filesystem::path> paths_of(const std::vector<TimedFile>& files);
-
 // The frames of the left images, each with the right one taken within 2 ms, where there is one. Precondition: both
 // ascend in time.
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right);

@@ -17,10 +17,12 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       whereabouts_(options, offline != nullptr),
       input_watch_(options.image),
       shutter_(rig.readout_time) {
-  if (!offline) options_.map_online = true;  // there is nothing else to track
-  if (!offline) return;
-  mission_.emplace(std::move(offline), options,
-                   OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
+  if (offline) {
+    mission_.emplace(std::move(offline), options,
+                     OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
+  } else {
+    options_.map_online = true;  // there is nothing else to track
+  }
 }
 
 void Session::continue_map(Map online) {

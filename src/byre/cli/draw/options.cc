@@ -2,6 +2,7 @@
 
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/recording_options.h"
 
 #include <algorithm>
@@ -131,11 +132,7 @@ void require_consistent(const DrawOptions& options) {
 }  // namespace
 
 std::vector<fs::path> DrawOptions::outputs() const {
-  std::vector<fs::path> files;
-  for (const auto& file : {plan_picture, camera_picture, video}) {
-    if (file) files.push_back(*file);
-  }
-  return files;
+  return asked_for({plan_picture, camera_picture, video});
 }
 
 void declare_draw_options(CLI::App& command, DrawOptions& options) {

@@ -1,11 +1,12 @@
 #include "byre/cli/map/options.h"
 
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/recording_options.h"
 
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -103,12 +104,7 @@ void require_consistent(const MapOptions& options) {
 }  // namespace
 
 std::vector<fs::path> MapOptions::outputs() const {
-  std::vector<fs::path> files;
-  if (map) files.push_back(*map);
-  if (trajectory) files.push_back(*trajectory);
-  if (causal_trajectory) files.push_back(*causal_trajectory);
-  if (stats) files.push_back(*stats);
-  return files;
+  return asked_for({map, trajectory, causal_trajectory, stats});
 }
 
 EngineOptions MapOptions::engine_options() const {
@@ -126,14 +122,8 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pace(command, options.pace);
-  std::map<std::string, Refinement> refinements;
-  for (const Refinement refinement : {Refinement::none, Refinement::stereo, Refinement::all}) {
-    refinements.emplace(name_of(refinement), refinement);
-  }
-  command
-      .add_option("--refine", options.refinement, "Matches refined in the image; less than all is for comparison (all)")
-      ->type_name("none|stereo|all")
-      ->transform(CLI::CheckedTransformer(refinements).description(""));
+  add_choice(command, "--refine", options.refinement, {Refinement::none, Refinement::stereo, Refinement::all},
+             "Matches refined in the image; less than all is for comparison (all)");
   declare_trajectory_format(command, options.trajectory_format);
   declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");

@@ -1,12 +1,13 @@
 #include "byre/cli/run/options.h"
 
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/input/formatted.h"
 
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -108,32 +109,20 @@ void require_consistent(const RunOptions& options) {
 
 // How points of the two maps go together; the defaults were measured.
 void declare_tracking(CLI::App& command, RunOptions& options) {
-  std::map<std::string, OfflinePolicy> policies;
-  for (const OfflinePolicy known : {OfflinePolicy::first, OfflinePolicy::together}) {
-    policies.emplace(name_of(known), known);
-  }
   command
       .add_option("--offline-weight", options.offline_weight,
                   formatted("Weight of a measured offline point, against 1 of an online one (%g)",
                             TrackOptions{}.offline_weight))
       ->type_name("FACTOR")
       ->check(between(1e-3, 1e3));
-  command
-      .add_option(
-          "--offline-policy", options.offline_policy,
-          "Offline points first, so that their pose guides the search for online ones, or both together (first)")
-      ->type_name("first|together")
-      ->transform(CLI::CheckedTransformer(policies).description(""));
+  add_choice(command, "--offline-policy", options.offline_policy, {OfflinePolicy::first, OfflinePolicy::together},
+             "Offline points first, so that their pose guides the search for online ones, or both together (first)");
 }
 
 }  // namespace
 
 std::vector<fs::path> RunOptions::outputs() const {
-  std::vector<fs::path> files;
-  for (const auto& file : {online_map, events, trajectory, causal_trajectory, odometry, stats}) {
-    if (file) files.push_back(*file);
-  }
-  return files;
+  return asked_for({online_map, events, trajectory, causal_trajectory, odometry, stats});
 }
 
 EngineOptions RunOptions::engine_options() const {

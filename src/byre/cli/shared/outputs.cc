@@ -25,6 +25,14 @@ void OutputWriter::require_written() const {
   if (first_failure_) std::rethrow_exception(first_failure_);
 }
 
+std::vector<std::filesystem::path> asked_for(std::initializer_list<std::optional<std::filesystem::path>> files) {
+  std::vector<std::filesystem::path> asked;
+  for (const auto& file : files) {
+    if (file) asked.push_back(*file);
+  }
+  return asked;
+}
+
 std::vector<std::string> names_of(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.string());

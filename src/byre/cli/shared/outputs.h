@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ class OutputWriter {
  private:
   std::exception_ptr first_failure_;
 };
+
+// The files that are asked for, in this order.
+std::vector<std::filesystem::path> asked_for(std::initializer_list<std::optional<std::filesystem::path>> files);
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 

@@ -1,11 +1,11 @@
 #include "byre/cli/shared/recording_options.h"
 
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/dataset/recording_words.h"
 #include "byre/input/text_file.h"
 
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -77,11 +77,8 @@ void require_sense(const FrameRange& range) {
 }
 
 void declare_pace(CLI::App& command, std::optional<Pace>& pace) {
-  std::map<std::string, Pace> paces;
-  for (const Pace known : {Pace::same_thread, Pace::paced, Pace::live}) paces.emplace(name_of(known), known);
-  command.add_option("--pace", pace, "Where mapping runs and how fast frames are fed (paced)")
-      ->type_name("inline|paced|live")
-      ->transform(CLI::CheckedTransformer(paces).description(""));
+  add_choice(command, "--pace", pace, {Pace::same_thread, Pace::paced, Pace::live},
+             "Where mapping runs and how fast frames are fed (paced)");
 }
 
 }  // namespace byre::cli
