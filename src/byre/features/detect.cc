@@ -2,29 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
-
-#include <opencv2/features2d.hpp>
 
 namespace byre {
 namespace {
-
-constexpr int kFastRadius = 3;
-
-// The part of the level in which corners may lie, widened by what FAST itself cuts off.
-cv::Rect searched_area(const cv::Mat& level, int border) {
-  const int margin = border - kFastRadius;
-  return {margin, margin, level.cols - 2 * margin, level.rows - 2 * margin};
-}
-
-void append_corners(const cv::Mat& level, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
-  thread_local std::vector<cv::KeyPoint> found;
-  cv::FAST(level(area), found, threshold, true);
-  for (const cv::KeyPoint& keypoint : found) {
-    corners.push_back(
-        {static_cast<int>(keypoint.pt.x) + area.x, static_cast<int>(keypoint.pt.y) + area.y, keypoint.response});
-  }
-}
 
 // Squares of the level inside its border, row by row; those of the last row and column are cut off.
 struct CellGrid {
@@ -44,12 +26,36 @@ struct CellGrid {
   }
 };
 
+// The part of the level in which corners may lie.
+cv::Rect searched_area(const cv::Mat& level, int border) {
+  return {border, border, level.cols - 2 * border, level.rows - 2 * border};
+}
+
+// Pixels of an image that is used for a while; the memory is kept from one to the next.
+cv::Mat scratch_image(std::vector<std::uint8_t>& memory, cv::Size size) {
+  memory.resize(std::max(memory.size(), static_cast<std::size_t>(size.area())));
+  return {size, CV_8U, memory.data()};
+}
+
+// Corners of one cell at the lower threshold, each stronger than its neighbours in the cell.
+void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, std::vector<Corner>& corners) {
+  thread_local std::vector<std::uint8_t> memory;
+  cv::Mat widened = scratch_image(memory, {cell.width + 2, cell.height + 2});
+  widened.setTo(0);
+  const cv::Rect inside(1, 1, cell.width, cell.height);
+  strengths(cell).copyTo(widened(inside));
+  const std::size_t before = corners.size();
+  append_peaks(widened, inside, threshold, corners);
+  for (std::size_t i = before; i < corners.size(); ++i) {
+    corners[i].x += cell.x - 1;
+    corners[i].y += cell.y - 1;
+  }
+}
+
 // Looks again, with the lower threshold, into the cells that gave less than their share of the corners wanted.
-void search_poor_cells(const cv::Mat& level, int max_corners, const DetectOptions& options,
+void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options,
                        std::vector<Corner>& corners) {
-  const CellGrid grid{
-      cv::Rect(options.border, options.border, level.cols - 2 * options.border, level.rows - 2 * options.border),
-      options.cell_size};
+  const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
   std::vector<int> found(grid.size(), 0);
   for (const Corner& corner : corners) ++found[grid.index_of(corner)];
   std::vector<bool> poor(grid.size(), false);
@@ -59,11 +65,7 @@ void search_poor_cells(const cv::Mat& level, int max_corners, const DetectOption
   // Corners of poor cells are found again.
   std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (!poor[i]) continue;
-    const cv::Rect cell = grid.cell(i);
-    const cv::Rect widened(cell.x - kFastRadius, cell.y - kFastRadius, cell.width + 2 * kFastRadius,
-                           cell.height + 2 * kFastRadius);
-    append_corners(level, widened, options.min_fast_threshold, corners);
+    if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, corners);
   }
 }
 
@@ -96,10 +98,13 @@ std::vector<RankedCorner> rank_in_squares(const std::vector<Corner>& corners, co
 
 std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
-  if (std::min(area.width, area.height) <= 2 * kFastRadius) return {};
+  if (std::min(area.width, area.height) <= 0) return {};
+  thread_local std::vector<std::uint8_t> memory;
+  cv::Mat strengths = scratch_image(memory, level.size());
+  measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
   std::vector<Corner> corners;
-  append_corners(level, area, options.fast_threshold, corners);
-  search_poor_cells(level, max_corners, options, corners);
+  append_peaks(strengths, area, options.fast_threshold, corners);
+  search_poor_cells(strengths, max_corners, options, corners);
 
   std::vector<RankedCorner> ranked = rank_in_squares(corners, level.size(), max_corners);
   const std::size_t wanted = std::min(ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));

@@ -1,16 +1,12 @@
 #pragma once
 
+#include "byre/features/fast_corners.h"
+
 #include <vector>
 
 #include <opencv2/core.hpp>
 
 namespace byre {
-
-struct Corner {
-  int x = 0;  // octave pixels
-  int y = 0;
-  float response = 0.0f;
-};
 
 struct DetectOptions {
   int fast_threshold = 20;     // grey values

@@ -2,6 +2,7 @@
 
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
+#include "byre/features/gaussian_blur.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
@@ -13,8 +14,6 @@
 #include <cmath>
 #include <span>
 #include <utility>
-
-#include <opencv2/imgproc.hpp>
 
 namespace byre {
 namespace {
@@ -111,7 +110,7 @@ struct Extractor::State {
   ExtractOptions options;
   Pyramid left;
   Pyramid right;
-  cv::Mat blurred;
+  std::array<cv::Mat, kOctaves> blurred;
   std::optional<DepthReader> depth;
 
   void describe_octave(int octave, int quota, Described& described);
@@ -129,15 +128,16 @@ void Extractor::State::describe_octave(int octave, int quota, Described& describ
   detect.border = kDescriptorRadius;
   const std::vector<Corner> corners = detect_corners(level, quota, detect);
   if (corners.empty()) return;
-  cv::GaussianBlur(level, blurred, cv::Size(7, 7), 2.0, 2.0, cv::BORDER_REFLECT_101);
+  cv::Mat& smooth = blurred[static_cast<std::size_t>(octave)];
+  gaussian_blur(level, smooth);
   for (const Corner& corner : corners) {
     Keypoint keypoint;
     keypoint.pixel = full_from_octave({static_cast<float>(corner.x), static_cast<float>(corner.y)}, octave);
     keypoint.octave = static_cast<std::uint8_t>(octave);
     keypoint.response = corner.response;
     keypoint.angle = orientation(level.ptr<std::uint8_t>(corner.y) + corner.x, static_cast<std::ptrdiff_t>(level.step));
-    described.descriptors.push_back(describe(blurred.ptr<std::uint8_t>(corner.y) + corner.x,
-                                             static_cast<std::ptrdiff_t>(blurred.step), keypoint.angle));
+    described.descriptors.push_back(describe(smooth.ptr<std::uint8_t>(corner.y) + corner.x,
+                                             static_cast<std::ptrdiff_t>(smooth.step), keypoint.angle));
     if (options.refinement == Refinement::all) described.patches.push_back(cut_patch(level, corner.x, corner.y));
     described.keypoints.push_back(keypoint);
   }

@@ -1,7 +1,5 @@
 #include "byre/features/pyramid.h"
 
-#include <opencv2/imgproc.hpp>
-
 namespace byre {
 
 void build_pyramid(const cv::Mat& image, Pyramid& pyramid) {
@@ -14,8 +12,9 @@ void build_pyramid(const cv::Mat& image, Pyramid& pyramid) {
       level.release();
       continue;
     }
-    // The factor is given rather than the size, so that rounding the size does not change the scale.
-    cv::resize(finer, level, cv::Size(), 1.0 / kOctaveScale, 1.0 / kOctaveScale, cv::INTER_LINEAR);
+    Downscale& downscale = pyramid.downscales[octave];
+    if (downscale.source() != finer.size()) downscale = Downscale(finer.size(), kOctaveScale);
+    downscale.apply(finer, level);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features.h"
+#include "byre/features/downscale.h"
 
 #include <array>
 
@@ -11,6 +12,8 @@ namespace byre {
 // The same image at every octave. Pixel x of octave o lies at (x + 0.5) * kScaleOfOctave[o] - 0.5 of the image.
 struct Pyramid {
   std::array<cv::Mat, kOctaves> levels;  // 8-bit grey; empty where the image is too small for the octave
+  // To each level from the one before, for images of the size seen last.
+  std::array<Downscale, kOctaves> downscales = {};
 };
 
 // Refills the pyramid in place; its memory is used again. The image itself becomes octave 0 and is not copied.

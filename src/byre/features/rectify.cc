@@ -2,18 +2,15 @@
 
 #include "byre/geometry/rectification.h"
 
-#include <opencv2/imgproc.hpp>
-
 namespace byre {
 
-cv::Mat Rectifier::Maps::apply(const cv::Mat& image) const {
-  if (whole.empty()) return image;
-  cv::remap(image, rectified, whole, fraction, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+cv::Mat Rectifier::Side::apply(const cv::Mat& image) const {
+  if (remap.empty()) return image;
+  remap.apply(image, rectified);
   return rectified;
 }
 
-Rectifier::Maps Rectifier::make_maps(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified,
-                                     const Rig& rig) {
+Remap Rectifier::make_remap(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified, const Rig& rig) {
   cv::Mat columns(rig.height, rig.width, CV_32F);
   cv::Mat rows(rig.height, rig.width, CV_32F);
   for (int v = 0; v < rig.height; ++v) {
@@ -23,23 +20,21 @@ Rectifier::Maps Rectifier::make_maps(const Camera& camera, const Eigen::Quaterni
       rows.at<float>(v, u) = pixel ? static_cast<float>(pixel->y()) : -1.0f;
     }
   }
-  Maps maps;
-  cv::convertMaps(columns, rows, maps.whole, maps.fraction, CV_16SC2);
-  return maps;
+  return Remap(columns, rows, {camera.width, camera.height});
 }
 
 Rectifier::Rectifier(const Calibration& calibration) {
   const Rectification rectification = rectification_of(calibration);
   rig_ = rectification.rig;
   if (rectification.is_identity) return;
-  left_ = make_maps(calibration.left, rectification.left_from_rectified, rig_);
-  if (calibration.right) right_ = make_maps(calibration.right->camera, rectification.right_from_rectified, rig_);
+  left_.remap = make_remap(calibration.left, rectification.left_from_rectified, rig_);
+  if (!calibration.right) return;
+  right_.remap = make_remap(calibration.right->camera, rectification.right_from_rectified, rig_);
 }
 
 float Rectifier::source_row(const Eigen::Vector2f& rectified) const {
-  if (left_.whole.empty()) return rectified.y();
-  const auto row = static_cast<int>(rectified.y()), column = static_cast<int>(rectified.x());
-  return left_.whole.at<cv::Vec2s>(row, column)[1];
+  if (left_.remap.empty()) return rectified.y();
+  return static_cast<float>(left_.remap.source_row({static_cast<int>(rectified.x()), static_cast<int>(rectified.y())}));
 }
 
 }  // namespace byre

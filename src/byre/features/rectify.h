@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/calibration.h"
+#include "byre/features/remap.h"
 #include "byre/rig.h"
 
 #include <optional>
@@ -27,19 +28,19 @@ class Rectifier {
   float source_row(const Eigen::Vector2f& rectified) const;
 
  private:
-  struct Maps {
-    cv::Mat whole;              // integer part of the source pixel
-    cv::Mat fraction;           // interpolation table index; both empty for the identity
-    mutable cv::Mat rectified;  // filled anew by each call
+  // How one camera's images are made, and the last one that was.
+  struct Side {
+    Remap remap;  // empty where images are rectified already
+    mutable cv::Mat rectified;
 
     cv::Mat apply(const cv::Mat& image) const;
   };
 
-  static Maps make_maps(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified, const Rig& rig);
+  static Remap make_remap(const Camera& camera, const Eigen::Quaterniond& camera_from_rectified, const Rig& rig);
 
   Rig rig_;
-  Maps left_;
-  Maps right_;
+  Side left_;
+  Side right_;
 };
 
 }  // namespace byre

@@ -1,0 +1,197 @@
+#include "byre/features/fast_corners.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+
+// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "byre/features/fast_corners.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace byre::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kCircle = 16;
+
+// The largest of the smallest values of nine neighbours on the circle.
+template <class V>
+HWY_INLINE V strongest_arc(const V* on_circle) {
+  // Smallest of two, four and eight neighbours from each second place of the circle on.
+  V two[kCircle], four[kCircle];
+  for (std::size_t i = 1; i < kCircle; i += 2) two[i] = hn::Min(on_circle[i], on_circle[(i + 1) % kCircle]);
+  for (std::size_t i = 1; i < kCircle; i += 2) four[i] = hn::Min(two[i], two[(i + 2) % kCircle]);
+  V strongest = hn::Xor(on_circle[0], on_circle[0]);
+  for (std::size_t i = 1; i < kCircle; i += 2) {
+    const V eight = hn::Min(four[i], four[(i + 4) % kCircle]);
+    // The ninth lies before or after.
+    strongest = hn::Max(strongest, hn::Min(eight, hn::Max(on_circle[i - 1], on_circle[(i + 8) % kCircle])));
+  }
+  return strongest;
+}
+
+// Strengths of neighbouring pixels, at least as many as a vector's lanes; offsets lead from a pixel to its circle.
+void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std::size_t count, std::uint8_t threshold,
+                 std::uint8_t* strengths) {
+  const hn::CappedTag<std::uint8_t, 32> d;
+  using V = hn::Vec<decltype(d)>;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto limit = hn::Set(d, threshold);
+  for (std::size_t x = 0; x < count; x += lanes) {
+    // The last ones overlap with those before, so as to stay inside the row.
+    const std::size_t at = x + lanes <= count ? x : count - lanes;
+    const auto centre = hn::LoadU(d, pixels + at);
+    const auto neighbour = [&](std::size_t i) { return hn::LoadU(d, pixels + at + offsets[i]); };
+    // Nine neighbours hold one of each two that lie across from each other.
+    const auto n0 = neighbour(0), n4 = neighbour(4), n8 = neighbour(8), n12 = neighbour(12);
+    const auto brighter = hn::SaturatedSub(hn::Min(hn::Max(n0, n8), hn::Max(n4, n12)), centre);
+    const auto darker = hn::SaturatedSub(centre, hn::Max(hn::Min(n0, n8), hn::Min(n4, n12)));
+    auto strength = hn::Zero(d);
+    if (!hn::AllFalse(d, hn::Gt(hn::Max(brighter, darker), limit))) {
+      V above[kCircle], below[kCircle];
+      for (std::size_t i = 0; i < kCircle; ++i) {
+        const auto value = neighbour(i);
+        above[i] = hn::SaturatedSub(value, centre);
+        below[i] = hn::SaturatedSub(centre, value);
+      }
+      strength = hn::Max(strongest_arc(above), strongest_arc(below));
+      strength = hn::IfThenElseZero(hn::Gt(strength, limit), strength);
+    }
+    hn::StoreU(strength, d, strengths + at);
+  }
+}
+
+// Marks, a bit each and the first one lowest, those of a row's first pixels that are stronger than the threshold and
+// than their neighbours. At most 32, and as many as a vector has lanes.
+std::uint32_t find_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::uint8_t threshold) {
+  const hn::CappedTag<std::uint8_t, 32> d;
+  const auto centre = hn::LoadU(d, strengths);
+  const auto is_strong = hn::Gt(centre, hn::Set(d, threshold));
+  if (hn::AllFalse(d, is_strong)) return 0;
+  const auto row_around = [&](const std::uint8_t* middle) {
+    return hn::Max(hn::LoadU(d, middle - 1), hn::LoadU(d, middle + 1));
+  };
+  const auto above = hn::Max(row_around(strengths - stride), hn::LoadU(d, strengths - stride));
+  const auto below = hn::Max(row_around(strengths + stride), hn::LoadU(d, strengths + stride));
+  const auto around = hn::Max(hn::Max(above, below), row_around(strengths));
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, hn::And(is_strong, hn::Gt(centre, around)), bits);
+  return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U |
+         static_cast<std::uint32_t>(bits[2]) << 16U | static_cast<std::uint32_t>(bits[3]) << 24U;
+}
+
+std::size_t lanes_of_rows() {
+  return hn::Lanes(hn::CappedTag<std::uint8_t, 32>());
+}
+
+}  // namespace
+}  // namespace byre::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace byre {
+namespace {
+
+HWY_EXPORT(measure_row);
+HWY_EXPORT(find_peaks);
+HWY_EXPORT(lanes_of_rows);
+
+// Clockwise from below; column and row.
+constexpr std::array<std::array<int, 2>, 16> kCirclePlaces = {{{0, 3},
+                                                               {1, 3},
+                                                               {2, 2},
+                                                               {3, 1},
+                                                               {3, 0},
+                                                               {3, -1},
+                                                               {2, -2},
+                                                               {1, -3},
+                                                               {0, -3},
+                                                               {-1, -3},
+                                                               {-2, -2},
+                                                               {-3, -1},
+                                                               {-3, 0},
+                                                               {-3, 1},
+                                                               {-2, 2},
+                                                               {-1, 3}}};
+
+std::uint8_t strength_of(const std::uint8_t* pixel, const std::ptrdiff_t* offsets, int threshold) {
+  int strongest = 0;
+  for (std::size_t first = 0; first < 16; ++first) {
+    int least_above = 255, least_below = 255;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const int difference = pixel[offsets[(first + i) % 16]] - pixel[0];
+      least_above = std::min(least_above, difference);
+      least_below = std::min(least_below, -difference);
+    }
+    strongest = std::max({strongest, least_above, least_below});
+  }
+  return static_cast<std::uint8_t>(strongest > threshold ? strongest : 0);
+}
+
+bool is_peak(const std::uint8_t* strength, std::ptrdiff_t stride, int threshold) {
+  if (*strength <= threshold) return false;
+  for (const std::ptrdiff_t row : {-stride, std::ptrdiff_t{0}, stride}) {
+    for (const std::ptrdiff_t column : {-1, 0, 1}) {
+      if ((row != 0 || column != 0) && strength[row + column] >= *strength) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int threshold, cv::Mat& strengths) {
+  assert(image.type() == CV_8U && threshold >= 0 && threshold < 255);
+  assert(area.x >= kFastRadius && area.x + area.width <= image.cols - kFastRadius);
+  assert(area.y >= kFastRadius && area.y + area.height <= image.rows - kFastRadius);
+  strengths.create(image.size(), CV_8U);
+  strengths.setTo(0);
+  std::array<std::ptrdiff_t, 16> offsets;
+  for (std::size_t i = 0; i < 16; ++i) {
+    offsets[i] = kCirclePlaces[i][1] * static_cast<std::ptrdiff_t>(image.step) + kCirclePlaces[i][0];
+  }
+  const auto width = static_cast<std::size_t>(area.width);
+  const bool is_narrow = width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)();
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    const std::uint8_t* const pixels = image.ptr<std::uint8_t>(y) + area.x;
+    std::uint8_t* const row = strengths.ptr<std::uint8_t>(y) + area.x;
+    if (!is_narrow) {
+      HWY_DYNAMIC_DISPATCH(measure_row)
+      (pixels, offsets.data(), width, static_cast<std::uint8_t>(threshold), row);
+      continue;
+    }
+    for (std::size_t x = 0; x < width; ++x) row[x] = strength_of(pixels + x, offsets.data(), threshold);
+  }
+}
+
+void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
+  assert(area.x > 0 && area.x + area.width < strengths.cols && area.y > 0 && area.y + area.height < strengths.rows);
+  const auto stride = static_cast<std::ptrdiff_t>(strengths.step);
+  const auto lanes = static_cast<int>(HWY_DYNAMIC_DISPATCH(lanes_of_rows)());
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    const std::uint8_t* const row = strengths.ptr<std::uint8_t>(y);
+    const auto append = [&](int x) { corners.push_back({x, y, static_cast<float>(row[x] - 1)}); };
+    int x = area.x;
+    for (; x + lanes <= area.x + area.width; x += lanes) {
+      std::uint32_t peaks = HWY_DYNAMIC_DISPATCH(find_peaks)(row + x, stride, static_cast<std::uint8_t>(threshold));
+      for (; peaks != 0; peaks &= peaks - 1) append(x + std::countr_zero(peaks));
+    }
+    for (; x < area.x + area.width; ++x) {
+      if (is_peak(row + x, stride, threshold)) append(x);
+    }
+  }
+}
+
+}  // namespace byre
+
+#endif

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace byre {
+
+// Blurs 8-bit grey values by a Gaussian of 7 x 7 pixels and a standard deviation of 2, as a 256th part; the border is
+// mirrored about its outermost pixels. Same values as cv::GaussianBlur. Precondition: the image has at least 4 x 4
+// pixels; blurred is another.
+void gaussian_blur(const cv::Mat& image, cv::Mat& blurred);
+
+}  // namespace byre
