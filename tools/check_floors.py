@@ -47,8 +47,8 @@ EVERY_ROOM = frozenset(FLOOR)
 # Headers that only some rooms may include. Tests are free to.
 KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "session", "simulation", "playback", "viewer", "cli"},
-    r"mutex|shared_mutex": {"session", "viewer"},
+        "features", "session", "simulation", "playback", "viewer", "cli"},
+    r"mutex|shared_mutex": {"features", "session", "viewer"},
     r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
                             "archive", "viewer", "benchmark", "demo", "cli"},
     r"iostream|CLI/.*": {"cli"},

@@ -33,11 +33,9 @@ struct SlamOptions {
   double max_pair_difference = 0.005;  // seconds between left image and right or depth image
   double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
   int max_features = 1000;             // most features a frame
-  // In how many threads OpenCV works on an image, in the whole process: tracking and mapping fill two cores as it is.
-  // Zero leaves that as it is.
-  int image_threads = 1;
-  std::string recording = "live";                     // name of the frames in a kept map
-  std::string site;                                   // place where the map was made, noted in it unless empty
+  int image_threads = 2;               // threads that work on the images of a frame; poses do not depend on them
+  std::string recording = "live";      // name of the frames in a kept map
+  std::string site;                    // place where the map was made, noted in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
   // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};

@@ -283,7 +283,7 @@ class SlamOptions:
         max_pair_difference: float = 0.005,
         max_gap: float = 1.0,
         max_features: int = 1000,
-        image_threads: int = 1,
+        image_threads: int = 2,
         recording: str = "live",
         site: str = "",
         vocabulary: Optional[_Path] = None,

@@ -118,7 +118,7 @@ Downscale::Downscale(cv::Size source, double factor)
 void Downscale::apply(const cv::Mat& image, cv::Mat& made) const {
   assert(image.type() == CV_8U && image.size() == source_);
   made.create(size_, CV_8U);
-  thread_local std::array<std::vector<std::int16_t>, 2> sums;  // of the two rows made last
+  thread_local std::array<std::vector<std::int16_t>, 2> sums;  // the two rows made last
   std::array<int, 2> made_of = {-1, -1};
   for (std::vector<std::int16_t>& row : sums) row.resize(groups_.size() * Group::kPixels);
   const auto sums_of = [&](int row) {

@@ -15,7 +15,7 @@ class Downscale {
   static constexpr int kMinSide = 24;  // pixels
   static constexpr double kMaxFactor = 1.8;
 
-  Downscale() = default;  // of no image
+  Downscale() = default;  // makes none
   // Preconditions: 1 < factor <= kMaxFactor; the source has at least kMinSide pixels each way.
   Downscale(cv::Size source, double factor);
 

@@ -6,12 +6,16 @@
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
+#include "byre/features/task_threads.h"
 #include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -63,7 +67,7 @@ cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, con
 
 // What was measured of each keypoint, where it was.
 template <typename Measured>
-void take_over(const std::vector<std::optional<Measured>>& measured, std::vector<Keypoint>& keypoints) {
+void take_over(const std::vector<std::optional<Measured>>& measured, std::span<Keypoint> keypoints) {
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
@@ -105,30 +109,62 @@ struct Described {
 }  // namespace
 
 struct Extractor::State {
+  State(const Calibration& used, const ExtractOptions& extract_options)
+      : calibration(used), rectifier(used), options(extract_options), threads(std::max(1, options.threads) - 1) {
+    if (calibration.depth) depth.emplace(calibration, rectifier.rig());
+  }
+
   Calibration calibration;
   Rectifier rectifier;
   ExtractOptions options;
+  std::optional<DepthReader> depth;
   Pyramid left;
   Pyramid right;
   std::array<cv::Mat, kOctaves> blurred;
-  std::optional<DepthReader> depth;
+  std::array<Described, kOctaves> described;
+  TaskThreads threads;
 
-  void describe_octave(int octave, int quota, Described& described);
-  Described describe_all();
-  void match_right(const cv::Mat& rectified, std::vector<Keypoint>& keypoints);
+  void prepare(const ImageFrame& images, Frame& frame);
+  void describe_octave(int octave, int quota);
+  Described describe_all(const Frame& frame, bool stereo);
+  void match_right(std::vector<Keypoint>& keypoints);
   void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
   void time_rows(std::vector<Keypoint>& keypoints) const;
 };
 
-void Extractor::State::describe_octave(int octave, int quota, Described& described) {
-  const cv::Mat& level = left.levels[static_cast<std::size_t>(octave)];
+// Rectified images, the left one at every octave, and what the images are like.
+void Extractor::State::prepare(const ImageFrame& images, Frame& frame) {
+  const bool stereo = calibration.right && images.right;
+  const cv::Mat left_image = as_matrix(images.left, calibration.left);
+  const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
+  const auto prepare_left = [&] { build_pyramid(rectifier.left(left_image), left); };
+  const auto prepare_right = [&] {
+    right.levels[0] = rectifier.right(right_image);
+    frame.right_condition = measure_condition(*images.right);
+  };
+  const auto look_at_left = [&] {
+    frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
+    frame.condition = measure_condition(images.left);
+  };
+  const std::array<std::function<void()>, 3> tasks = {prepare_left, look_at_left, prepare_right};
+  threads.run(stereo ? 3 : 2, [&](int i) { tasks[static_cast<std::size_t>(i)](); });
+}
+
+void Extractor::State::describe_octave(int octave, int quota) {
+  const auto slot = static_cast<std::size_t>(octave);
+  Described& found = described[slot];
+  found = {};
+  const cv::Mat& level = left.levels[slot];
   DetectOptions detect;
   detect.fast_threshold = options.fast_threshold;
   detect.min_fast_threshold = options.min_fast_threshold;
   detect.border = kDescriptorRadius;
   const std::vector<Corner> corners = detect_corners(level, quota, detect);
   if (corners.empty()) return;
-  cv::Mat& smooth = blurred[static_cast<std::size_t>(octave)];
+  found.keypoints.reserve(corners.size());
+  found.descriptors.reserve(corners.size());
+  found.patches.reserve(corners.size());
+  cv::Mat& smooth = blurred[slot];
   gaussian_blur(level, smooth);
   for (const Corner& corner : corners) {
     Keypoint keypoint;
@@ -136,34 +172,52 @@ void Extractor::State::describe_octave(int octave, int quota, Described& describ
     keypoint.octave = static_cast<std::uint8_t>(octave);
     keypoint.response = corner.response;
     keypoint.angle = orientation(level.ptr<std::uint8_t>(corner.y) + corner.x, static_cast<std::ptrdiff_t>(level.step));
-    described.descriptors.push_back(describe(smooth.ptr<std::uint8_t>(corner.y) + corner.x,
-                                             static_cast<std::ptrdiff_t>(smooth.step), keypoint.angle));
-    if (options.refinement == Refinement::all) described.patches.push_back(cut_patch(level, corner.x, corner.y));
-    described.keypoints.push_back(keypoint);
+    found.descriptors.push_back(describe(smooth.ptr<std::uint8_t>(corner.y) + corner.x,
+                                         static_cast<std::ptrdiff_t>(smooth.step), keypoint.angle));
+    if (options.refinement == Refinement::all) found.patches.push_back(cut_patch(level, corner.x, corner.y));
+    found.keypoints.push_back(keypoint);
   }
 }
 
-Described Extractor::State::describe_all() {
+// Features of all octaves, the finest first; meanwhile the right image at every octave.
+Described Extractor::State::describe_all(const Frame& frame, bool stereo) {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
-  Described described;
-  described.keypoints.reserve(static_cast<std::size_t>(options.max_features));
-  described.descriptors.reserve(static_cast<std::size_t>(options.max_features));
-  described.patches.reserve(static_cast<std::size_t>(options.max_features));
-  for (int octave = 0; octave < kOctaves; ++octave) {
-    describe_octave(octave, quota[static_cast<std::size_t>(octave)], described);
+  // The right pyramid takes longer than the coarse octaves.
+  const int of_right = stereo ? 1 : -1;
+  threads.run(stereo ? kOctaves + 1 : kOctaves, [&](int task) {
+    if (task == of_right) {
+      build_pyramid(exposed_as_left(right.levels[0], *frame.condition, *frame.right_condition), right);
+    } else {
+      const int octave = stereo && task > of_right ? task - 1 : task;
+      describe_octave(octave, quota[static_cast<std::size_t>(octave)]);
+    }
+  });
+  Described all;
+  all.keypoints.reserve(static_cast<std::size_t>(options.max_features));
+  all.descriptors.reserve(static_cast<std::size_t>(options.max_features));
+  all.patches.reserve(static_cast<std::size_t>(options.max_features));
+  for (const Described& found : described) {
+    all.keypoints.insert(all.keypoints.end(), found.keypoints.begin(), found.keypoints.end());
+    all.descriptors.insert(all.descriptors.end(), found.descriptors.begin(), found.descriptors.end());
+    all.patches.insert(all.patches.end(), found.patches.begin(), found.patches.end());
   }
-  return described;
+  return all;
 }
 
-void Extractor::State::match_right(const cv::Mat& rectified, std::vector<Keypoint>& keypoints) {
-  build_pyramid(rectified, right);
+void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
+  constexpr std::size_t kAtOnce = 64;  // keypoints a task
   StereoOptions stereo_options;
   stereo_options.refine = options.refinement != Refinement::none;
-  const auto matches = match_stereo(left, right, rectifier.rig(), keypoints, stereo_options);
-  take_over(matches, keypoints);
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (matches[i]) keypoints[i].row_offset = matches[i]->row_offset;
-  }
+  const std::span<Keypoint> all = keypoints;
+  threads.run(static_cast<int>((all.size() + kAtOnce - 1) / kAtOnce), [&](int task) {
+    const std::size_t first = static_cast<std::size_t>(task) * kAtOnce;
+    const std::span<Keypoint> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
+    const auto matches = match_stereo(left, right, rectifier.rig(), some, stereo_options);
+    take_over(matches, some);
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (matches[i]) some[i].row_offset = matches[i]->row_offset;
+    }
+  });
 }
 
 void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
@@ -191,9 +245,7 @@ std::string_view name_of(Refinement refinement) {
 }
 
 Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
-    : state_(new State{calibration, Rectifier(calibration), options, {}, {}, {}, {}}) {
-  if (calibration.depth) state_->depth.emplace(calibration, rig());
-}
+    : state_(new State(calibration, options)) {}
 Extractor::~Extractor() = default;
 Extractor::Extractor(Extractor&&) noexcept = default;
 Extractor& Extractor::operator=(Extractor&&) noexcept = default;
@@ -206,24 +258,14 @@ Extraction Extractor::extract(const ImageFrame& images) {
   const Clock::time_point start = Clock::now();
   const Calibration& calibration = state_->calibration;
   const bool stereo = calibration.right && images.right;
-  const cv::Mat left = state_->rectifier.left(as_matrix(images.left, calibration.left));
-  const cv::Mat right =
-      stereo ? state_->rectifier.right(as_matrix(*images.right, calibration.right->camera)) : cv::Mat();
-  const Clock::time_point rectified = Clock::now();
-
-  build_pyramid(left, state_->left);
-  Described described = state_->describe_all();
-  const Clock::time_point extracted = Clock::now();
-
   Extraction extraction;
   Frame& frame = extraction.frame;
   frame.time = images.time;
-  frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
-  frame.condition = measure_condition(images.left);
-  if (stereo) {
-    frame.right_condition = measure_condition(*images.right);
-    state_->match_right(exposed_as_left(right, *frame.condition, *frame.right_condition), described.keypoints);
-  }
+  state_->prepare(images, frame);
+  const Clock::time_point rectified = Clock::now();
+  Described described = state_->describe_all(frame, stereo);
+  const Clock::time_point extracted = Clock::now();
+  if (stereo) state_->match_right(described.keypoints);
   if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
   state_->time_rows(described.keypoints);
   frame.features =

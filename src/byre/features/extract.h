@@ -22,12 +22,13 @@ struct ExtractOptions {
   int min_fast_threshold = 7;  // used where the image is dull
   Refinement refinement = Refinement::all;
   DepthOptions depth{};
+  int threads = 2;  // threads at work on one frame, the caller's too; what is extracted does not depend on them
 };
 
 // Wall time of the stages of one extraction, seconds.
 struct ExtractTimes {
-  double rectify = 0.0;
-  double extract = 0.0;  // pyramid, corners, descriptors, patches
+  double rectify = 0.0;  // with the left pyramid
+  double extract = 0.0;  // corners, descriptors, patches; the right pyramid
   double stereo = 0.0;   // matching left to right, or reading depths
 };
 
@@ -36,8 +37,8 @@ struct Extraction {
   ExtractTimes times;
 };
 
-// The front end of one camera rig: pixels in, an immutable Frame out. Keeps its working memory between calls;
-// use one from one thread at a time.
+// The front end of one camera rig: pixels in, an immutable Frame out. Keeps its working memory and its threads between
+// calls; use one from one thread at a time.
 class Extractor {
  public:
   // Throws InputError when the calibration cannot be rectified.

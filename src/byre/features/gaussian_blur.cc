@@ -56,7 +56,7 @@ void add_columns(const std::uint16_t* sums, std::size_t width, std::uint8_t* blu
   // Makes up for it, and rounds.
   const auto offset = hn::Set(d32, 256 * 0x8000 + 0x8000);
   const auto load = [&](std::size_t x) { return hn::BitCast(d16, hn::Xor(hn::LoadU(du16, sums + x), to_signed)); };
-  // Of every second pixel from x on, in the upper 16 bits.
+  // Sums at every second pixel from x on, in the upper 16 bits.
   const auto every_second = [&](std::size_t x) {
     const auto left = hn::Add(pairwise_sums(d32, load(x), taps01), pairwise_sums(d32, load(x + 2), taps23));
     const auto right = hn::Add(pairwise_sums(d32, load(x + 4), taps21), pairwise_sums(d32, load(x + 6), tap0));

@@ -68,7 +68,7 @@ namespace {
 
 HWY_EXPORT(look_up);
 
-constexpr int kSteps = 32;      // of interpolation between two pixels
+constexpr int kSteps = 32;      // places between two pixels
 constexpr int kReadAtOnce = 4;  // bytes, of which the first two are used
 
 struct Place {

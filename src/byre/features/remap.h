@@ -13,7 +13,7 @@ namespace byre {
 // cv::BORDER_REPLICATE, which interpolates in 32 steps.
 class Remap {
  public:
-  Remap() = default;  // of no pixels
+  Remap() = default;  // makes none
   // Places are whole and fractional source pixels (CV_32F), one a pixel of the image that is made. Precondition: both
   // of one size; the source has at least 2 x 2 pixels.
   Remap(const cv::Mat& columns, const cv::Mat& rows, cv::Size source);
@@ -30,7 +30,7 @@ class Remap {
  private:
   // A pixel that is not in reach of reading several bytes at once.
   struct PixelAtTheEnd {
-    std::size_t pixel = 0;  // of the image that is made
+    std::size_t pixel = 0;  // index in the image that is made
     std::int32_t offset = 0;
   };
 
@@ -39,10 +39,10 @@ class Remap {
 
   cv::Size size_;
   cv::Size source_;
-  std::vector<std::int32_t> offsets_;           // of the upper left of four neighbours, in the source
+  std::vector<std::int32_t> offsets_;           // source pixel, the upper left of four neighbours
   std::vector<std::uint8_t> column_fractions_;  // 0 to 32
   std::vector<std::uint8_t> row_fractions_;     // 0 to 32
-  std::vector<PixelAtTheEnd> at_the_end_;       // whose offsets_ are the last that may be read
+  std::vector<PixelAtTheEnd> at_the_end_;       // their offsets_ are the last that may be read
 };
 
 }  // namespace byre

@@ -135,7 +135,7 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
 }  // namespace
 
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
-                                                     const std::vector<Keypoint>& keypoints,
+                                                     std::span<const Keypoint> keypoints,
                                                      const StereoOptions& options) {
   const double max_disparity =
       std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);

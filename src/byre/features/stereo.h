@@ -3,6 +3,7 @@
 #include "byre/features/pyramid.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace byre {
@@ -27,7 +28,6 @@ struct StereoMatch {
 // the same from right to left, then refined to sub-pixel in the image. One entry per keypoint, empty where unmatched.
 // The keypoints lie on whole octave pixels. Pyramids are those of a rectified pair.
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
-                                                     const std::vector<Keypoint>& keypoints,
-                                                     const StereoOptions& options);
+                                                     std::span<const Keypoint> keypoints, const StereoOptions& options);
 
 }  // namespace byre

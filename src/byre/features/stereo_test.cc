@@ -243,7 +243,7 @@ TEST(MatchStereo, FindsNothingInOctavesThatASmallImageHasNot) {
   Keypoint keypoint;
   keypoint.pixel = {30.0f, 25.0f};
   keypoint.octave = kOctaves - 1;
-  EXPECT_FALSE(match_stereo(pair.left, pair.right, stereo_rig(), {keypoint}, {}).at(0));
+  EXPECT_FALSE(match_stereo(pair.left, pair.right, stereo_rig(), {{keypoint}}, {}).at(0));
 }
 
 }  // namespace

@@ -115,6 +115,9 @@ void add_features(Table& table) {
       "features.refinement", {Refinement::none, Refinement::stereo, Refinement::all},
       [](auto& o) -> auto& { return o.extract.refinement; }, "matches refined in the image"));
   table.push_back(number(
+      "features.threads", "threads", 1, 64, [](auto& o) -> auto& { return o.extract.threads; },
+      "threads that work on the images of one frame; results do not depend on them"));
+  table.push_back(number(
       "depth.max_m", "metres", 0.1, 1e3, [](auto& o) -> auto& { return o.extract.depth.max_depth; },
       "farthest depth of a depth camera that is used"));
   table.push_back(number(

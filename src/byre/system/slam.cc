@@ -1,6 +1,5 @@
 #include "byre/slam.h"
 
-#include "byre/features/image_threads.h"
 #include "byre/features/image_view.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
@@ -31,6 +30,7 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
     if (!is_sound) refuse("has no proper depth camera");
   }
   if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
+  if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
 }
 
 Pace pace_of(Workers workers) {
@@ -58,6 +58,7 @@ EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocab
   engine.pace = pace_of(options.workers);
   engine.extract.max_features = options.max_features;
   engine.self_calibrate = options.refine_calibration;
+  engine.extract.threads = options.image_threads;
   engine.session.map_online = options.map_online;
   engine.vocabulary = vocabulary;
   apply_settings(options, engine);
@@ -77,9 +78,7 @@ struct Slam::Parts {
         offline(engine_options.offline),
         is_extended(before.has_value()),
         engine(given, engine_options, std::move(before)),
-        input(given, engine.rig(), {options.max_pair_difference, options.max_gap}) {
-    if (options.image_threads > 0) limit_image_threads(options.image_threads);
-  }
+        input(given, engine.rig(), {options.max_pair_difference, options.max_gap}) {}
   ~Parts() { engine.hurry(); }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace byre {
+
+// Threads that help with short tasks and sleep between them. run() is called from one thread at a time.
+class TaskThreads {
+ public:
+  explicit TaskThreads(int helpers);  // 0: the caller does all
+  TaskThreads(const TaskThreads&) = delete;
+  TaskThreads& operator=(const TaskThreads&) = delete;
+
+  // Calls task(0) to task(count - 1), each once, on the calling thread and those that help, and returns when all are
+  // done. Tasks are begun in order; the caller waits for none that is not yet begun. Throws what a task threw first.
+  void run(int count, const std::function<void(int)>& task);
+
+ private:
+  void help(const std::stop_token& stop);
+  void work();  // until no task is left
+  bool is_left() const { return next_ < count_; }
+
+  std::mutex mutex_;  // guards all below
+  std::condition_variable_any begun_;
+  std::condition_variable_any ended_;
+  const std::function<void(int)>* task_ = nullptr;
+  int count_ = 0;
+  int next_ = 0;
+  int helping_ = 0;  // helpers at work
+  std::exception_ptr failure_;
+  std::vector<std::jthread> helpers_;  // last, so that they end first
+};
+
+}  // namespace byre
