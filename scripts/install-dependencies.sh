@@ -7,7 +7,7 @@ packages=(
   # building
   g++ cmake ninja-build ccache git
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
-  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev libembree-dev libboost-dev
+  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev libdeflate-dev libembree-dev libboost-dev
   # the program
   libcli11-dev python3
   # the package for Python

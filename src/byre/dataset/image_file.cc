@@ -1,5 +1,6 @@
 #include "byre/dataset/image_file.h"
 
+#include "byre/dataset/grey_png.h"
 #include "byre/dataset/image_size.h"
 #include "byre/dataset/png_chunks.h"
 
@@ -53,11 +54,31 @@ bool is_cut_jpeg(const Bytes& bytes) {
   return std::search(tail, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end();
 }
 
+// Empty for what is left to OpenCV.
+cv::Mat decode_grey(const Bytes& png) {
+  const std::optional<GreyPng> image = decode_grey_png(png);
+  if (!image) return {};
+  cv::Mat grey(image->height, image->width, image->bytes_a_pixel == 1 ? CV_8U : CV_16U);
+  if (image->bytes_a_pixel == 1) {
+    std::ranges::copy(image->values, grey.data);
+    return grey;
+  }
+  auto* const values = grey.ptr<std::uint16_t>();
+  for (std::size_t i = 0; i < grey.total(); ++i) {
+    values[i] = static_cast<std::uint16_t>(image->values[2 * i] << 8U | image->values[2 * i + 1]);
+  }
+  return grey;
+}
+
 cv::Mat decode(const Bytes& bytes, int flags) {
   const std::optional<ImageSize> size = stated_size(bytes);
   if (size && size->pixels() > kMostPixels) return {};
   const std::optional<Bytes> png = is_png(bytes) ? png_of_pixels(bytes) : std::nullopt;
   if (is_png(bytes) && !png) return {};
+  if (png) {
+    const cv::Mat grey = decode_grey(*png);
+    if (!grey.empty() && (flags == cv::IMREAD_UNCHANGED || grey.type() == CV_8U)) return grey;
+  }
   try {
     return cv::imdecode(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // sizes beyond the decoder's limits

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include <boost/crc.hpp>
+#include <libdeflate.h>
 
 namespace byre {
 namespace {
@@ -31,9 +31,8 @@ std::optional<Bytes> chunk_at(Bytes bytes, std::size_t begin) {
   const std::size_t length = number_at(bytes, begin);
   if (length > bytes.size() - begin - kFrame) return std::nullopt;
   const Bytes chunk = bytes.subspan(begin, length + kFrame);
-  boost::crc_32_type checksum;
-  checksum.process_bytes(chunk.data() + 4, length + 4);
-  return checksum.checksum() == number_at(chunk, length + 8) ? std::optional(chunk) : std::nullopt;
+  const std::uint32_t checksum = libdeflate_crc32(0, chunk.data() + 4, length + 4);
+  return checksum == number_at(chunk, length + 8) ? std::optional(chunk) : std::nullopt;
 }
 
 // Those that begin with a capital must be understood by all; transparency too changes what is seen.
@@ -57,6 +56,17 @@ std::optional<std::vector<std::uint8_t>> png_of_pixels(std::span<const std::uint
     if (type_of(*chunk) == "IEND") return pixels;
     begin += chunk->size();
   }
+}
+
+std::vector<PngChunk> chunks_of(std::span<const std::uint8_t> bytes) {
+  std::vector<PngChunk> chunks;
+  std::size_t begin = kSignature.size();
+  while (const std::optional<Bytes> chunk = chunk_at(bytes, begin)) {
+    chunks.push_back({type_of(*chunk), chunk->subspan(8, chunk->size() - kFrame)});
+    if (chunks.back().type == "IEND") break;
+    begin += chunk->size();
+  }
+  return chunks;
 }
 
 }  // namespace byre

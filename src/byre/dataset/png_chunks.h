@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace byre {
@@ -13,5 +14,13 @@ bool is_png(std::span<const std::uint8_t> bytes);
 // that do not suit it, and of damage, the decoder would tell on the standard error stream. Empty when the file is cut
 // off or damaged. Precondition: is_png(bytes).
 std::optional<std::vector<std::uint8_t>> png_of_pixels(std::span<const std::uint8_t> bytes);
+
+struct PngChunk {
+  std::string_view type;  // four letters
+  std::span<const std::uint8_t> data;
+};
+
+// The chunks up to the last one, or to what is cut off or damaged. Precondition: is_png(bytes).
+std::vector<PngChunk> chunks_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace byre

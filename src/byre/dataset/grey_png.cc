@@ -1,0 +1,117 @@
+#include "byre/dataset/grey_png.h"
+
+#include "byre/dataset/png_chunks.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+
+#include <libdeflate.h>
+
+namespace byre {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+struct Header {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t bytes_a_pixel = 0;
+
+  std::size_t stride() const { return width * bytes_a_pixel; }  // bytes
+};
+
+// Empty for what is not decoded here.
+std::optional<Header> header_of(Bytes data) {
+  constexpr std::uint8_t kGrey = 0;
+  if (data.size() != 13) return std::nullopt;
+  const auto number = [&](std::size_t at) {
+    return std::size_t{data[at]} << 24U | std::size_t{data[at + 1]} << 16U | std::size_t{data[at + 2]} << 8U |
+           std::size_t{data[at + 3]};
+  };
+  const Header header{number(0), number(4), data[8] / std::size_t{8}};
+  const bool is_plain = data[9] == kGrey && data[10] == 0 && data[11] == 0 && data[12] == 0;
+  if (!is_plain || (data[8] != 8 && data[8] != 16) || header.width == 0 || header.height == 0) return std::nullopt;
+  return header;
+}
+
+// Filtered rows, each after the number of its filter; empty unless there are just so many bytes.
+std::vector<std::uint8_t> inflate(Bytes compressed, std::size_t size) {
+  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  std::vector<std::uint8_t> rows(size);
+  const bool is_whole = inflater && libdeflate_zlib_decompress(inflater.get(), compressed.data(), compressed.size(),
+                                                               rows.data(), rows.size(), nullptr) == LIBDEFLATE_SUCCESS;
+  return is_whole ? rows : std::vector<std::uint8_t>();
+}
+
+// The one of three neighbours that is nearest to left + above - corner.
+std::uint8_t paeth(int left, int above, int corner) {
+  const int by_left = std::abs(above - corner), by_above = std::abs(left - corner);
+  const int by_corner = std::abs(left + above - 2 * corner);
+  const int nearer = by_above <= by_corner ? above : corner;
+  return static_cast<std::uint8_t>(by_left <= by_above && by_left <= by_corner ? left : nearer);
+}
+
+// One row from its differences to what its filter predicts; false for an unknown filter. Left of the first pixel all
+// is zero.
+bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above, std::size_t bytes_a_pixel,
+              std::uint8_t* row) {
+  const std::size_t count = differences.size();
+  const auto predict = [&](auto prediction) {
+    for (std::size_t i = 0; i < bytes_a_pixel; ++i) {
+      row[i] = static_cast<std::uint8_t>(differences[i] + prediction(0, above[i], 0));
+    }
+    for (std::size_t i = bytes_a_pixel; i < count; ++i) {
+      const std::size_t before = i - bytes_a_pixel;
+      row[i] = static_cast<std::uint8_t>(differences[i] + prediction(row[before], above[i], above[before]));
+    }
+    return true;
+  };
+  switch (filter) {
+    case 0:
+      std::ranges::copy(differences, row);
+      return true;
+    case 1:
+      return predict([](int left, int, int) { return left; });
+    case 2:
+      for (std::size_t i = 0; i < count; ++i) row[i] = static_cast<std::uint8_t>(differences[i] + above[i]);
+      return true;
+    case 3:
+      return predict([](int left, int up, int) { return (left + up) / 2; });
+    case 4:
+      return predict(paeth);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::optional<GreyPng> decode_grey_png(std::span<const std::uint8_t> png) {
+  std::optional<Header> header;
+  std::vector<std::uint8_t> compressed;
+  for (const PngChunk& chunk : chunks_of(png)) {
+    if (chunk.type == "IHDR") header = header_of(chunk.data);
+    if (chunk.type == "tRNS") return std::nullopt;
+    if (chunk.type == "IDAT") compressed.insert(compressed.end(), chunk.data.begin(), chunk.data.end());
+  }
+  if (!header) return std::nullopt;
+  const std::size_t stride = header->stride();
+  const std::vector<std::uint8_t> rows = inflate(compressed, header->height * (stride + 1));
+  if (rows.empty()) return std::nullopt;
+  GreyPng image{
+      static_cast<int>(header->width), static_cast<int>(header->height), static_cast<int>(header->bytes_a_pixel), {}};
+  image.values.resize(header->height * stride);
+  const std::vector<std::uint8_t> nothing(stride, 0);
+  for (std::size_t y = 0; y < header->height; ++y) {
+    const Bytes differences = Bytes(rows).subspan(y * (stride + 1) + 1, stride);
+    std::uint8_t* const row = image.values.data() + y * stride;
+    const std::uint8_t* const above = y == 0 ? nothing.data() : row - stride;
+    if (!unfilter(rows[y * (stride + 1)], differences, above, header->bytes_a_pixel, row)) return std::nullopt;
+  }
+  return image;
+}
+
+}  // namespace byre

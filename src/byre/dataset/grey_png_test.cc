@@ -1,0 +1,100 @@
+#include "byre/dataset/grey_png.h"
+
+#include "byre/dataset/png_chunks.h"
+
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <libdeflate.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace byre {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// Smooth with some noise, so that encoders choose one filter here and another there.
+cv::Mat picture(int type, int width, int height) {
+  cv::Mat made(height, width, type);
+  std::mt19937 random(17);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto value = static_cast<unsigned>(3 * x + 2 * y * y / (1 + x) + random() % (1 + y % 23));
+      if (type == CV_8U) made.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(value);
+      if (type == CV_16U) made.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(97 * value);
+    }
+  }
+  return made;
+}
+
+Bytes png_of(const cv::Mat& image, int strategy) {
+  Bytes bytes;
+  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6, cv::IMWRITE_PNG_STRATEGY, strategy});
+  return bytes;
+}
+
+// Values of one byte each, or of two, the more significant one first.
+Bytes values_of(const cv::Mat& image) {
+  if (image.type() == CV_8U) return {image.data, image.data + image.total()};
+  Bytes values;
+  for (auto value = image.begin<std::uint16_t>(); value != image.end<std::uint16_t>(); ++value) {
+    values.push_back(static_cast<std::uint8_t>(*value >> 8U));
+    values.push_back(static_cast<std::uint8_t>(*value));
+  }
+  return values;
+}
+
+class GreyPngOf : public testing::TestWithParam<std::pair<int, int>> {};  // type and strategy of OpenCV
+
+TEST_P(GreyPngOf, HasTheValuesThatWereWritten) {
+  const auto [type, strategy] = GetParam();
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 9), std::pair(131, 77)}) {
+    const cv::Mat written = picture(type, width, height);
+    const auto read = decode_grey_png(png_of(written, strategy));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->width, width);
+    EXPECT_EQ(read->height, height);
+    EXPECT_EQ(read->values, values_of(written));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, GreyPngOf,
+                         testing::Values(std::pair<int, int>(CV_8U, cv::IMWRITE_PNG_STRATEGY_DEFAULT),
+                                         std::pair<int, int>(CV_8U, cv::IMWRITE_PNG_STRATEGY_FILTERED),
+                                         std::pair<int, int>(CV_16U, cv::IMWRITE_PNG_STRATEGY_FILTERED)));
+
+TEST(GreyPng, LeavesOtherKindsAlone) {
+  const Bytes colours = png_of(cv::Mat(8, 9, CV_8UC3, cv::Scalar(1, 2, 3)), cv::IMWRITE_PNG_STRATEGY_DEFAULT);
+  EXPECT_FALSE(decode_grey_png(colours));
+  Bytes one_bit;
+  cv::imencode(".png", picture(CV_8U, 8, 9) > 40, one_bit, {cv::IMWRITE_PNG_BILEVEL, 1});
+  EXPECT_FALSE(decode_grey_png(one_bit));
+}
+
+TEST(GreyPng, IsNoneOfWhatIsDamaged) {
+  const Bytes whole = png_of(picture(CV_8U, 40, 30), cv::IMWRITE_PNG_STRATEGY_FILTERED);
+  const Bytes first_half(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2));
+  EXPECT_FALSE(decode_grey_png(first_half));
+  // A header of one row more than there are, with the right checksum.
+  Bytes too_tall = whole;
+  constexpr std::size_t kType = 12, kLowestOfHeight = 23, kChecksum = 29;
+  ++too_tall[kLowestOfHeight];
+  const std::uint32_t checksum = libdeflate_crc32(0, too_tall.data() + kType, kChecksum - kType);
+  for (std::size_t i = 0; i < 4; ++i) too_tall[kChecksum + i] = static_cast<std::uint8_t>(checksum >> (24U - 8U * i));
+  EXPECT_TRUE(png_of_pixels(too_tall));
+  EXPECT_FALSE(decode_grey_png(too_tall));
+}
+
+TEST(PngChunks, AreToldOneByOne) {
+  const auto chunks = chunks_of(png_of(picture(CV_8U, 40, 30), cv::IMWRITE_PNG_STRATEGY_DEFAULT));
+  ASSERT_GE(chunks.size(), 3u);
+  EXPECT_EQ(chunks.front().type, "IHDR");
+  EXPECT_EQ(chunks.front().data.size(), 13u);
+  EXPECT_EQ(chunks.back().type, "IEND");
+}
+
+}  // namespace
+}  // namespace byre
