@@ -3,6 +3,7 @@
 #include "byre/dataset/png_chunks.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -47,41 +48,51 @@ std::vector<std::uint8_t> inflate(Bytes compressed, std::size_t size) {
 }
 
 // The one of three neighbours that is nearest to left + above - corner.
-std::uint8_t paeth(int left, int above, int corner) {
-  const int by_left = std::abs(above - corner), by_above = std::abs(left - corner);
-  const int by_corner = std::abs(left + above - 2 * corner);
+int paeth(int left, int above, int corner) {
+  const int from_corner_up = above - corner, from_corner_left = left - corner;
+  const int by_left = std::abs(from_corner_up), by_above = std::abs(from_corner_left);
+  const int by_corner = std::abs(from_corner_up + from_corner_left);
   const int nearer = by_above <= by_corner ? above : corner;
-  return static_cast<std::uint8_t>(by_left <= by_above && by_left <= by_corner ? left : nearer);
+  return by_left <= std::min(by_above, by_corner) ? left : nearer;
 }
 
-// One row from its differences to what its filter predicts; false for an unknown filter. Left of the first pixel all
-// is zero.
-bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above, std::size_t bytes_a_pixel,
-              std::uint8_t* row) {
-  const std::size_t count = differences.size();
-  const auto predict = [&](auto prediction) {
-    for (std::size_t i = 0; i < bytes_a_pixel; ++i) {
-      row[i] = static_cast<std::uint8_t>(differences[i] + prediction(0, above[i], 0));
+// Pixel after pixel, from what is left of it, above, and above to the left; zero outside the image.
+template <std::size_t BytesAPixel, typename Prediction>
+void predict(Bytes differences, const std::uint8_t* above, Prediction prediction, std::uint8_t* row) {
+  std::array<int, BytesAPixel> left{}, corner{};
+  for (std::size_t i = 0; i + BytesAPixel <= differences.size(); i += BytesAPixel) {
+    for (std::size_t byte = 0; byte < BytesAPixel; ++byte) {
+      const int up = above[i + byte];
+      left[byte] = (differences[i + byte] + prediction(left[byte], up, corner[byte])) & 0xff;
+      corner[byte] = up;
+      row[i + byte] = static_cast<std::uint8_t>(left[byte]);
     }
-    for (std::size_t i = bytes_a_pixel; i < count; ++i) {
-      const std::size_t before = i - bytes_a_pixel;
-      row[i] = static_cast<std::uint8_t>(differences[i] + prediction(row[before], above[i], above[before]));
-    }
-    return true;
-  };
+  }
+}
+
+// One row from its differences to what its filter predicts; false for an unknown filter.
+template <std::size_t BytesAPixel>
+bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above, std::uint8_t* row) {
   switch (filter) {
     case 0:
       std::ranges::copy(differences, row);
       return true;
     case 1:
-      return predict([](int left, int, int) { return left; });
+      predict<BytesAPixel>(
+          differences, above, [](int left, int, int) { return left; }, row);
+      return true;
     case 2:
-      for (std::size_t i = 0; i < count; ++i) row[i] = static_cast<std::uint8_t>(differences[i] + above[i]);
+      for (std::size_t i = 0; i < differences.size(); ++i) {
+        row[i] = static_cast<std::uint8_t>(differences[i] + above[i]);
+      }
       return true;
     case 3:
-      return predict([](int left, int up, int) { return (left + up) / 2; });
+      predict<BytesAPixel>(
+          differences, above, [](int left, int up, int) { return (left + up) / 2; }, row);
+      return true;
     case 4:
-      return predict(paeth);
+      predict<BytesAPixel>(differences, above, paeth, row);
+      return true;
     default:
       return false;
   }
@@ -109,7 +120,10 @@ std::optional<GreyPng> decode_grey_png(std::span<const std::uint8_t> png) {
     const Bytes differences = Bytes(rows).subspan(y * (stride + 1) + 1, stride);
     std::uint8_t* const row = image.values.data() + y * stride;
     const std::uint8_t* const above = y == 0 ? nothing.data() : row - stride;
-    if (!unfilter(rows[y * (stride + 1)], differences, above, header->bytes_a_pixel, row)) return std::nullopt;
+    const std::uint8_t filter = rows[y * (stride + 1)];
+    const bool is_known = header->bytes_a_pixel == 1 ? unfilter<1>(filter, differences, above, row)
+                                                     : unfilter<2>(filter, differences, above, row);
+    if (!is_known) return std::nullopt;
   }
   return image;
 }

@@ -89,7 +89,8 @@ TEST(GreyPng, IsNoneOfWhatIsDamaged) {
 }
 
 TEST(PngChunks, AreToldOneByOne) {
-  const auto chunks = chunks_of(png_of(picture(CV_8U, 40, 30), cv::IMWRITE_PNG_STRATEGY_DEFAULT));
+  const Bytes png = png_of(picture(CV_8U, 40, 30), cv::IMWRITE_PNG_STRATEGY_DEFAULT);
+  const auto chunks = chunks_of(png);
   ASSERT_GE(chunks.size(), 3u);
   EXPECT_EQ(chunks.front().type, "IHDR");
   EXPECT_EQ(chunks.front().data.size(), 13u);

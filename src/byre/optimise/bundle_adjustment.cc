@@ -164,6 +164,11 @@ class CeresBundle {
   double* rotation(std::size_t pose) { return poses_[pose].rotation.coeffs().data(); }
   double* translation(std::size_t pose) { return poses_[pose].translation.data(); }
   double* position(std::size_t point) { return points_[point].data(); }
+  std::vector<double*> calibration_blocks() {
+    std::vector<double*> blocks;
+    for (int i = 0; i < kCalibrationBlocks; ++i) blocks.push_back(calibration_.data() + 3 * i);
+    return blocks;
+  }
 
   void add(const BundleObservation& observation, const Rig& rig) {
     assert(rig.is_stereo() || !observation.is_stereo());
@@ -186,8 +191,10 @@ class CeresBundle {
   void add(const BundleObservation& observation, const Rig& rig, const CalibrationSensitivity& sensitivity) {
     const auto [pose, point] = std::pair(observation.pose, observation.point);
     auto& cost = calibration_costs_.emplace_back(rig, sensitivity, observation);
-    ceres_.AddResidualBlock(&cost, loss_of(observation), rotation(pose), translation(pose), position(point),
-                            calibration_.data());
+    std::vector<double*> blocks = {rotation(pose), translation(pose), position(point)};
+    const std::vector<double*> of_calibration = calibration_blocks();
+    blocks.insert(blocks.end(), of_calibration.begin(), of_calibration.end());
+    ceres_.AddResidualBlock(&cost, loss_of(observation), blocks);
     if (!roles_.pose_moves[pose]) {
       ceres_.SetParameterBlockConstant(rotation(pose));
       ceres_.SetParameterBlockConstant(translation(pose));
@@ -197,7 +204,7 @@ class CeresBundle {
 
   void expect(const BundleCalibration& calibration) {
     calibration_prior_.emplace(calibration.expected, calibration.information);
-    ceres_.AddResidualBlock(&*calibration_prior_, nullptr, calibration_.data());
+    ceres_.AddResidualBlock(&*calibration_prior_, nullptr, calibration_blocks());
   }
 
   void hold(const HeldDistance& scale) {
@@ -230,7 +237,8 @@ class CeresBundle {
       order->AddElementToGroup(rotation(i), 1);
       order->AddElementToGroup(translation(i), 1);
     }
-    if (calibration_prior_) order->AddElementToGroup(calibration_.data(), 1);
+    if (!calibration_prior_) return order;
+    for (double* const block : calibration_blocks()) order->AddElementToGroup(block, 1);
     return order;
   }
 

@@ -23,6 +23,21 @@ void write_by_pose(const Eigen::Matrix3d& by_camera, const Eigen::Vector3d& rota
   if (jacobians[1]) Eigen::Map<RowMajor33>{jacobians[1]} = by_camera;
 }
 
+CalibrationVector joined(const double* const* blocks) {
+  CalibrationVector change;
+  for (int i = 0; i < kCalibrationBlocks; ++i) change.segment<3>(3 * i) = Eigen::Map<const Eigen::Vector3d>(blocks[i]);
+  return change;
+}
+
+// The derivative by the calibration, block by block.
+template <int Rows>
+void write_by_calibration(const Eigen::Matrix<double, Rows, kCalibrationParameters>& slope, double** jacobians) {
+  for (int i = 0; i < kCalibrationBlocks; ++i) {
+    if (!jacobians[i]) continue;
+    Eigen::Map<Eigen::Matrix<double, Rows, 3, Eigen::RowMajor>>{jacobians[i]} = slope.template middleCols<3>(3 * i);
+  }
+}
+
 void write_by_point(const Eigen::Matrix3d& by_camera, const Eigen::Quaterniond& camera_from_world, double* jacobian) {
   if (jacobian) Eigen::Map<RowMajor33>{jacobian}.noalias() = by_camera * camera_from_world.toRotationMatrix();
 }
@@ -60,11 +75,10 @@ Eigen::Matrix<double, 3, kCalibrationParameters> CalibrationCost::by_calibration
 bool CalibrationCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   cost_.Evaluate(parameters, residual, jacobians);
   const Eigen::Vector3d rotated_point = Eigen::Quaterniond(parameters[0]) * Eigen::Vector3d(parameters[2]);
-  const auto slope = by_calibration(rotated_point + Eigen::Vector3d(parameters[1]));
-  Eigen::Map<Eigen::Vector3d>{residual} += slope * Eigen::Map<const CalibrationVector>(parameters[3]);
-  if (jacobians && jacobians[3]) {
-    Eigen::Map<Eigen::Matrix<double, 3, kCalibrationParameters, Eigen::RowMajor>>{jacobians[3]} = slope;
-  }
+  const Eigen::Matrix<double, 3, kCalibrationParameters> slope =
+      by_calibration(rotated_point + Eigen::Vector3d(parameters[1]));
+  Eigen::Map<Eigen::Vector3d>{residual} += slope * joined(parameters + 3);
+  if (jacobians) write_by_calibration<3>(slope, jacobians + 3);
   return true;
 }
 
@@ -72,12 +86,8 @@ CalibrationPriorCost::CalibrationPriorCost(const CalibrationVector& expected, co
     : expected_(expected), square_root_(information.llt().matrixU()) {}
 
 bool CalibrationPriorCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
-  Eigen::Map<CalibrationVector>{residual} =
-      square_root_ * (Eigen::Map<const CalibrationVector>(parameters[0]) - expected_);
-  if (jacobians && jacobians[0]) {
-    Eigen::Map<Eigen::Matrix<double, kCalibrationParameters, kCalibrationParameters, Eigen::RowMajor>>{jacobians[0]} =
-        square_root_;
-  }
+  Eigen::Map<CalibrationVector>{residual} = square_root_ * (joined(parameters) - expected_);
+  if (jacobians) write_by_calibration<kCalibrationParameters>(square_root_, jacobians);
   return true;
 }
 

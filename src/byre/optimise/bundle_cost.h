@@ -24,10 +24,14 @@ class PoseAndPointCost final : public ceres::SizedCostFunction<3, 4, 3, 3> {
   Reprojection reprojection_;  // constant after construction
 };
 
+// The change of a calibration, as Ceres gets it: blocks of three, see above.
+inline constexpr int kCalibrationBlocks = kCalibrationParameters / 3;
+static_assert(kCalibrationBlocks == 7 && kCalibrationParameters == 3 * kCalibrationBlocks);
+
 // Pose, point and the calibration of the cameras move. Parameters: rotation, translation, point, change of calibration.
 // The calibration acts where the point is expected, not where it was measured: there the slope would share the noise of
 // the residual, and hundreds of thousands of measurements would agree on a focal length that is too long.
-class CalibrationCost final : public ceres::SizedCostFunction<3, 4, 3, 3, kCalibrationParameters> {
+class CalibrationCost final : public ceres::SizedCostFunction<3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3> {
  public:
   // Rig and sensitivity are owned by the caller.
   CalibrationCost(const Rig& rig, const CalibrationSensitivity& sensitivity, const BundleObservation& observation);
@@ -44,7 +48,7 @@ class CalibrationCost final : public ceres::SizedCostFunction<3, 4, 3, 3, kCalib
 };
 
 // What is known of the calibration beforehand. Parameter: change of calibration.
-class CalibrationPriorCost final : public ceres::SizedCostFunction<kCalibrationParameters, kCalibrationParameters> {
+class CalibrationPriorCost final : public ceres::SizedCostFunction<kCalibrationParameters, 3, 3, 3, 3, 3, 3, 3> {
  public:
   CalibrationPriorCost(const CalibrationVector& expected, const CalibrationMatrix& information);
   bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override;
