@@ -71,42 +71,29 @@ struct AlignStep {
 template <int Size>
 AlignStep align_step(const CentredTemplate<Size>& reference, const std::array<float, (Size + 2) * (Size + 2)>& around) {
   constexpr int kStride = Size + 2;
-  constexpr float kCount = Size * Size;
-  std::array<float, Size * Size> grey, gx, gy;
-  float sum = 0.0f, sum_x = 0.0f, sum_y = 0.0f, squares = 0.0f, product = 0.0f;
+  using Values = Eigen::Array<float, Size * Size, 1>;
+  Values grey, gx, gy;
   for (int y = 0; y < Size; ++y) {
     const float* const row = around.data() + (y + 1) * kStride + 1;
     for (int x = 0; x < Size; ++x) {
-      const auto i = static_cast<std::size_t>(y * Size + x);
+      const int i = y * Size + x;
       grey[i] = row[x];
       gx[i] = 0.5f * (row[x + 1] - row[x - 1]);
       gy[i] = 0.5f * (row[x + kStride] - row[x - kStride]);
-      sum += grey[i];
-      sum_x += gx[i];
-      sum_y += gy[i];
-      squares += grey[i] * grey[i];
-      product += grey[i] * reference.values[i];
     }
   }
-  const float mean = sum / kCount, mean_x = sum_x / kCount, mean_y = sum_y / kCount;
-  const float gain = product / reference.sum_of_squares;
-  float xx = 0.0f, xy = 0.0f, yy = 0.0f, xr = 0.0f, yr = 0.0f, rr = 0.0f;
-  for (std::size_t i = 0; i < Size * Size; ++i) {
-    const float residual = grey[i] - mean - gain * reference.values[i];
-    const float dx = gx[i] - mean_x;
-    const float dy = gy[i] - mean_y;
-    xx += dx * dx;
-    xy += dx * dy;
-    yy += dy * dy;
-    xr += dx * residual;
-    yr += dy * residual;
-    rr += residual * residual;
-  }
+  const Eigen::Map<const Values> expected(reference.values.data());
+  grey -= grey.mean();
+  gx -= gx.mean();
+  gy -= gy.mean();
+  const float product = (grey * expected).sum();
+  const Values residual = grey - product / reference.sum_of_squares * expected;
+  const float xy = (gx * gy).sum();
   AlignStep step;
-  step.hessian << xx, xy, xy, yy;
-  step.gradient << xr, yr;
-  step.residual_squares = rr;
-  step.similarity = product / std::sqrt(reference.sum_of_squares * std::max(1e-6f, squares - kCount * mean * mean));
+  step.hessian << gx.square().sum(), xy, xy, gy.square().sum();
+  step.gradient << (gx * residual).sum(), (gy * residual).sum();
+  step.residual_squares = residual.square().sum();
+  step.similarity = product / std::sqrt(reference.sum_of_squares * std::max(1e-6f, grey.square().sum()));
   return step;
 }
 

@@ -2,6 +2,7 @@
 
 #include "byre/features/brief_pattern.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -25,6 +26,30 @@ std::array<int, kDiscRadius + 1> disc_rows() {
     half_width[static_cast<std::size_t>(row)] = width++;
   }
   return half_width;
+}
+
+// What each pixel of a square about the disc counts for in its moments; nothing outside the disc. Rows are as wide as
+// vector registers.
+struct DiscWeights {
+  static constexpr int kRows = 2 * kDiscRadius + 1;
+  static constexpr int kColumns = 2 * kDiscRadius + 2;
+
+  std::array<std::int16_t, std::size_t{kRows * kColumns}> x{};
+  std::array<std::int16_t, std::size_t{kRows * kColumns}> y{};
+};
+
+DiscWeights disc_weights() {
+  const std::array<int, kDiscRadius + 1> half_width = disc_rows();
+  DiscWeights weights;
+  for (int row = -kDiscRadius; row <= kDiscRadius; ++row) {
+    const int width = half_width[static_cast<std::size_t>(std::abs(row))];
+    for (int column = -width; column <= width; ++column) {
+      const auto at = static_cast<std::size_t>((row + kDiscRadius) * DiscWeights::kColumns + column + kDiscRadius);
+      weights.x[at] = static_cast<std::int16_t>(column);
+      weights.y[at] = static_cast<std::int16_t>(row);
+    }
+  }
+  return weights;
 }
 
 // The pattern, split by coordinate so that the rotation vectorises.
@@ -54,20 +79,18 @@ inline int round_to_int(float value) {
 }  // namespace
 
 float orientation(const std::uint8_t* centre, std::ptrdiff_t stride) {
-  static const std::array<int, kDiscRadius + 1> half_width = disc_rows();
+  static const DiscWeights weights = disc_weights();
+  std::array<std::uint8_t, weights.x.size()> square;
+  const std::uint8_t* row = centre - kDiscRadius * stride - kDiscRadius;
+  for (std::size_t at = 0; at < square.size(); at += DiscWeights::kColumns, row += stride) {
+    std::copy_n(row, DiscWeights::kColumns, square.data() + at);
+  }
   int moment_x = 0;
   int moment_y = 0;
-  for (int row = -kDiscRadius; row <= kDiscRadius; ++row) {
-    const std::uint8_t* const pixels = centre + row * stride;
-    const int width = half_width[static_cast<std::size_t>(std::abs(row))];
-    int sum = 0;
-    int weighted = 0;
-    for (int column = -width; column <= width; ++column) {
-      sum += pixels[column];
-      weighted += column * pixels[column];
-    }
-    moment_x += weighted;
-    moment_y += row * sum;
+  for (std::size_t i = 0; i < square.size(); ++i) {
+    const auto pixel = static_cast<std::int16_t>(square[i]);
+    moment_x += pixel * weights.x[i];
+    moment_y += pixel * weights.y[i];
   }
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
 }

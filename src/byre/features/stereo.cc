@@ -32,44 +32,62 @@ struct RowMatch {
   }
 };
 
+// Costs of neighbouring columns, between two that do not count.
+using Costs = std::vector<std::uint16_t>;
+
 // A minimum's cost at its place between the columns; the sum of absolute differences grows linearly to both sides of
 // it. On whole columns a repeating pattern would seem unique wherever one of its copies happens to fall on a column.
-int cost_between_columns(const std::vector<int>& costs, std::size_t i) {
-  if (i == 0 || i + 1 == costs.size() || costs[i] > std::min(costs[i - 1], costs[i + 1])) return costs[i];
-  return std::max(0, costs[i] - std::abs(costs[i - 1] - costs[i + 1]) / 2);
+int cost_between_columns(const std::uint16_t* cost) {
+  const int left = cost[-1], here = cost[0], right = cost[1];
+  const int between = std::max(0, here - std::abs(left - right) / 2);
+  return here > std::min(left, right) ? here : between;
 }
 
-// Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
-void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last,
-                      std::vector<int>& costs) {
-  costs.clear();
+// The least cost between columns [first, last).
+int least_between_columns(const std::uint16_t* first, const std::uint16_t* last) {
+  int least = std::numeric_limits<int>::max();
+  for (; first < last; ++first) least = std::min(least, cost_between_columns(first));
+  return least;
+}
+
+// Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row. Before the
+// first and after the last stands a zero, below which no minimum lies.
+void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last, Costs& costs) {
+  costs.resize(static_cast<std::size_t>(last - first + 3));
+  costs.front() = costs.back() = 0;
+  std::uint16_t* out = costs.data() + 1;
   const auto stride = [](const cv::Mat& image) { return static_cast<std::ptrdiff_t>(image.step); };
   for (int candidate = first; candidate <= last; candidate += kBlockCandidates) {
     // The last ones overlap with those before, so as to stay inside the image.
     const int begin = std::max(kLeftReach, std::min(candidate, last + 1 - kBlockCandidates));
     const auto sums = block_differences(block(from, x, y), stride(from), block(to, begin, y), stride(to));
     const int end = std::min(last + 1, begin + kBlockCandidates);
-    for (int i = candidate; i < end; ++i) costs.push_back(sums[static_cast<std::size_t>(i - begin)]);
+    out = std::copy(sums.begin() + (candidate - begin), sums.begin() + (end - begin), out);
   }
+}
+
+// Index of the least cost; the first of equal ones.
+std::size_t least_of(const std::uint16_t* costs, std::size_t count) {
+  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();  // cost, then index
+  for (std::size_t i = 0; i < count; ++i) {
+    least = std::min(least, static_cast<std::uint32_t>(costs[i]) << 16U | static_cast<std::uint32_t>(i));
+  }
+  return least & 0xffffU;
 }
 
 // The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
 RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
-  thread_local std::vector<int> costs;
-  compare_with_row(from, x, y, to, first, last, costs);
+  thread_local Costs padded;
+  compare_with_row(from, x, y, to, first, last, padded);
+  const std::uint16_t* const costs = padded.data() + 1;
+  const auto count = static_cast<std::ptrdiff_t>(padded.size()) - 2;
+  if (count == 0) return {};
+  const auto best = static_cast<std::ptrdiff_t>(least_of(costs, static_cast<std::size_t>(count)));
   RowMatch match;
-  for (int candidate = first; candidate <= last; ++candidate) {
-    const int cost = costs[static_cast<std::size_t>(candidate - first)];
-    if (cost < match.cost) {
-      match.cost = cost;
-      match.x = candidate;
-    }
-  }
-  for (int candidate = first; candidate <= last; ++candidate) {
-    const int cost = cost_between_columns(costs, static_cast<std::size_t>(candidate - first));
-    if (candidate == match.x) match.cost = cost;
-    if (std::abs(candidate - match.x) > 1) match.second_cost = std::min(match.second_cost, cost);
-  }
+  match.x = first + static_cast<int>(best);
+  match.cost = cost_between_columns(costs + best);
+  match.second_cost = std::min(least_between_columns(costs, costs + std::max(std::ptrdiff_t{0}, best - 1)),
+                               least_between_columns(costs + std::min(count, best + 2), costs + count));
   return match;
 }
 
