@@ -1,4 +1,6 @@
+#include "byre/features/detect.h"
 #include "byre/features/extract.h"
+#include "byre/features/gaussian_blur.h"
 #include "byre/features/image_threads.h"
 #include "byre/features/match.h"
 #include "byre/features/rectify.h"
@@ -71,6 +73,40 @@ void extract_images(benchmark::State& state, const ImageFrame& images) {
   state.counters["extract_ms"] = mean_ms(total.extract);
   state.counters["stereo_ms"] = mean_ms(total.stereo);
 }
+
+// The loops over whole images, one by one.
+void rectify_left_image(benchmark::State& state) {
+  const Rectifier rectifier(rendered_pair().calibration);
+  const cv::Mat image = as_matrix(rendered_pair().images.left);
+  for (auto _ : state) benchmark::DoNotOptimize(rectifier.left(image).data);
+}
+BENCHMARK(rectify_left_image)->Unit(benchmark::kMillisecond);
+
+void shrink_to_all_octaves(benchmark::State& state) {
+  const cv::Mat image = as_matrix(rendered_pair().images.left);
+  Pyramid pyramid;
+  for (auto _ : state) {
+    build_pyramid(image, pyramid);
+    benchmark::DoNotOptimize(pyramid.levels.back().data);
+  }
+}
+BENCHMARK(shrink_to_all_octaves)->Unit(benchmark::kMillisecond);
+
+void blur_image(benchmark::State& state) {
+  const cv::Mat image = as_matrix(rendered_pair().images.left);
+  cv::Mat blurred;
+  for (auto _ : state) {
+    gaussian_blur(image, blurred);
+    benchmark::DoNotOptimize(blurred.data);
+  }
+}
+BENCHMARK(blur_image)->Unit(benchmark::kMillisecond);
+
+void detect_corners_of_image(benchmark::State& state) {
+  const cv::Mat image = as_matrix(rendered_pair().images.left);
+  for (auto _ : state) benchmark::DoNotOptimize(detect_corners(image, 300, {}));
+}
+BENCHMARK(detect_corners_of_image)->Unit(benchmark::kMillisecond);
 
 void extract_left_image(benchmark::State& state) {
   extract_images(state, {{}, rendered_pair().images.left, {}});
