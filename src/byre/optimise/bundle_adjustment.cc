@@ -2,6 +2,8 @@
 
 #include "byre/optimise/bundle_cost.h"
 #include "byre/optimise/bundle_covariance.h"
+#include "byre/optimise/bundle_roles.h"
+#include "byre/optimise/bundle_schur.h"
 #include "byre/optimise/ceres_problem.h"
 #include "byre/optimise/rotation_manifold.h"
 
@@ -21,85 +23,6 @@ namespace byre {
 
 namespace {
 
-// What takes part in the solution.
-struct Roles {
-  std::vector<bool> pose_moves;
-  std::vector<bool> point_moves;
-  std::vector<int> observations;  // indices: in front of the camera, and not between two fixed things
-
-  bool moves(const BundleObservation& observation) const {
-    return pose_moves[observation.pose] || point_moves[observation.point];
-  }
-};
-
-Eigen::Vector3d point_in_camera(const BundleProblem& problem, const BundleObservation& observation) {
-  return problem.poses[observation.pose].camera_from_world * problem.points[observation.point].position_in_world;
-}
-
-std::vector<int> observations_in_front(const BundleProblem& problem) {
-  std::vector<int> indices;
-  indices.reserve(problem.observations.size());
-  for (int i = 0; i < static_cast<int>(problem.observations.size()); ++i) {
-    if (point_in_camera(problem, problem.observations[i]).z() >= kNearestDepth) indices.push_back(i);
-  }
-  return indices;
-}
-
-bool has_anchor(const BundleProblem& problem) {
-  return std::ranges::any_of(problem.poses, &BundlePose::fixed) ||
-         std::ranges::any_of(problem.points, &BundlePoint::fixed);
-}
-
-Roles choose_roles(const BundleProblem& problem) {
-  Roles roles{std::vector<bool>(problem.poses.size(), false), std::vector<bool>(problem.points.size(), false),
-              observations_in_front(problem)};
-  for (const int i : roles.observations) {
-    const BundleObservation& observation = problem.observations[i];
-    roles.pose_moves[observation.pose] = !problem.poses[observation.pose].fixed;
-    roles.point_moves[observation.point] = !problem.points[observation.point].fixed;
-  }
-  if (!has_anchor(problem)) {
-    const auto first = std::ranges::find(roles.pose_moves, true);
-    if (first != roles.pose_moves.end()) *first = false;
-  }
-  std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
-  // Ceres eliminates point by point: costs of one point that lie side by side in memory save it cache misses.
-  std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
-  return roles;
-}
-
-Eigen::Vector3d camera_in_world(const BundlePose& pose) {
-  return inverse(pose.camera_from_world).translation;
-}
-
-// The held pose, where the scale depends on it alone: no disparity, no second pose and no fixed point tells it.
-std::optional<int> only_anchor(const BundleProblem& problem, const Roles& roles) {
-  std::optional<int> anchor;
-  for (const int i : roles.observations) {
-    const BundleObservation& observation = problem.observations[i];
-    if (observation.is_stereo() || !roles.point_moves[observation.point]) return std::nullopt;
-    if (roles.pose_moves[observation.pose] || anchor == observation.pose) continue;
-    if (anchor) return std::nullopt;
-    anchor = observation.pose;
-  }
-  return anchor;
-}
-
-// What must be held for the scale to be determined; nothing where it is.
-std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const Roles& roles) {
-  const auto anchor = only_anchor(problem, roles);
-  if (!anchor) return std::nullopt;
-  HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
-  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-    if (!roles.pose_moves[i]) continue;
-    const double distance = (camera_in_world(problem.poses[i]) - held.place_in_world).norm();
-    if (distance <= held.distance) continue;
-    held.distance = distance;
-    held.pose = static_cast<int>(i);
-  }
-  return held.pose < 0 ? std::nullopt : std::optional(held);
-}
-
 // Ends the solution when asked to; Ceres asks after each iteration.
 class StopWhenAsked final : public ceres::IterationCallback {
  public:
@@ -116,7 +39,7 @@ class StopWhenAsked final : public ceres::IterationCallback {
 // Ceres' view of a problem: blocks of parameters and the costs between them. Lives for one call.
 class CeresBundle {
  public:
-  CeresBundle(const BundleProblem& problem, const Roles& roles, const std::optional<HeldDistance>& scale,
+  CeresBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
               double huber_width)
       : roles_(roles), loss_(huber_width), ceres_(borrowing_problem()) {
     for (const BundlePose& pose : problem.poses) poses_.push_back(pose.camera_from_world);
@@ -156,8 +79,7 @@ class CeresBundle {
     return summary;
   }
 
-  const Pose& camera_from_world(std::size_t pose) const { return poses_[pose]; }
-  const Eigen::Vector3d& point_in_world(std::size_t point) const { return points_[point]; }
+  BundleSolution solution() const { return {poses_, points_, 0, false}; }
   const CalibrationVector& calibration_change() const { return calibration_; }
 
  private:
@@ -220,7 +142,6 @@ class CeresBundle {
 
   // The Schur complement needs both kinds; with one kind alone the normal matrix is sparse as it stands.
   ceres::LinearSolverType linear_solver() const {
-    constexpr int kMaxDensePoses = 60;
     const auto poses = std::ranges::count(roles_.pose_moves, true);
     const auto points = std::ranges::count(roles_.point_moves, true);
     if (poses == 0 || points == 0) return ceres::SPARSE_NORMAL_CHOLESKY;
@@ -242,8 +163,8 @@ class CeresBundle {
     return order;
   }
 
-  const Roles& roles_;       // owned by the caller, constant
-  std::vector<Pose> poses_;  // written by Ceres, as are the points
+  const BundleRoles& roles_;  // owned by the caller, constant
+  std::vector<Pose> poses_;   // written by Ceres, as are the points
   std::vector<Eigen::Vector3d> points_;
   CalibrationVector calibration_ = CalibrationVector::Zero();  // written by Ceres
   ceres::HuberLoss loss_;
@@ -259,6 +180,18 @@ class CeresBundle {
   ceres::Problem ceres_;  // last: refers to all of the above
 };
 
+BundleSolution solve_by_ceres(const BundleProblem& problem, const BundleRoles& roles,
+                              const std::optional<HeldDistance>& scale, const BundleOptions& options,
+                              CalibrationVector& calibration_change) {
+  CeresBundle bundle(problem, roles, scale, options.huber_width);
+  const ceres::Solver::Summary summary = bundle.solve(options);
+  BundleSolution solution = bundle.solution();
+  solution.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
+  solution.usable = summary.IsSolutionUsable();
+  if (solution.usable) calibration_change = bundle.calibration_change();
+  return solution;
+}
+
 BundleResult unmoved(const BundleProblem& problem) {
   BundleResult result;
   for (const BundlePose& pose : problem.poses) result.camera_from_world.push_back(pose.camera_from_world);
@@ -267,27 +200,27 @@ BundleResult unmoved(const BundleProblem& problem) {
   return result;
 }
 
-BundleResult solve(const BundleProblem& problem, const Roles& roles, const std::optional<HeldDistance>& scale,
+BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
                    const BundleOptions& options) {
   BundleResult result = unmoved(problem);
   if (roles.observations.empty()) return result;
-  CeresBundle bundle(problem, roles, scale, options.huber_width);
-  const ceres::Solver::Summary summary = bundle.solve(options);
-  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
-  result.usable = summary.IsSolutionUsable();
+  const bool is_window = !problem.calibration && std::ranges::count(roles.pose_moves, true) <= kMaxDensePoses;
+  const BundleSolution solution = is_window ? solve_bundle_densely(problem, roles, scale, options)
+                                            : solve_by_ceres(problem, roles, scale, options, result.calibration_change);
+  result.iterations = solution.iterations;
+  result.usable = solution.usable;
   if (!result.usable) return result;
-  result.calibration_change = bundle.calibration_change();
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-    if (roles.pose_moves[i]) result.camera_from_world[i] = bundle.camera_from_world(i);
+    if (roles.pose_moves[i]) result.camera_from_world[i] = solution.camera_from_world[i];
   }
   for (std::size_t i = 0; i < problem.points.size(); ++i) {
-    if (roles.point_moves[i]) result.points_in_world[i] = bundle.point_in_world(i);
+    if (roles.point_moves[i]) result.points_in_world[i] = solution.points_in_world[i];
   }
   return result;
 }
 
 // The problem at its solution, with the pose held for want of an anchor fixed.
-BundleProblem moved(BundleProblem problem, const BundleResult& result, const Roles& roles) {
+BundleProblem moved(BundleProblem problem, const BundleResult& result, const BundleRoles& roles) {
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     problem.poses[i].camera_from_world = result.camera_from_world[i];
     problem.poses[i].fixed = !roles.pose_moves[i];
@@ -332,7 +265,7 @@ BundleProblem with_change(BundleProblem problem, const CalibrationVector& change
 }
 
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options) {
-  const Roles roles = choose_roles(problem);
+  const BundleRoles roles = choose_roles(problem);
   const std::optional<HeldDistance> scale = choose_scale(problem, roles);
   BundleResult result = solve(problem, roles, scale, options);
   std::optional<BundleProblem> changed;

@@ -1,0 +1,79 @@
+#include "byre/optimise/bundle_roles.h"
+
+#include "byre/optimise/reprojection.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+Eigen::Vector3d point_in_camera(const BundleProblem& problem, const BundleObservation& observation) {
+  return problem.poses[observation.pose].camera_from_world * problem.points[observation.point].position_in_world;
+}
+
+std::vector<int> observations_in_front(const BundleProblem& problem) {
+  std::vector<int> indices;
+  indices.reserve(problem.observations.size());
+  for (int i = 0; i < static_cast<int>(problem.observations.size()); ++i) {
+    if (point_in_camera(problem, problem.observations[i]).z() >= kNearestDepth) indices.push_back(i);
+  }
+  return indices;
+}
+
+bool has_anchor(const BundleProblem& problem) {
+  return std::ranges::any_of(problem.poses, &BundlePose::fixed) ||
+         std::ranges::any_of(problem.points, &BundlePoint::fixed);
+}
+
+Eigen::Vector3d camera_in_world(const BundlePose& pose) {
+  return inverse(pose.camera_from_world).translation;
+}
+
+// The held pose, where the scale depends on it alone: no disparity, no second pose and no fixed point tells it.
+std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& roles) {
+  std::optional<int> anchor;
+  for (const int i : roles.observations) {
+    const BundleObservation& observation = problem.observations[i];
+    if (observation.is_stereo() || !roles.point_moves[observation.point]) return std::nullopt;
+    if (roles.pose_moves[observation.pose] || anchor == observation.pose) continue;
+    if (anchor) return std::nullopt;
+    anchor = observation.pose;
+  }
+  return anchor;
+}
+
+}  // namespace
+
+BundleRoles choose_roles(const BundleProblem& problem) {
+  BundleRoles roles{std::vector<bool>(problem.poses.size(), false), std::vector<bool>(problem.points.size(), false),
+                    observations_in_front(problem)};
+  for (const int i : roles.observations) {
+    const BundleObservation& observation = problem.observations[i];
+    roles.pose_moves[observation.pose] = !problem.poses[observation.pose].fixed;
+    roles.point_moves[observation.point] = !problem.points[observation.point].fixed;
+  }
+  if (!has_anchor(problem)) {
+    const auto first = std::ranges::find(roles.pose_moves, true);
+    if (first != roles.pose_moves.end()) *first = false;
+  }
+  std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
+  // Ceres eliminates point by point: costs of one point that lie side by side in memory save it cache misses.
+  std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
+  return roles;
+}
+
+std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles) {
+  const auto anchor = only_anchor(problem, roles);
+  if (!anchor) return std::nullopt;
+  HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    if (!roles.pose_moves[i]) continue;
+    const double distance = (camera_in_world(problem.poses[i]) - held.place_in_world).norm();
+    if (distance <= held.distance) continue;
+    held.distance = distance;
+    held.pose = static_cast<int>(i);
+  }
+  return held.pose < 0 ? std::nullopt : std::optional(held);
+}
+
+}  // namespace byre

@@ -1,0 +1,367 @@
+#include "byre/optimise/bundle_schur.h"
+
+#include "byre/optimise/huber.h"
+#include "byre/optimise/reprojection.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+namespace {
+
+using Matrix63 = Eigen::Matrix<double, 6, 3>;
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+
+// One observation, ready for least squares.
+struct Term {
+  Reprojection reprojection;
+  double weight = 1.0;
+  int pose = 0;
+  int slot = -1;  // place of the pose in the reduced system; negative for one that stays
+};
+
+// The observations of one point: terms [begin, end).
+struct Track {
+  int point = 0;
+  bool moves = false;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+// What eliminating a point leaves to find it by, once the poses' steps are known.
+struct Eliminated {
+  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
+  Eigen::Vector3d gradient;
+  Eigen::Vector3d damping;
+};
+
+// Poses and points, and what is looked up again and again.
+struct Estimate {
+  std::vector<Pose> poses;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Matrix3d> rotations;  // of the poses
+
+  void update_rotations() {
+    rotations.resize(poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) rotations[i] = poses[i].rotation.toRotationMatrix();
+  }
+};
+
+// A step, and what it would gain were the costs quadratic.
+struct Step {
+  Eigen::VectorXd poses;                // six a slot: turn, then translation
+  std::vector<Eigen::Vector3d> points;  // one a track
+  double expected_gain = 0.0;
+  double squared_length = 0.0;
+};
+
+// Ceres' bounds of the diagonal that damping is in proportion to.
+double bounded(double diagonal) {
+  return std::clamp(diagonal, 1e-6, 1e32);
+}
+
+// The problem as the solver walks through it. Lives for one call.
+class SchurBundle {
+ public:
+  SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
+              double huber_width)
+      : scale_(scale), huber_width_(huber_width) {
+    give_slots(roles);
+    for (const BundlePose& pose : problem.poses) estimate_.poses.push_back(pose.camera_from_world);
+    for (const BundlePoint& point : problem.points) estimate_.points.push_back(point.position_in_world);
+    estimate_.update_rotations();
+    for (const int i : roles.observations) {
+      const BundleObservation& seen = problem.observations[static_cast<std::size_t>(i)];
+      if (tracks_.empty() || tracks_.back().point != seen.point) {
+        tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
+      }
+      const Rig& rig = problem.rigs[static_cast<std::size_t>(problem.poses[static_cast<std::size_t>(seen.pose)].rig)];
+      terms_.push_back({Reprojection(rig, seen.measured, seen.pixel_sigma, seen.disparity_sigma), seen.weight,
+                        seen.pose, slots_[static_cast<std::size_t>(seen.pose)]});
+      tracks_.back().end = terms_.size();
+    }
+    between_.resize(terms_.size());
+    eliminated_.resize(tracks_.size());
+  }
+
+  const Estimate& estimate() const { return estimate_; }
+  double cost() const { return cost_of(estimate_); }
+
+  // The normal equations at the estimate, damped, with the points eliminated. Returns the largest slope of the cost.
+  double linearise(double radius);
+  // Empty where the equations have no solution.
+  std::optional<Step> solve();
+  // The estimate after a step.
+  Estimate moved(const Step& step) const;
+  double cost_of(const Estimate& estimate) const;
+  void take_over(Estimate estimate) { estimate_ = std::move(estimate); }
+  double squared_length() const;  // of all that moves
+
+ private:
+  void give_slots(const BundleRoles& roles);
+  void linearise_track(std::size_t index, double radius);
+  void eliminate(const Track& track, Eliminated& eliminated);
+  void add_scale();
+  Eigen::Block<Eigen::MatrixXd, 6, 6> at(int row, int column) { return reduced_.block<6, 6>(6 * row, 6 * column); }
+
+  std::optional<HeldDistance> scale_;  // constant after construction, as are the next five
+  double huber_width_ = 0.0;
+  std::vector<int> slots_;  // one a pose
+  int slot_count_ = 0;
+  std::vector<Track> tracks_;
+  std::vector<Term> terms_;
+
+  Estimate estimate_;
+  // As linearise leaves them.
+  Eigen::MatrixXd reduced_;             // lower triangle, the points eliminated
+  std::vector<Matrix6> own_;            // one a pose, before the points are eliminated
+  Eigen::VectorXd gradient_;            // slopes by the poses
+  Eigen::VectorXd used_up_;             // part of the gradient that finding the points uses up
+  Eigen::VectorXd damping_;             // added to the diagonal of reduced_
+  std::vector<Eliminated> eliminated_;  // one a track
+  std::vector<Matrix63> between_;       // one a term: normal matrix between its pose and its point
+  double largest_slope_ = 0.0;
+};
+
+void SchurBundle::give_slots(const BundleRoles& roles) {
+  slots_.assign(roles.pose_moves.size(), -1);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (roles.pose_moves[i]) slots_[i] = slot_count_++;
+  }
+}
+
+void SchurBundle::linearise_track(std::size_t index, double radius) {
+  const Track& track = tracks_[index];
+  const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
+  Eigen::Matrix3d point_point = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    const Term& term = terms_[i];
+    const Eigen::Matrix3d& rotation = estimate_.rotations[static_cast<std::size_t>(term.pose)];
+    const Eigen::Vector3d turned = rotation * point;
+    const Eigen::Vector3d point_in_camera = turned + estimate_.poses[static_cast<std::size_t>(term.pose)].translation;
+    const Eigen::Vector3d residual = term.reprojection.residual(point_in_camera);
+    const double weight = term.weight * huber_weight(residual.squaredNorm(), huber_width_);
+    const Eigen::Matrix3d by_camera = term.reprojection.jacobian(point_in_camera);
+    const Eigen::Matrix3d by_point = by_camera * rotation;
+    if (track.moves) {
+      point_point.noalias() += weight * by_point.transpose() * by_point;
+      gradient.noalias() += weight * by_point.transpose() * residual;
+    }
+    if (term.slot < 0) continue;
+    Matrix36 by_pose;
+    by_pose << -by_camera * skew(turned), by_camera;
+    const Matrix63 weighted = weight * by_pose.transpose();
+    own_[static_cast<std::size_t>(term.slot)].noalias() += weighted * by_pose;
+    gradient_.segment<6>(6 * term.slot).noalias() += weighted * residual;
+    if (track.moves) between_[i].noalias() = weighted * by_point;
+  }
+  if (!track.moves) return;
+  Eliminated& eliminated = eliminated_[index];
+  eliminated.gradient = gradient;
+  eliminated.damping = point_point.diagonal().unaryExpr(&bounded) / radius;
+  point_point.diagonal() += eliminated.damping;
+  eliminated.covariance = point_point.llt().solve(Eigen::Matrix3d::Identity());
+  largest_slope_ = std::max(largest_slope_, gradient.cwiseAbs().maxCoeff());
+  eliminate(track, eliminated);
+}
+
+// Takes from the poses' equations what finding the point uses up.
+void SchurBundle::eliminate(const Track& track, Eliminated& eliminated) {
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    const int row = terms_[i].slot;
+    if (row < 0) continue;
+    const Matrix63 gain = between_[i] * eliminated.covariance;
+    used_up_.segment<6>(6 * row).noalias() += gain * eliminated.gradient;
+    for (std::size_t j = track.begin; j < track.end; ++j) {
+      const int column = terms_[j].slot;
+      if (column < 0 || column > row) continue;
+      at(row, column).noalias() -= gain * between_[j].transpose();
+    }
+  }
+}
+
+void SchurBundle::add_scale() {
+  const Pose& pose = estimate_.poses[static_cast<std::size_t>(scale_->pose)];
+  const int slot = slots_[static_cast<std::size_t>(scale_->pose)];
+  const Eigen::Vector3d turned = pose.rotation * scale_->place_in_world;
+  const Eigen::Vector3d place_in_camera = turned + pose.translation;
+  const double residual = (place_in_camera.norm() - scale_->distance) / scale_->sigma();
+  const Eigen::RowVector3d by_camera = place_in_camera.normalized().transpose() / scale_->sigma();
+  Eigen::Matrix<double, 1, 6> by_pose;
+  by_pose << -by_camera * skew(turned), by_camera;
+  own_[static_cast<std::size_t>(slot)].noalias() += by_pose.transpose() * by_pose;
+  gradient_.segment<6>(6 * slot) += residual * by_pose.transpose();
+}
+
+double SchurBundle::linearise(double radius) {
+  const Eigen::Index size = 6 * slot_count_;
+  reduced_.setZero(size, size);
+  own_.assign(static_cast<std::size_t>(slot_count_), Matrix6::Zero());
+  gradient_.setZero(size);
+  used_up_.setZero(size);
+  largest_slope_ = 0.0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i, radius);
+  if (scale_) add_scale();
+  damping_.resize(size);
+  for (int slot = 0; slot < slot_count_; ++slot) {
+    const Matrix6& own = own_[static_cast<std::size_t>(slot)];
+    damping_.segment<6>(6 * slot) = own.diagonal().unaryExpr(&bounded) / radius;
+    at(slot, slot) += own;
+  }
+  reduced_.diagonal() += damping_;
+  return size == 0 ? largest_slope_ : std::max(largest_slope_, gradient_.cwiseAbs().maxCoeff());
+}
+
+std::optional<Step> SchurBundle::solve() {
+  Step step;
+  if (slot_count_ > 0) {
+    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(reduced_);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    step.poses = factor.solve(used_up_ - gradient_);
+    if (!step.poses.allFinite()) return std::nullopt;
+    step.expected_gain = 0.5 * step.poses.dot(damping_.cwiseProduct(step.poses) - gradient_);
+    step.squared_length = step.poses.squaredNorm();
+  }
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Track& track = tracks_[t];
+    if (!track.moves) continue;
+    const Eliminated& point = eliminated_[t];
+    Eigen::Vector3d pull = -point.gradient;
+    for (std::size_t i = track.begin; i < track.end; ++i) {
+      const int slot = terms_[i].slot;
+      if (slot >= 0) pull.noalias() -= between_[i].transpose() * step.poses.segment<6>(6 * slot);
+    }
+    const Eigen::Vector3d move = point.covariance * pull;
+    if (!move.allFinite()) return std::nullopt;
+    step.points.push_back(move);
+    step.expected_gain += 0.5 * move.dot(point.damping.cwiseProduct(move) - point.gradient);
+    step.squared_length += move.squaredNorm();
+  }
+  return step;
+}
+
+Estimate SchurBundle::moved(const Step& step) const {
+  Estimate moved = estimate_;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i] < 0) continue;
+    const Vector6 change = step.poses.segment<6>(6 * slots_[i]);
+    Pose& pose = moved.poses[i];
+    pose.rotation = (rotation_exp(change.head<3>()) * pose.rotation).normalized();
+    pose.translation += change.tail<3>();
+    moved.rotations[i] = pose.rotation.toRotationMatrix();
+  }
+  auto change = step.points.begin();
+  for (const Track& track : tracks_) {
+    if (track.moves) moved.points[static_cast<std::size_t>(track.point)] += *change++;
+  }
+  return moved;
+}
+
+double SchurBundle::cost_of(const Estimate& estimate) const {
+  double twice = 0.0;
+  for (const Track& track : tracks_) {
+    const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
+    for (std::size_t i = track.begin; i < track.end; ++i) {
+      const auto pose = static_cast<std::size_t>(terms_[i].pose);
+      const Eigen::Vector3d point_in_camera = estimate.rotations[pose] * point + estimate.poses[pose].translation;
+      const double squared_error = terms_[i].reprojection.residual(point_in_camera).squaredNorm();
+      twice += terms_[i].weight * huber_cost(squared_error, huber_width_);
+    }
+  }
+  if (!scale_) return 0.5 * twice;
+  const Pose& pose = estimate.poses[static_cast<std::size_t>(scale_->pose)];
+  const double residual = ((pose * scale_->place_in_world).norm() - scale_->distance) / scale_->sigma();
+  return 0.5 * (twice + residual * residual);
+}
+
+double SchurBundle::squared_length() const {
+  double squared = 0.0;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i] >= 0) squared += 1.0 + estimate_.poses[i].translation.squaredNorm();  // a quaternion's length is 1
+  }
+  for (const Track& track : tracks_) {
+    if (track.moves) squared += estimate_.points[static_cast<std::size_t>(track.point)].squaredNorm();
+  }
+  return squared;
+}
+
+// How far a step may lead: the larger, the less it is damped. Grows and shrinks as in Ceres (Nielsen 1999).
+class TrustRegion {
+ public:
+  double radius() const { return radius_; }
+  // The share is that of the gain expected which there was.
+  void widen(double share) {
+    radius_ = std::min(1e16, radius_ / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * share - 1.0, 3)));
+    shrink_ = 2.0;
+  }
+  void narrow() {
+    radius_ /= shrink_;
+    shrink_ *= 2.0;
+  }
+  bool is_too_small() const { return radius_ < 1e-32; }
+
+ private:
+  double radius_ = 1e4;
+  double shrink_ = 2.0;
+};
+
+enum class Progress : std::uint8_t { goes_on, settled, failed };
+
+// One iteration: a step where there is one that gains.
+Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
+  constexpr double kLevel = 1e-10;      // slope
+  constexpr double kStill = 1e-8;       // share of the length of all that moves
+  constexpr double kLeastShare = 1e-3;  // share of the gain expected
+  constexpr double kLeastGain = 1e-6;   // share of the cost
+  if (bundle.linearise(region.radius()) <= kLevel) return Progress::settled;
+  const std::optional<Step> step = bundle.solve();
+  if (!step || !(step->expected_gain > 0.0)) {
+    region.narrow();
+    return region.is_too_small() || !std::isfinite(cost) ? Progress::failed : Progress::goes_on;
+  }
+  if (std::sqrt(step->squared_length) <= kStill * (std::sqrt(bundle.squared_length()) + kStill)) {
+    return Progress::settled;
+  }
+  Estimate moved = bundle.moved(*step);
+  const double new_cost = bundle.cost_of(moved);
+  const double gain = cost - new_cost;
+  const bool is_last = std::abs(gain) <= kLeastGain * cost;
+  if (gain > (is_last ? 0.0 : kLeastShare * step->expected_gain)) {
+    bundle.take_over(std::move(moved));
+    cost = new_cost;
+    region.widen(gain / step->expected_gain);
+  } else {
+    region.narrow();
+  }
+  return is_last || region.is_too_small() ? Progress::settled : Progress::goes_on;
+}
+
+}  // namespace
+
+BundleSolution solve_bundle_densely(const BundleProblem& problem, const BundleRoles& roles,
+                                    const std::optional<HeldDistance>& scale, const BundleOptions& options) {
+  assert(!problem.calibration);
+  SchurBundle bundle(problem, roles, scale, options.huber_width);
+  BundleSolution solution;
+  double cost = bundle.cost();
+  Progress progress = std::isfinite(cost) ? Progress::goes_on : Progress::failed;
+  TrustRegion region;
+  while (progress == Progress::goes_on && solution.iterations < options.max_iterations) {
+    if (options.should_stop && options.should_stop()) break;
+    progress = iterate(bundle, region, cost);
+    ++solution.iterations;
+  }
+  solution.camera_from_world = bundle.estimate().poses;
+  solution.points_in_world = bundle.estimate().points;
+  solution.usable = progress != Progress::failed;
+  return solution;
+}
+
+}  // namespace byre
