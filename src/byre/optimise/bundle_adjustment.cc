@@ -142,6 +142,7 @@ class CeresBundle {
 
   // The Schur complement needs both kinds; with one kind alone the normal matrix is sparse as it stands.
   ceres::LinearSolverType linear_solver() const {
+    constexpr int kMaxDensePoses = 60;
     const auto poses = std::ranges::count(roles_.pose_moves, true);
     const auto points = std::ranges::count(roles_.point_moves, true);
     if (poses == 0 || points == 0) return ceres::SPARSE_NORMAL_CHOLESKY;
@@ -204,9 +205,9 @@ BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const
                    const BundleOptions& options) {
   BundleResult result = unmoved(problem);
   if (roles.observations.empty()) return result;
-  const bool is_window = !problem.calibration && std::ranges::count(roles.pose_moves, true) <= kMaxDensePoses;
-  const BundleSolution solution = is_window ? solve_bundle_densely(problem, roles, scale, options)
-                                            : solve_by_ceres(problem, roles, scale, options, result.calibration_change);
+  const BundleSolution solution = problem.calibration
+                                      ? solve_by_ceres(problem, roles, scale, options, result.calibration_change)
+                                      : solve_bundle(problem, roles, scale, options);
   result.iterations = solution.iterations;
   result.usable = solution.usable;
   if (!result.usable) return result;

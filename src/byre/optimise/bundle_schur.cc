@@ -1,6 +1,7 @@
 #include "byre/optimise/bundle_schur.h"
 
 #include "byre/optimise/huber.h"
+#include "byre/optimise/reduced_system.h"
 #include "byre/optimise/reprojection.h"
 
 #include <algorithm>
@@ -88,6 +89,7 @@ class SchurBundle {
     }
     between_.resize(terms_.size());
     eliminated_.resize(tracks_.size());
+    reduced_.emplace(slot_count_, neighbours());
   }
 
   const Estimate& estimate() const { return estimate_; }
@@ -105,10 +107,10 @@ class SchurBundle {
 
  private:
   void give_slots(const BundleRoles& roles);
+  std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
   void linearise_track(std::size_t index, double radius);
   void eliminate(const Track& track, Eliminated& eliminated);
   void add_scale();
-  Eigen::Block<Eigen::MatrixXd, 6, 6> at(int row, int column) { return reduced_.block<6, 6>(6 * row, 6 * column); }
 
   std::optional<HeldDistance> scale_;  // constant after construction, as are the next five
   double huber_width_ = 0.0;
@@ -119,13 +121,13 @@ class SchurBundle {
 
   Estimate estimate_;
   // As linearise leaves them.
-  Eigen::MatrixXd reduced_;             // lower triangle, the points eliminated
-  std::vector<Matrix6> own_;            // one a pose, before the points are eliminated
-  Eigen::VectorXd gradient_;            // slopes by the poses
-  Eigen::VectorXd used_up_;             // part of the gradient that finding the points uses up
-  Eigen::VectorXd damping_;             // added to the diagonal of reduced_
-  std::vector<Eliminated> eliminated_;  // one a track
-  std::vector<Matrix63> between_;       // one a term: normal matrix between its pose and its point
+  std::optional<ReducedSystem> reduced_;  // with the points eliminated
+  std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
+  Eigen::VectorXd gradient_;              // slopes by the poses
+  Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
+  Eigen::VectorXd damping_;               // added to the diagonal of reduced_
+  std::vector<Eliminated> eliminated_;    // one a track
+  std::vector<Matrix63> between_;         // one a term: normal matrix between its pose and its point
   double largest_slope_ = 0.0;
 };
 
@@ -134,6 +136,33 @@ void SchurBundle::give_slots(const BundleRoles& roles) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (roles.pose_moves[i]) slots_[i] = slot_count_++;
   }
+}
+
+std::vector<std::vector<int>> SchurBundle::neighbours() const {
+  if (slot_count_ <= ReducedSystem::kMaxDensePoses) return {};
+  const auto count = static_cast<std::size_t>(slot_count_);
+  std::vector<std::vector<std::size_t>> tracks_of_slot(count);
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    if (!tracks_[t].moves) continue;
+    for (std::size_t i = tracks_[t].begin; i < tracks_[t].end; ++i) {
+      if (terms_[i].slot >= 0) tracks_of_slot[static_cast<std::size_t>(terms_[i].slot)].push_back(t);
+    }
+  }
+  std::vector<std::vector<int>> neighbours(count);
+  std::vector<int> found_by(count, -1);
+  for (int row = 0; row < slot_count_; ++row) {
+    std::vector<int>& columns = neighbours[static_cast<std::size_t>(row)];
+    for (const std::size_t t : tracks_of_slot[static_cast<std::size_t>(row)]) {
+      for (std::size_t i = tracks_[t].begin; i < tracks_[t].end; ++i) {
+        const int column = terms_[i].slot;
+        if (column < 0 || column >= row || found_by[static_cast<std::size_t>(column)] == row) continue;
+        found_by[static_cast<std::size_t>(column)] = row;
+        columns.push_back(column);
+      }
+    }
+    std::ranges::sort(columns);
+  }
+  return neighbours;
 }
 
 void SchurBundle::linearise_track(std::size_t index, double radius) {
@@ -182,7 +211,7 @@ void SchurBundle::eliminate(const Track& track, Eliminated& eliminated) {
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
       if (column < 0 || column > row) continue;
-      at(row, column).noalias() -= gain * between_[j].transpose();
+      reduced_->at(row, column).noalias() -= gain * between_[j].transpose();
     }
   }
 }
@@ -202,7 +231,7 @@ void SchurBundle::add_scale() {
 
 double SchurBundle::linearise(double radius) {
   const Eigen::Index size = 6 * slot_count_;
-  reduced_.setZero(size, size);
+  reduced_->set_zero();
   own_.assign(static_cast<std::size_t>(slot_count_), Matrix6::Zero());
   gradient_.setZero(size);
   used_up_.setZero(size);
@@ -213,19 +242,19 @@ double SchurBundle::linearise(double radius) {
   for (int slot = 0; slot < slot_count_; ++slot) {
     const Matrix6& own = own_[static_cast<std::size_t>(slot)];
     damping_.segment<6>(6 * slot) = own.diagonal().unaryExpr(&bounded) / radius;
-    at(slot, slot) += own;
+    auto diagonal_block = reduced_->at(slot, slot);
+    diagonal_block += own;
+    diagonal_block.diagonal() += damping_.segment<6>(6 * slot);
   }
-  reduced_.diagonal() += damping_;
   return size == 0 ? largest_slope_ : std::max(largest_slope_, gradient_.cwiseAbs().maxCoeff());
 }
 
 std::optional<Step> SchurBundle::solve() {
   Step step;
   if (slot_count_ > 0) {
-    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(reduced_);
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    step.poses = factor.solve(used_up_ - gradient_);
-    if (!step.poses.allFinite()) return std::nullopt;
+    std::optional<Eigen::VectorXd> poses = reduced_->solve(used_up_ - gradient_);
+    if (!poses) return std::nullopt;
+    step.poses = std::move(*poses);
     step.expected_gain = 0.5 * step.poses.dot(damping_.cwiseProduct(step.poses) - gradient_);
     step.squared_length = step.poses.squaredNorm();
   }
@@ -345,8 +374,8 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
 
 }  // namespace
 
-BundleSolution solve_bundle_densely(const BundleProblem& problem, const BundleRoles& roles,
-                                    const std::optional<HeldDistance>& scale, const BundleOptions& options) {
+BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& roles,
+                            const std::optional<HeldDistance>& scale, const BundleOptions& options) {
   assert(!problem.calibration);
   SchurBundle bundle(problem, roles, scale, options.huber_width);
   BundleSolution solution;
