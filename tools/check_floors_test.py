@@ -81,7 +81,7 @@ class Fences(CheckFloorsTest):
                 self.assert_one_fault("slam/tracking.cc", 1, f"must not include <{header}>")
 
     def test_fenced_headers_are_allowed_in_their_rooms(self):
-        self.write("session/executor.cc", "#include <thread>\n#include <mutex>\n")
+        self.write("workers/executor.cc", "#include <thread>\n#include <mutex>\n")
         self.write("optimise/bundle.cc", "#include <ceres/ceres.h>\n")
         self.write("features/extract.cc", "#include <opencv2/imgproc.hpp>\n")
         self.write("cli/main.cc", "#include <iostream>\n#include <CLI/CLI.hpp>\n")

@@ -10,8 +10,8 @@
 #include "byre/features/image_threads.h"
 #include "byre/input/formatted.h"
 #include "byre/playback/source_recording.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
 
 #include <algorithm>
 #include <memory>

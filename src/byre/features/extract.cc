@@ -6,10 +6,10 @@
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
-#include "byre/features/task_threads.h"
 #include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
+#include "byre/workers/task_threads.h"
 
 #include <algorithm>
 #include <array>

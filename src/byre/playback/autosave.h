@@ -2,7 +2,7 @@
 
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <functional>
 #include <future>

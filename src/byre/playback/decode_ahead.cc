@@ -1,6 +1,6 @@
 #include "byre/playback/decode_ahead.h"
 
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

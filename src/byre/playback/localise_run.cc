@@ -5,7 +5,7 @@
 #include "byre/dataset/image_names.h"
 #include "byre/input/formatted.h"
 #include "byre/playback/decode_ahead.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

@@ -2,8 +2,8 @@
 
 #include "byre/playback/decode_ahead.h"
 #include "byre/playback/live_clock.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/resources.h"
+#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "byre/frame_report.h"
-#include "byre/session/mapper.h"
-#include "byre/session/offline_tracker.h"
-#include "byre/session/whereabouts.h"
+#include "byre/localisation/offline_tracker.h"
+#include "byre/localisation/whereabouts.h"
+#include "byre/mapping/mapper.h"
 #include "byre/slam/health.h"
 
 namespace byre {

@@ -1,6 +1,6 @@
 #include "byre/session/session.h"
 
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <cassert>
 #include <utility>
@@ -11,14 +11,14 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
                  std::shared_ptr<const OfflineMap> offline)
     : options_(options),
       rig_(rig),
-      mapper_(rig, options, std::move(lanes.local), offline ? make_inline_executor() : std::move(lanes.global),
-              {std::move(vocabulary), offline}),
+      mapper_(rig, mapper_options(options), std::move(lanes.local),
+              offline ? make_inline_executor() : std::move(lanes.global), {std::move(vocabulary), offline}),
       tracker_(options),
-      whereabouts_(options, offline != nullptr),
+      whereabouts_(options.mission.registration, options.hindsight, offline != nullptr),
       input_watch_(options.image),
       shutter_(rig.readout_time) {
   if (offline) {
-    mission_.emplace(std::move(offline), options,
+    mission_.emplace(std::move(offline), OfflineTrackerOptions{options.mission, options.track, options.relocalise},
                      OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
   } else {
     options_.map_online = true;  // there is nothing else to track

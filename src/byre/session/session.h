@@ -1,18 +1,18 @@
 #pragma once
 
 #include "byre/frame_report.h"
-#include "byre/session/executor.h"
+#include "byre/localisation/offline_tracker.h"
+#include "byre/localisation/whereabouts.h"
+#include "byre/mapping/keyframe_watch.h"
+#include "byre/mapping/mapper.h"
+#include "byre/mapping/shutter.h"
 #include "byre/session/frame_summary.h"
-#include "byre/session/keyframe_watch.h"
-#include "byre/session/mapper.h"
-#include "byre/session/offline_tracker.h"
 #include "byre/session/session_options.h"
-#include "byre/session/shutter.h"
 #include "byre/session/tracker.h"
-#include "byre/session/whereabouts.h"
 #include "byre/slam/health.h"
 #include "byre/slam/input_watch.h"
 #include "byre/slam/state.h"
+#include "byre/workers/executor.h"
 
 #include <memory>
 #include <optional>

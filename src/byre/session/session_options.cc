@@ -2,20 +2,18 @@
 
 namespace byre {
 
-MappingOptions mapping_options(const SessionOptions& options) {
-  MappingOptions mapping;
-  mapping.window = options.window;
-  mapping.max_relative_depth_sigma = options.max_relative_depth_sigma;
-  mapping.redundant_share = options.redundant_share;
-  mapping.offline_weight = options.track.offline_weight;
-  return mapping;
-}
-
-FinishOptions finish_options(const SessionOptions& options) {
-  FinishOptions finish;
-  finish.loops = options.loops;
-  finish.global.mapping = mapping_options(options);
-  return finish;
+MapperOptions mapper_options(const SessionOptions& options) {
+  MapperOptions mapper;
+  mapper.recording = options.recording;
+  mapper.min_initial_points = options.min_initial_points;
+  mapper.max_drift_to_fuse = options.max_drift_to_fuse;
+  mapper.monocular_start = options.monocular_start;
+  mapper.mapping.window = options.window;
+  mapper.mapping.max_relative_depth_sigma = options.max_relative_depth_sigma;
+  mapper.mapping.redundant_share = options.redundant_share;
+  mapper.mapping.offline_weight = options.track.offline_weight;
+  mapper.loops = options.loops;
+  return mapper;
 }
 
 }  // namespace byre

@@ -1,15 +1,12 @@
 #pragma once
 
 #include "byre/image_condition.h"
-#include "byre/session/mission.h"
-#include "byre/slam/finishing.h"
+#include "byre/localisation/mission.h"
+#include "byre/mapping/mapper_options.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hindsight.h"
-#include "byre/slam/initialisation.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
-#include "byre/slam/loop_closing.h"
-#include "byre/slam/mapping.h"
 #include "byre/slam/state.h"
 #include "byre/slam/tracking.h"
 
@@ -17,13 +14,13 @@ namespace byre {
 
 // Each leaf stands here once, and is handed to every function that needs it.
 struct SessionOptions {
-  int recording = 0;               // index that new keyframes get, see Keyframe::recording
-  bool map_online = true;          // false: track on the offline map alone
-  int min_initial_points = 100;    // stereo points of the first keyframe
-  int local_keyframes = 15;        // keyframes of either map whose points are looked for in a frame
-  double min_kept_share = 0.5;     // share of the last inliers; with fewer the pose is sought without prediction too
-  double max_drift_to_fuse = 3.0;  // pixels: what has drifted less is found again by fusing points around it
-  MonocularStartOptions monocular_start;  // start with a rig that has no baseline
+  int recording = 0;                                            // index that new keyframes get, see Keyframe::recording
+  bool map_online = true;                                       // false: track on the offline map alone
+  int min_initial_points = MapperOptions{}.min_initial_points;  // see there
+  int local_keyframes = 15;     // keyframes of either map whose points are looked for in a frame
+  double min_kept_share = 0.5;  // share of the last inliers; with fewer the pose is sought without prediction too
+  double max_drift_to_fuse = MapperOptions{}.max_drift_to_fuse;  // see there
+  MonocularStartOptions monocular_start;                         // start with a rig that has no baseline
   TrackOptions track;
   KeyframeOptions keyframes;
   WindowOptions window;                                                         // window of local mapping
@@ -38,8 +35,7 @@ struct SessionOptions {
   HindsightOptions hindsight;
 };
 
-// What a session maps with, its offline weight that of tracking.
-MappingOptions mapping_options(const SessionOptions& options);
-FinishOptions finish_options(const SessionOptions& options);
+// What the session's mapper goes by, its offline weight that of tracking.
+MapperOptions mapper_options(const SessionOptions& options);
 
 }  // namespace byre

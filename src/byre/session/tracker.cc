@@ -1,6 +1,6 @@
 #include "byre/session/tracker.h"
 
-#include "byre/session/place_search.h"
+#include "byre/localisation/place_search.h"
 
 #include <utility>
 

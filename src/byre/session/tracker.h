@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/session/mapper.h"
-#include "byre/session/mission.h"
+#include "byre/localisation/mission.h"
+#include "byre/mapping/mapper.h"
 #include "byre/session/session_options.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/motion_model.h"

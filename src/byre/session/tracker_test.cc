@@ -1,7 +1,7 @@
 #include "byre/session/tracker.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/session/session_scene.h"
+#include "byre/slam/place_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -4,6 +4,11 @@
 
 #include "byre/place/place_index.h"
 #include "byre/slam/mission_scene.h"
+#include "byre/slam/offline_map.h"
+
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace byre {
 
@@ -30,5 +35,21 @@ struct MappedPlace {
   Map nothing_online{Origin::online};
   PlaceIndex index;
 };
+
+// Trained on a lap in a simulated room.
+inline const Vocabulary& simulated_vocabulary() {
+  static const Vocabulary trained =
+      vocabulary_of(simulate_mission(simulated_rig(), circling_trajectory(120, 10.0, 2.0, 1.0), {}));
+  return trained;
+}
+
+// The map of a visit before, by its true poses; each fourth frame is a keyframe.
+inline std::shared_ptr<const OfflineMap> offline_map_of(const SimulatedMission& visit) {
+  Map map = true_map(visit, 4, Origin::offline);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
+  }
+  return std::make_shared<const OfflineMap>(std::move(map), simulated_vocabulary());
+}
 
 }  // namespace byre

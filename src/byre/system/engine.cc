@@ -1,7 +1,7 @@
 #include "byre/system/engine.h"
 
 #include "byre/map/map_file.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

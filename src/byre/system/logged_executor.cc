@@ -1,6 +1,6 @@
 #include "byre/system/logged_executor.h"
 
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/session/executor.h"
+#include "byre/workers/executor.h"
 
 #include <memory>
 #include <vector>

@@ -139,12 +139,11 @@ TEST(OptionTable, TellsWhatIsNotAsByDefault) {
 }
 
 TEST(OptionTable, MappingTakesItsSharedLeavesFromTheSession) {
-  const MappingOptions by_default = mapping_options({});
+  const MappingOptions by_default = mapper_options({}).mapping;
   EXPECT_EQ(by_default.offline_weight, MappingOptions{}.offline_weight);
   EngineOptions options;
   EXPECT_FALSE(set_option(options, "tracking.offline_weight", "7"));
-  EXPECT_EQ(mapping_options(options.session).offline_weight, 7.0);
-  EXPECT_EQ(finish_options(options.session).global.mapping.offline_weight, 7.0);
+  EXPECT_EQ(mapper_options(options.session).mapping.offline_weight, 7.0);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "byre/system/refine_map.h"
 
-#include "byre/session/stopwatch.h"
 #include "byre/slam/online_copy.h"
 #include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
 
 namespace byre {
 

@@ -11,9 +11,9 @@
 #include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <memory>

@@ -10,9 +10,9 @@
 #include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/recording.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/stored_map.h"
 #include "byre/trajectory_error.h"
+#include "byre/workers/stopwatch.h"
 
 #include <algorithm>
 #include <iostream>

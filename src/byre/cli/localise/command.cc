@@ -16,8 +16,8 @@
 #include "byre/place/map_words.h"
 #include "byre/playback/localise_run.h"
 #include "byre/playback/run_on_plan.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
 
 #include <algorithm>
 #include <iostream>

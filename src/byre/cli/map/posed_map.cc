@@ -8,8 +8,8 @@
 #include "byre/input/formatted.h"
 #include "byre/playback/map_from_poses_run.h"
 #include "byre/playback/source_recording.h"
-#include "byre/session/stopwatch.h"
 #include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "byre/cli/shared/render_with_progress.h"
 
 #include "byre/cli/shared/progress.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <optional>

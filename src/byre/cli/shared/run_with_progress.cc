@@ -2,7 +2,7 @@
 
 #include "byre/cli/shared/progress.h"
 #include "byre/input/formatted.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <utility>

@@ -3,7 +3,7 @@
 #include "byre/cli/shared/pose_options.h"
 #include "byre/input/formatted.h"
 #include "byre/map/driving_plane.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <algorithm>
 #include <chrono>

@@ -9,7 +9,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
-#include "byre/session/stopwatch.h"
+#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <memory>

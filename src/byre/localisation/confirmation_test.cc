@@ -1,0 +1,57 @@
+#include "byre/localisation/confirmation.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+
+void PrintTo(const Confirmation& confirmation, std::ostream* stream) {
+  *stream << confirmation.frames_to_believe << " to believe, " << confirmation.frames_to_prove << " to prove";
+}
+
+namespace {
+
+constexpr RegistrationOptions kOptions{.confirmations = 3, .proving_share = 0.06, .max_speed = 3.0};
+
+TEST(ConfirmationOfAFind, FollowsTheTable) {
+  struct Row {
+    std::string find;
+    FindEvidence evidence;
+    Confirmation needed;
+  };
+  const std::vector<Row> table{
+      {"the first", {}, {3, 3}},
+      {"the first believed, however near an unbelieved one", {{}, {}, 0.0}, {3, 3}},
+      {"where it was lost, never proven", {0.1, {}, 0.1}, {3, 3}},
+      {"where it was lost, proven a moment ago", {0.1, 0.1, 0.1}, {3, 0}},
+      {"where it was lost, proven too long ago", {0.1, 1.5, 0.1}, {3, 3}},
+      {"as far as the robot can have come", {2.0, 0.5, 6.5}, {3, 0}},
+      {"farther than the robot can have come", {2.0, 0.5, 6.6}, {10, 3}},
+      {"farther, never proven", {0.1, {}, 5.0}, {10, 3}},
+  };
+  for (const Row& row : table) EXPECT_EQ(confirmation_of(row.evidence, kOptions), row.needed) << row.find;
+}
+
+TEST(ConfirmedFurther, CountsFramesDownToNone) {
+  const Confirmation once = confirmed_further({2, 1}, 100, 50, kOptions);
+  EXPECT_EQ(once, (Confirmation{1, 0}));
+  EXPECT_FALSE(once.is_believed());
+  EXPECT_TRUE(once.is_proven());
+  const Confirmation twice = confirmed_further(once, 100, 50, kOptions);
+  EXPECT_TRUE(twice.is_believed());
+  EXPECT_EQ(confirmed_further(twice, 100, 50, kOptions), twice);
+}
+
+TEST(ConfirmedFurther, IsProvenByFramesAloneThatSeeMuchOfWhatShouldBeThere) {
+  EXPECT_EQ(confirmed_further({3, 3}, 100, 5, kOptions), (Confirmation{2, 3}));
+  EXPECT_EQ(confirmed_further({3, 3}, 100, 6, kOptions), (Confirmation{2, 2}));
+}
+
+TEST(Confirmation, IsNotAskedForByDefault) {
+  EXPECT_TRUE(Confirmation{}.is_believed());
+  EXPECT_TRUE(Confirmation{}.is_proven());
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,70 @@
+#include "byre/localisation/mission.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace byre {
+namespace {
+
+constexpr double kSearchDistance = 4.0;  // metres about the pose within which offline keyframes are looked for
+// How far a place found beside tracking may lie off the pose: always, and for each metre of the path since offline
+// points last held it.
+constexpr double kMinDrift = 0.01;       // metres
+constexpr double kDriftShare = 0.02;     // metres a metre
+constexpr double kMinTurn = 0.005;       // radians
+constexpr double kTurnPerMetre = 0.002;  // radians a metre
+constexpr int kLookAgainEvery = 5;       // frames between looks for suspended points in their places
+
+}  // namespace
+
+DriftBound Mission::drift() const {
+  return {kMinDrift + kDriftShare * distance_since_offline_, kMinTurn + kTurnPerMetre * distance_since_offline_};
+}
+
+std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_from_world) const {
+  if (reference_) return reference_;
+  const auto near = offline_->keyframes_near(predicted_camera_from_world, kSearchDistance, 1);
+  return near.empty() ? std::nullopt : std::optional(near.front());
+}
+
+std::vector<PointId> Mission::candidates(const std::vector<PointId>& around) const {
+  std::vector<PointId> candidates;
+  std::ranges::copy_if(around, std::back_inserter(candidates),
+                       [this](PointId id) { return !suspension_.is_suspended(id); });
+  return candidates;
+}
+
+void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
+  view_ = view_of_offline(evidence, options_.view);
+  ++frames_;
+  const bool held = view_ == OfflineView::held;
+  if (held) {
+    suspension_.note(track.offline_agreed, moved_together(offline_->map(), track.offline_agreed, track.offline_moved));
+  }
+  reference_ = held ? track.offline_reference : std::nullopt;
+  if (held && (track.offline_stands || !track.maps_disagree)) {
+    distance_since_offline_ = 0.0;
+    last_offline_time_ = time;
+  } else {
+    distance_since_offline_ += step;
+  }
+}
+
+std::vector<PointId> Mission::due_again(const std::vector<PointId>& around) const {
+  std::vector<PointId> due;
+  if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
+  std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return suspension_.is_suspended(id); });
+  return due;
+}
+
+std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
+                                      double median_depth) {
+  const RegistrationOptions& options = options_.registration;
+  hypothesis_ = confirm(hypothesis_, offline_from_online, camera_in_online, median_depth, options);
+  if (!hypothesis_ || hypothesis_->confirmations < options.confirmations) return std::nullopt;
+  const Pose confirmed = hypothesis_->offline_from_online;
+  hypothesis_.reset();
+  return confirmed;
+}
+
+}  // namespace byre

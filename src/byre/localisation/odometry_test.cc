@@ -1,0 +1,82 @@
+#include "byre/localisation/odometry.h"
+
+#include "byre/geometry/geometry_matchers.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+Pose at(double x) {
+  return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
+}
+
+Odometry started_at(const Pose& map_from_body) {
+  Odometry odometry;
+  odometry.start(map_from_body);
+  return odometry;
+}
+
+TEST(Odometry, BeginsWhereTheBodyIs) {
+  Odometry odometry = started_at(at(5.0));
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(Pose{}, 1e-12, 1e-12));
+  odometry.follow(at(6.0), {});
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.0), 1e-12, 1e-12));
+  EXPECT_THAT(odometry.map_from_body(), PoseNear(at(6.0), 1e-12, 1e-12));
+}
+
+TEST(Odometry, DoesNotJumpWhenTheMapPoseIsCorrected) {
+  Odometry odometry = started_at(at(0.0));
+  const Pose before{rotation_exp({0.0, 0.0, 0.3}), {1.0, 2.0, 0.0}};
+  const Pose after{rotation_exp({0.0, 0.0, 0.2}), {1.4, 1.9, 0.1}};
+  odometry.follow(before, {});
+  odometry.correct(after);
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(before, 1e-12, 1e-12));
+  EXPECT_THAT(odometry.map_from_body(), PoseNear(after, 1e-12, 1e-12));
+}
+
+TEST(Odometry, FollowsTheBodyAfterACorrection) {
+  Odometry odometry = started_at(at(0.0));
+  const Pose before{rotation_exp({0.0, 0.0, 0.3}), {1.0, 2.0, 0.0}};
+  const Pose after = at(3.0);
+  odometry.follow(before, {});
+  odometry.correct(after);
+  const Pose motion{rotation_exp({0.1, 0.0, 0.0}), {0.2, 0.0, 0.0}};  // body's motion, as it sees it itself
+  odometry.follow(after * motion, {});
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(before * motion, 1e-12, 1e-12));
+}
+
+TEST(Odometry, CountsTheWayButNoCorrection) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), {});
+  odometry.correct(at(4.0));
+  EXPECT_NEAR(odometry.follow(at(4.5), {}).metres, 0.5, 1e-12);
+  EXPECT_NEAR(odometry.travelled(), 1.5, 1e-12);
+}
+
+TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), at(0.0));
+  const Odometry::Step step = odometry.follow(at(1.5), at(0.3));  // 0.2 metres on by online points
+  EXPECT_THAT(step.smooth, PoseNear(at(1.2), 1e-12, 1e-12));
+  EXPECT_NEAR(step.metres, 0.2, 1e-12);
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.2), 1e-12, 1e-12));
+  EXPECT_THAT(odometry.map_from_body(), PoseNear(at(1.5), 1e-12, 1e-12));
+  EXPECT_NEAR(odometry.follow(at(1.6), at(0.3)).metres, 0.1, 1e-12);
+}
+
+TEST(Odometry, TakesASmallChangeOfOffsetForNoise) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), at(0.0));
+  EXPECT_NEAR(odometry.follow(at(1.005), at(0.005)).metres, 0.005, 1e-12);
+}
+
+TEST(Odometry, ComparesNoOffsetsAcrossAGap) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), at(0.0));
+  odometry.remember_offset({});
+  EXPECT_NEAR(odometry.follow(at(1.5), at(0.3)).metres, 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace byre

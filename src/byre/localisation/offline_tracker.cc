@@ -1,0 +1,135 @@
+#include "byre/localisation/offline_tracker.h"
+
+#include "byre/slam/keyframes.h"
+
+#include <utility>
+
+namespace byre {
+
+OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options,
+                               Lanes lanes)
+    : options_(options),
+      offline_(std::move(offline)),
+      mission_(offline_, options.mission),
+      search_(std::move(lanes.search)),
+      calibration_lane_(std::move(lanes.calibration)) {}
+
+void OfflineTracker::refine_calibration(const Calibration& given, double prior_sigmas) {
+  calibrator_.emplace(given, prior_sigmas, std::move(calibration_lane_));
+}
+
+std::optional<MissionCalibrator::Switch> OfflineTracker::collect_camera() {
+  return calibrator_ ? calibrator_->collect() : std::nullopt;
+}
+
+std::optional<FoundPlace> OfflineTracker::collect_place() {
+  const auto finished = search_.collect();
+  return finished ? finished->result : std::nullopt;
+}
+
+OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,
+                                                 const Mapper& mapper) {
+  Consequence consequence{.events = note_view(seen, mapper)};
+  const Confirmation& confirmation = whereabouts.confirmation();
+  if (!confirmation.is_believed()) return consequence;
+  if (!mapper.has_correction()) consequence.correction = correction_by(seen.track, mapper);
+  if (calibrator_ && confirmation.is_proven() && !seen.track.maps_disagree) {
+    calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
+  }
+  return consequence;
+}
+
+std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapper& mapper) {
+  const HybridTrack& track = seen.track;
+  const OfflineView before = mission_.view();
+  mission_.note(track, seen.frame.time, seen.step,
+                {track.offline_expected, track.offline_inliers, seen.image_is_faulty, seen.frame.features->size()});
+  const OfflineView now = mission_.view();
+  const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
+  if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
+  const std::vector<PointId> due = mission_.due_again(seen.offline_around);
+  if (!due.empty()) {
+    mission_.note_again(
+        look_for_points(seen.frame, track.tracked.camera_from_world, seen.rig, mapper.map(), due, options_.track));
+  }
+  if (now == before || now == OfflineView::changed) return {};
+  if (now == OfflineView::off_the_map) return {SessionEvent::left_mapped_area};
+  return {now == OfflineView::blinded ? SessionEvent::blinded : SessionEvent::entered_mapped_area};
+}
+
+void OfflineTracker::lose() {
+  mission_.forget_reference();
+  mission_.forget_hypothesis();
+}
+
+void OfflineTracker::search_beside(const Frame& frame, const Rig& rig, const Whereabouts& whereabouts,
+                                   const Mapper& mapper) {
+  if (!search_.idle() || mapper.has_correction() || !whereabouts.confirmation().is_believed()) return;
+  const bool is_needed = !mapper.segments().is_registered() || !whereabouts.confirmation().is_proven() ||
+                         mission_.distance_since_offline() > options_.mission.search_after;
+  if (!is_needed) return;
+  const std::size_t number = whereabouts.trajectory().size() - 1;
+  search_.start([frame, rig, number, offline = offline_, options = options_.relocalise] {
+    return search_place(*offline, frame, rig, number, options);
+  });
+}
+
+// A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it.
+OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
+                                                     const Mapper& mapper) {
+  constexpr double kElsewhere = 0.5;  // metres
+  const AnchoredTrajectory& trajectory = whereabouts.trajectory();
+  const Confirmation& confirmation = whereabouts.confirmation();
+  const Segments& segments = mapper.segments();
+  if (!whereabouts.has_pose() || !confirmation.is_believed() || mapper.has_correction()) return {};
+  if (found.frame >= trajectory.size()) return {};
+  const AnchoredPose& then = trajectory[found.frame];
+  if (segments.frame(then.segment) != segments.frame()) return {};
+  const Pose camera_from_online = camera_from_world(mapper.map(), then);
+  const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
+  const bool is_find_open = then.segment == segments.present() && segments.is_registered() && !confirmation.is_proven();
+  if (is_find_open && agreement.translation > kElsewhere &&
+      found.seen_share >= options_.mission.registration.proving_share) {
+    return {.events = {}, .refutes_pose = true};
+  }
+  return {.events = {}, .correction = correction_by(found, camera_from_online, segments.frame())};
+}
+
+// The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
+std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
+                                                              Segments::Frame frame) {
+  const bool is_registered = frame == Segments::kMapFrame;
+  if (is_registered && !is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift())) {
+    return std::nullopt;
+  }
+  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
+  const auto confirmed =
+      mission_.consider(offline_from_online, inverse(camera_from_online).translation, found.median_depth);
+  if (!confirmed) return std::nullopt;
+  if (is_registered) return OnlineCorrection{frame, last_held_keyframe_, *confirmed, CorrectionShape::spread};
+  return OnlineCorrection{frame, 0, *confirmed, CorrectionShape::rigid};
+}
+
+std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack& track, const Mapper& mapper) {
+  if (!track.is_online_off()) return std::nullopt;
+  const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
+  const auto confirmed = mission_.consider(offline_from_online, inverse(*track.from_online).translation,
+                                           median_depth(track.tracked, mapper.map()));
+  if (!confirmed) return std::nullopt;
+  return OnlineCorrection{mapper.segments().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
+}
+
+Health OfflineTracker::added_to(Health health, Timestamp now, Timestamp first_frame) const {
+  health.focal_error = focal_check_.error();
+  health.suspended = mission_.suspension().count();
+  health.distance_since_offline = mission_.distance_since_offline();
+  health.seconds_since_offline = to_seconds(now - mission_.last_offline_time().value_or(first_frame));
+  return health;
+}
+
+void OfflineTracker::finish() {
+  search_.finish();
+  if (calibrator_) calibrator_->finish();
+}
+
+}  // namespace byre

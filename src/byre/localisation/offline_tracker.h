@@ -1,0 +1,97 @@
+#pragma once
+
+#include "byre/localisation/mission.h"
+#include "byre/localisation/mission_calibrator.h"
+#include "byre/localisation/place_search.h"
+#include "byre/localisation/whereabouts.h"
+#include "byre/mapping/mapper.h"
+#include "byre/session_event.h"
+#include "byre/slam/focal_check.h"
+#include "byre/workers/worker.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct OfflineTrackerOptions {
+  MissionOptions mission;
+  TrackOptions track;
+  LocaliseOptions relocalise;  // where places are looked for beside tracking
+};
+
+// What a mission on an offline map adds to a session: the way in that map, places looked for in it beside tracking,
+// what it says of the online map's place and of the cameras. Called from the session's thread.
+class OfflineTracker {
+ public:
+  // Where places are looked for, and where calibrations are worked out.
+  struct Lanes {
+    std::unique_ptr<Executor> search;
+    std::unique_ptr<Executor> calibration;
+  };
+
+  OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options, Lanes lanes);
+
+  const Mission& mission() const { return mission_; }
+  const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
+  bool is_focal_length_off() const { return focal_check_.is_off(); }
+
+  // Before the first frame.
+  void refine_calibration(const Calibration& given, double prior_sigmas);
+
+  // Once for each frame.
+  std::optional<MissionCalibrator::Switch> collect_camera();
+  std::optional<FoundPlace> collect_place();
+  bool ask_for_focal_length() { return focal_check_.is_due(); }  // whether this frame is to be asked
+
+  // A frame tracked while the online map is known to lie in the offline one.
+  struct Seen {
+    const Frame& frame;
+    const HybridTrack& track;
+    const Rig& rig;
+    double step = 0.0;  // metres from the frame before
+    bool image_is_faulty = false;
+    const std::vector<PointId>& offline_around;  // suspended ones included
+  };
+  // What a frame, or a place found, means for the session.
+  struct Consequence {
+    std::vector<SessionEvent> events{};
+    bool refutes_pose = false;                     // the robot is elsewhere
+    std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
+  };
+  Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
+  Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
+  void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
+  // A segment begins where offline points do not hold the pose yet.
+  void begin_segment() { mission_.forget_reference(); }
+  void lose();
+
+  // Looks for the last frame in the offline map beside tracking, while its points do not hold the pose, or may do so by
+  // chance.
+  void search_beside(const Frame& frame, const Rig& rig, const Whereabouts& whereabouts, const Mapper& mapper);
+
+  // A health with what is known of the offline map in it.
+  Health added_to(Health health, Timestamp now, Timestamp first_frame) const;
+
+  void finish();  // waits for what is in flight, and forgets what comes of it
+
+ private:
+  std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
+  // Once enough frames agree.
+  std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
+  std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
+                                                Segments::Frame frame);
+
+  OfflineTrackerOptions options_;              // constant after construction
+  std::shared_ptr<const OfflineMap> offline_;  // constant after construction
+
+  Mission mission_;
+  Worker<std::optional<FoundPlace>> search_;
+  std::unique_ptr<Executor> calibration_lane_;  // until calibration begins
+  std::optional<MissionCalibrator> calibrator_;
+  FocalCheck focal_check_;
+  std::uint32_t last_held_keyframe_ = 0;  // number of the newest online keyframe when offline points last held the pose
+};
+
+}  // namespace byre

@@ -1,0 +1,108 @@
+#include "byre/localisation/offline_tracker.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/body_pose.h"
+#include "byre/slam/place_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// A robot that was found in its offline map, at a true pose.
+class OnAnOfflineMap : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = quarter_circle({});
+  const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
+  Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), map_}};
+  OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
+  Whereabouts whereabouts_{{}, {}, true};
+
+  HybridTrack track_of(std::size_t frame, int inliers = 100) const {
+    HybridTrack track;
+    track.tracked.camera_from_world = true_camera_from_world(mission_, frame);
+    track.tracked.reference = map_->map().keyframe_ids()[frame / 4];
+    track.offline_reference = track.tracked.reference;
+    track.offline_expected = 100;
+    track.offline_inliers = inliers;
+    return track;
+  }
+  void note_found(std::size_t frame, int inliers = 100) {
+    mapper_.begin_where_found(track_of(frame));
+    for (const bool from_nothing : {true, false, false, false}) {
+      whereabouts_.note({mission_.frames[frame], track_of(frame, inliers), from_nothing, true, 0}, mission_.rig,
+                        mapper_.map());
+      ++frame;
+    }
+    ASSERT_TRUE(whereabouts_.confirmation().is_believed());
+  }
+  OfflineTracker::Consequence note(std::size_t frame, int inliers) {
+    return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}}, whereabouts_,
+                         mapper_);
+  }
+  // A place so many metres beside where the first frame was believed to be.
+  FoundPlace place_beside(double metres, double seen_share) const {
+    const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
+    return {0, beside * true_camera_from_world(mission_, 0), 3.0, seen_share};
+  }
+};
+
+TEST_F(OnAnOfflineMap, TellsOnceThatItsPointsHoldThePoseOrDoNot) {
+  note_found(0);
+  EXPECT_THAT(note(4, 100).events, ElementsAre(SessionEvent::entered_mapped_area));
+  EXPECT_THAT(note(5, 100).events, IsEmpty());
+  EXPECT_EQ(tracker_.mission().distance_since_offline(), 0.0);
+  EXPECT_THAT(note(6, 0).events, IsEmpty()) << "things have changed, which is no news of the robot";
+  EXPECT_GT(tracker_.mission().distance_since_offline(), 0.0);
+}
+
+TEST_F(OnAnOfflineMap, GivesAnUnprovenFindUpForAPlaceElsewhereThatShowsMore) {
+  note_found(0, 1);
+  ASSERT_FALSE(whereabouts_.confirmation().is_proven());
+  EXPECT_FALSE(tracker_.consider(place_beside(2.0, 0.01), whereabouts_, mapper_).refutes_pose);
+  EXPECT_FALSE(tracker_.consider(place_beside(0.1, 0.5), whereabouts_, mapper_).refutes_pose);
+  EXPECT_TRUE(tracker_.consider(place_beside(2.0, 0.5), whereabouts_, mapper_).refutes_pose);
+}
+
+TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
+  note_found(0);
+  ASSERT_TRUE(whereabouts_.confirmation().is_proven());
+  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0, 0.5), whereabouts_, mapper_);
+  EXPECT_FALSE(consequence.refutes_pose);
+  EXPECT_FALSE(consequence.correction);
+}
+
+TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
+  note_found(0);
+  const int confirmations = RegistrationOptions{}.confirmations;
+  for (int i = 1; i < confirmations; ++i) {
+    EXPECT_FALSE(tracker_.consider(place_beside(0.005, 0.5), whereabouts_, mapper_).correction);
+  }
+  const auto correction = tracker_.consider(place_beside(0.005, 0.5), whereabouts_, mapper_).correction;
+  ASSERT_TRUE(correction);
+  EXPECT_EQ(correction->shape, CorrectionShape::spread);
+  EXPECT_EQ(correction->frame, Segments::kMapFrame);
+  EXPECT_NEAR(correction->offline_from_online.translation.norm(), 0.005, 1e-6);
+}
+
+TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) {
+  note_found(0, 1);
+  tracker_.search_beside(mission_.frames[4], mission_.rig, whereabouts_, mapper_);
+  const auto found = tracker_.collect_place();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->frame, whereabouts_.trajectory().size() - 1);
+  EXPECT_THAT(found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
+}
+
+TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
+  note_found(0);
+  note(4, 100);
+  tracker_.search_beside(mission_.frames[4], mission_.rig, whereabouts_, mapper_);
+  EXPECT_FALSE(tracker_.collect_place());
+}
+
+}  // namespace
+}  // namespace byre

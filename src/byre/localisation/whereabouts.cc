@@ -1,0 +1,121 @@
+#include "byre/localisation/whereabouts.h"
+
+#include "byre/slam/body_pose.h"
+#include "byre/slam/keyframes.h"
+
+namespace byre {
+namespace {
+
+std::optional<Pose> offset_from_online(const HybridTrack& track, const Rig& rig) {
+  if (!track.from_online) return std::nullopt;
+  return inverse(body_pose(rig, *track.from_online)) * body_pose(rig, track.tracked.camera_from_world);
+}
+
+}  // namespace
+
+KeyframeId anchor_of(const HybridTrack& track) {
+  return track.is_online_off() && track.offline_reference ? *track.offline_reference : track.tracked.reference;
+}
+
+bool Whereabouts::may_be_led_back(Timestamp time) const {
+  constexpr double kMostSeconds = 5.0;
+  return !has_pose_ && motion_.is_told() && !trajectory_.empty() &&
+         to_seconds(time - trajectory_.back().time) <= kMostSeconds;
+}
+
+FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) const {
+  FindEvidence find;
+  if (trajectory_.empty()) return find;
+  if (last_believed_) find.seconds_since_believed = to_seconds(time - *last_believed_);
+  if (last_proven_) find.seconds_since_proven = to_seconds(time - *last_proven_);
+  find.shift = (body.translation - odometry_.map_from_body().translation).norm();
+  return find;
+}
+
+// The metres that the body went.
+double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {
+  const std::optional<Pose> offset = offset_from_online(seen.track, rig);
+  if (seen.from_nothing) {
+    trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
+    odometry_.remember_offset(offset);
+    motion_.reach(Vector6::Zero());
+    return 0.0;
+  }
+  const Odometry::Step step = odometry_.follow(body, offset);
+  motion_.reach(trajectory_.velocity_to(seen.frame.time, camera_pose(rig, step.smooth), map));
+  return step.metres;
+}
+
+Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig, const MapView& map) {
+  const HybridTrack& track = seen.track;
+  const Pose body = body_pose(rig, track.tracked.camera_from_world);
+  Progress progress{0.0, confirmation_.is_proven(), last_believed_.has_value()};
+  if (!seen.from_nothing) {
+    confirmation_ = confirmed_further(confirmation_, track.offline_expected, track.offline_inliers, registration_);
+  } else if (on_offline_map_) {
+    confirmation_ = confirmation_of(evidence_of_find(seen.frame.time, body), registration_);
+  }
+  progress.step = move_to(seen, body, rig, map);
+  if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
+  const KeyframeId anchor = anchor_of(track);
+  trajectory_.add({seen.frame.time, anchor, track.tracked.camera_from_world * inverse(camera_from_world(map, anchor)),
+                   seen.segment});
+  if (on_offline_map_) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
+  has_pose_ = true;
+  if (!confirmation_.is_believed()) return progress;
+  trajectory_.believe_all();
+  if (!seen.is_registered) return progress;
+  last_believed_ = seen.frame.time;
+  if (confirmation_.is_proven()) last_proven_ = seen.frame.time;
+  return progress;
+}
+
+void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t segment, const Rig& rig,
+                        const Map& online) {
+  const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
+  trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
+  odometry_.remember_offset({});
+  for (const KeyframeId id : keyframes) {
+    trajectory_.add({online.find_keyframe(id)->frame.time, id, Pose{}, segment});
+  }
+  trajectory_.believe_all();
+  motion_.reach(Vector6::Zero());
+  confirmation_ = {};
+  has_pose_ = true;
+}
+
+void Whereabouts::lose() {
+  has_pose_ = false;
+  confirmation_ = {};
+  motion_.lose();
+  if (trajectory_.ends_in_doubt()) motion_.forget_told();
+  trajectory_.drop_doubtful();
+  odometry_.remember_offset({});
+}
+
+void Whereabouts::follow(const LengthChanges& changes) {
+  trajectory_.follow(changes);
+  if (trajectory_.empty()) return;
+  const auto change = changes.find(trajectory_.back().keyframe);
+  if (change != changes.end()) motion_.scale_lengths(change->second);
+}
+
+void Whereabouts::turn(const RigTurn& turn, const Map& online) {
+  trajectory_.turn(turn, online);
+  motion_.turn_camera(turn.after_from_before);
+}
+
+void Whereabouts::turn_camera(const Pose& after_from_before) {
+  trajectory_.turn_camera(after_from_before);
+  motion_.turn_camera(after_from_before);
+}
+
+std::optional<Pose> Whereabouts::follow_map(const Rig& rig, const MapView& map) {
+  if (!has_pose_) return std::nullopt;
+  const Pose before = odometry_.map_from_body();
+  const Pose body = body_pose(rig, camera_from_world(map, trajectory_.back()));
+  odometry_.correct(body);
+  return body * inverse(before);
+}
+
+}  // namespace byre

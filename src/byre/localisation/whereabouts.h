@@ -1,0 +1,90 @@
+#pragma once
+
+#include "byre/features/rolling_shutter.h"
+#include "byre/localisation/confirmation.h"
+#include "byre/localisation/odometry.h"
+#include "byre/mapping/anchored_trajectory.h"
+#include "byre/slam/hybrid_tracking.h"
+#include "byre/slam/motion_model.h"
+#include "byre/slam/registration.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// The keyframe that a tracked frame's pose is kept relative to.
+KeyframeId anchor_of(const HybridTrack& track);
+
+// What is known of where the robot is, and was: what a frame adds to that, and what changes of the map do to it. Reads
+// maps, and changes nothing but itself. Called from the session's thread.
+class Whereabouts {
+ public:
+  // on_offline_map: finds are to be confirmed, and sightings kept.
+  Whereabouts(const RegistrationOptions& registration, const HindsightOptions& hindsight, bool on_offline_map)
+      : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight) {}
+
+  bool has_pose() const { return has_pose_; }  // in the last frame
+  const Confirmation& confirmation() const { return confirmation_; }
+  const AnchoredTrajectory& trajectory() const { return trajectory_; }
+  const MotionModel& motion() const { return motion_; }
+  const Odometry& odometry() const { return odometry_; }
+  CameraMotion camera_motion() const { return {motion_.velocity(), scene_depth_}; }
+  // Time of the last believed pose in the reports' frame.
+  std::optional<Timestamp> last_believed() const { return last_believed_; }
+  // The pose was lost a moment ago, and it is known how the body has moved since.
+  bool may_be_led_back(Timestamp time) const;
+
+  // A frame later; last_from_body is how the body has moved, where that is known.
+  void tell(const std::optional<Pose>& last_from_body) { motion_.tell(last_from_body); }
+
+  struct TrackedPose {
+    const Frame& frame;
+    const HybridTrack& track;
+    bool from_nothing = false;
+    bool is_registered = false;
+    std::size_t segment = 0;
+  };
+  // What a tracked frame changed.
+  struct Progress {
+    double step = 0.0;               // metres, smooth
+    bool was_proven = false;         // the pose before, beyond doubt
+    bool was_ever_believed = false;  // a pose in the reports' frame before
+  };
+  Progress note(const TrackedPose& seen, const Rig& rig, const MapView& map);
+  // A segment of the online map begins with the last of these keyframes, made of this frame.
+  void begin(const std::vector<KeyframeId>& keyframes, std::size_t segment, const Rig& rig, const Map& online);
+  // The last frame has become a keyframe.
+  void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
+  void lose();
+
+  // Changes of the map, or of the camera.
+  void follow(const LengthChanges& changes);
+  void turn(const RigTurn& turn, const Map& online);
+  void turn_camera(const Pose& after_from_before);
+  void note_online_correction() { odometry_.remember_offset({}); }
+  // By what the map moved the last pose, after_from_before; empty where there is none.
+  std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
+
+  void settle_overdue(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_overdue(map, tracking); }
+  void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
+
+ private:
+  FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
+  double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+
+  // Constant after construction.
+  RegistrationOptions registration_;
+  bool on_offline_map_;
+
+  AnchoredTrajectory trajectory_;
+  MotionModel motion_;
+  Odometry odometry_;
+  Confirmation confirmation_;
+  std::optional<Timestamp> last_believed_;  // in the reports' frame
+  std::optional<Timestamp> last_proven_;    // in the reports' frame
+  bool has_pose_ = false;
+  double scene_depth_ = 1.0;  // metres, median of the points in the last frame
+};
+
+}  // namespace byre

@@ -1,0 +1,134 @@
+#include "byre/localisation/whereabouts.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/body_pose.h"
+#include "byre/slam/mission_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+// Frames that were tracked to their true poses, on a true map of every fourth.
+class TrueWhereabouts : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
+  Map map_ = true_map(mission_, 4, Origin::online);
+  Whereabouts whereabouts_{{}, {}, true};
+
+  HybridTrack track_of(std::size_t frame) const {
+    HybridTrack track;
+    track.tracked.camera_from_world = true_camera_from_world(mission_, frame);
+    track.tracked.reference = map_.keyframe_ids()[frame / 4];
+    track.offline_expected = 100;
+    track.offline_inliers = 50;
+    return track;
+  }
+  Whereabouts::Progress note(std::size_t frame, bool from_nothing = false) {
+    whereabouts_.tell({});
+    return whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0}, mission_.rig, map_);
+  }
+  // Found at a frame, and tracked until it is believed.
+  void find_and_believe(std::size_t frame) {
+    note(frame, true);
+    while (!whereabouts_.confirmation().is_believed()) note(++frame);
+  }
+  const Confirmation& confirmation() const { return whereabouts_.confirmation(); }
+};
+
+TEST_F(TrueWhereabouts, BelievesAFindAfterTheFramesThatOptionsSay) {
+  EXPECT_FALSE(whereabouts_.has_pose());
+  note(0, true);
+  EXPECT_TRUE(whereabouts_.has_pose());
+  const int frames = confirmation().frames_to_believe;
+  EXPECT_EQ(frames, RegistrationOptions{}.confirmations);
+  for (int i = 1; i <= frames; ++i) {
+    EXPECT_FALSE(whereabouts_.last_believed());
+    EXPECT_FALSE(note(static_cast<std::size_t>(i)).was_ever_believed);
+  }
+  EXPECT_EQ(whereabouts_.last_believed(), mission_.frames[static_cast<std::size_t>(frames)].time);
+  EXPECT_TRUE(note(static_cast<std::size_t>(frames) + 1).was_ever_believed);
+}
+
+TEST_F(TrueWhereabouts, ForgetsAFindThatIsLostBeforeItIsBelieved) {
+  note(0, true);
+  note(1);
+  whereabouts_.lose();
+  EXPECT_FALSE(whereabouts_.has_pose());
+  EXPECT_TRUE(whereabouts_.trajectory().empty());
+}
+
+TEST_F(TrueWhereabouts, KeepsWhatWasBelievedWhenThePoseIsLost) {
+  find_and_believe(0);
+  const std::size_t frames = whereabouts_.trajectory().size();
+  whereabouts_.lose();
+  EXPECT_EQ(whereabouts_.trajectory().size(), frames);
+}
+
+TEST_F(TrueWhereabouts, NeedNoProofAgainWhereThePoseWasProvenAMomentAgo) {
+  find_and_believe(0);
+  whereabouts_.lose();
+  note(6, true);
+  EXPECT_FALSE(confirmation().is_believed());
+  EXPECT_TRUE(confirmation().is_proven());
+}
+
+TEST_F(TrueWhereabouts, GoOnAsTheRobotMoved) {
+  find_and_believe(0);
+  const std::size_t last = whereabouts_.trajectory().size() - 1;
+  whereabouts_.tell({});
+  const Pose predicted =
+      whereabouts_.motion().predict(true_camera_from_world(mission_, last), mission_.rig,
+                                    to_seconds(mission_.frames[last + 1].time - mission_.frames[last].time));
+  EXPECT_THAT(predicted, PoseNear(true_camera_from_world(mission_, last + 1), 0.01, 0.01));
+}
+
+TEST_F(TrueWhereabouts, CountTheWayOfTrackedFramesButNotOfFinds) {
+  EXPECT_EQ(note(0, true).step, 0.0);
+  const double step = note(1).step;
+  EXPECT_NEAR(step,
+              (mission_.truth[1].world_from_body.translation - mission_.truth[0].world_from_body.translation).norm(),
+              1e-9);
+  whereabouts_.lose();
+  EXPECT_EQ(note(9, true).step, 0.0);
+  EXPECT_NEAR(whereabouts_.odometry().travelled(), step, 1e-12);
+}
+
+TEST_F(TrueWhereabouts, MoveWithTheMap) {
+  find_and_believe(0);
+  const Pose before = whereabouts_.odometry().map_from_body();
+  const Pose smooth = whereabouts_.odometry().odometry_from_body();
+  const Pose after_from_before{Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};
+  for (const KeyframeId id : map_.keyframe_ids()) {
+    map_.move_keyframe(id, map_.camera_from_world(id) * inverse(after_from_before), Matrix6::Identity());
+  }
+  const auto correction = whereabouts_.follow_map(mission_.rig, map_);
+  ASSERT_TRUE(correction);
+  EXPECT_THAT(*correction, PoseNear(after_from_before, 1e-9, 1e-9));
+  EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(after_from_before * before, 1e-9, 1e-9));
+  EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-9, 1e-9));
+}
+
+TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
+  find_and_believe(0);
+  const std::size_t next = whereabouts_.trajectory().size();
+  whereabouts_.tell(Pose{});
+  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time)) << "it has its pose";
+  whereabouts_.lose();
+  EXPECT_TRUE(whereabouts_.may_be_led_back(mission_.frames[next].time));
+  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time + std::chrono::seconds(6)));
+  whereabouts_.tell({});
+  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time));
+}
+
+TEST_F(TrueWhereabouts, BelieveASegmentThatBeginsAtOnce) {
+  whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
+  EXPECT_TRUE(whereabouts_.has_pose());
+  EXPECT_TRUE(confirmation().is_believed());
+  EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(Pose{}, 1e-12, 1e-12));
+  whereabouts_.lose();
+  EXPECT_EQ(whereabouts_.trajectory().size(), 1u);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "byre/map/map_view.h"
+#include "byre/mapping/segments.h"
+#include "byre/slam/global_mapping.h"
+#include "byre/slam/hindsight.h"
+#include "byre/trajectory.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// The pose of a keyframe now, in either map, of a removed one too.
+Pose camera_from_world(const MapView& map, KeyframeId id);
+
+// The rectified camera of one rig, as another calibration has it.
+struct RigTurn {
+  Pose after_from_before;
+  int rig = 0;  // index into Map::rigs
+  Rig after;
+};
+
+// How the camera of an online keyframe was turned: not at all where it is of another rig.
+Pose turn_of(const RigTurn& turn, KeyframeId id, const Map& online);
+
+// Where a frame lay relative to a keyframe, so that it moves along when mapping moves that one.
+struct AnchoredPose {
+  Timestamp time{};
+  KeyframeId keyframe;
+  Pose camera_from_keyframe;
+  std::size_t segment = 0;
+};
+
+Pose camera_from_world(const MapView& map, const AnchoredPose& pose);
+
+// One pose for each frame that had one, in order of time. The last of them may not be believed yet.
+class AnchoredTrajectory {
+ public:
+  explicit AnchoredTrajectory(const HindsightOptions& hindsight) : hindsight_(hindsight) {}
+
+  bool empty() const { return poses_.empty(); }
+  std::size_t size() const { return poses_.size(); }
+  const AnchoredPose& back() const { return poses_.back(); }
+  const AnchoredPose& operator[](std::size_t number) const { return poses_[number]; }
+  // The camera's velocity from the last pose to one at a later time, see MotionModel; zero where no time went by.
+  Vector6 velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const;
+  bool ends_in_doubt() const { return poses_.size() > believed_end_; }
+
+  void add(const AnchoredPose& pose) { poses_.push_back(pose); }
+  // What the last frame saw is kept, to refine its pose once mapping has settled.
+  void keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked);
+  // The last frame has become a keyframe.
+  void anchor_last_to(KeyframeId keyframe);
+  void believe_all() { believed_end_ = poses_.size(); }
+  void drop_doubtful();
+
+  // What was measured relative to keyframes, in lengths that have changed since.
+  void follow(const LengthChanges& changes);
+  // The cameras of a rig were turned, and those of its keyframes with them.
+  void turn(const RigTurn& turn, const Map& online);
+  // The camera is another one from here on; keyframes stay as they are.
+  void turn_camera(const Pose& after_from_before);
+
+  // Refines the pose of the oldest frame whose sightings have been kept long enough, and of all that are left.
+  void settle_overdue(const MapView& map, const TrackOptions& tracking);
+  void settle_all(const MapView& map, const TrackOptions& tracking);
+
+  // The poses in the reports' frame. world_from_body.
+  Trajectory in_map_frame(const MapView& map, const Segments& segments, const Rig& rig) const;
+
+ private:
+  void settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking);
+
+  std::vector<AnchoredPose> poses_;
+  std::size_t believed_end_ = 0;  // poses before are believed
+  Hindsight hindsight_;           // numbers are indices into the poses
+};
+
+}  // namespace byre

@@ -1,0 +1,92 @@
+#include "byre/mapping/anchored_trajectory.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/body_pose.h"
+#include "byre/slam/mission_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::SizeIs;
+
+const Pose kAhead = exp_pose((Vector6() << 0.1, 0.0, -0.5, 0.0, 0.1, 0.0).finished());  // camera_from_keyframe
+
+// A map of two keyframes, and a trajectory of one frame beside each.
+class AnchoredFrames : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
+  Map map_ = true_map(mission_, 8, Origin::online);
+  const std::vector<KeyframeId> keyframes_ = map_.keyframe_ids();
+  AnchoredTrajectory trajectory_{HindsightOptions{}};
+  Segments segments_;
+
+  void SetUp() override {
+    segments_.begin_in_map_frame(0);
+    for (const KeyframeId id : keyframes_) trajectory_.add({time_of(id), id, kAhead, 0});
+  }
+  Timestamp time_of(KeyframeId id) const { return map_.find_keyframe(id)->frame.time; }
+};
+
+TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
+  const Pose moved = exp_pose((Vector6() << 1.0, 2.0, 3.0, 0.1, 0.2, 0.3).finished());
+  map_.move_keyframe(keyframes_[1], moved, Matrix6::Identity());
+  const Trajectory poses = trajectory_.in_map_frame(map_, segments_, mission_.rig);
+  ASSERT_THAT(poses, SizeIs(2));
+  EXPECT_THAT(poses[0].world_from_body,
+              PoseNear(body_pose(mission_.rig, kAhead * map_.camera_from_world(keyframes_[0])), 1e-12, 1e-12));
+  EXPECT_THAT(poses[1].world_from_body, PoseNear(body_pose(mission_.rig, kAhead * moved), 1e-12, 1e-12));
+}
+
+TEST_F(AnchoredFrames, AreToldWhereTheirSegmentLiesInTheMapFrameAlone) {
+  segments_.begin_in_own_frame(7);
+  trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 1});
+  EXPECT_THAT(trajectory_.in_map_frame(map_, segments_, mission_.rig), SizeIs(2));
+  segments_.join_map_frame(segments_.frame());
+  EXPECT_THAT(trajectory_.in_map_frame(map_, segments_, mission_.rig), SizeIs(3));
+}
+
+TEST_F(AnchoredFrames, AreDroppedWhereTheyAreNotBelieved) {
+  trajectory_.believe_all();
+  trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 0});
+  EXPECT_TRUE(trajectory_.ends_in_doubt());
+  trajectory_.drop_doubtful();
+  EXPECT_EQ(trajectory_.size(), 2u);
+  EXPECT_FALSE(trajectory_.ends_in_doubt());
+}
+
+TEST_F(AnchoredFrames, FollowTheLengthsAroundTheirKeyframe) {
+  trajectory_.follow({{keyframes_[1], 2.0}});
+  EXPECT_EQ(trajectory_[0].camera_from_keyframe, kAhead);
+  EXPECT_THAT(trajectory_[1].camera_from_keyframe.translation, PointNear(2.0 * kAhead.translation, 1e-12));
+  EXPECT_EQ(trajectory_[1].camera_from_keyframe.rotation.coeffs(), kAhead.rotation.coeffs());
+}
+
+TEST_F(AnchoredFrames, StayInTheirPlaceInATurnedCameraWhetherItsKeyframesTurnOrNot) {
+  const RigTurn turn{{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()}, 0, mission_.rig};
+  const Pose before = camera_from_world(map_, trajectory_[1]);
+  AnchoredTrajectory together = trajectory_;
+  together.turn(turn, map_);
+  EXPECT_THAT(together[1].camera_from_keyframe * turn.after_from_before * map_.camera_from_world(keyframes_[1]),
+              PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
+  trajectory_.turn_camera(turn.after_from_before);
+  EXPECT_THAT(camera_from_world(map_, trajectory_[1]), PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
+}
+
+TEST_F(AnchoredFrames, TellTheVelocityFromTheLastOfThem) {
+  const Vector6 velocity = (Vector6() << 0.1, 0.0, 1.0, 0.0, 0.2, 0.0).finished();
+  const Timestamp later = trajectory_.back().time + std::chrono::milliseconds(100);
+  const Pose camera_from_map = exp_pose(0.1 * velocity) * camera_from_world(map_, trajectory_.back());
+  EXPECT_LT((trajectory_.velocity_to(later, camera_from_map, map_) - velocity).norm(), 1e-9);
+  EXPECT_TRUE(trajectory_.velocity_to(trajectory_.back().time, camera_from_map, map_).isZero());
+}
+
+TEST_F(AnchoredFrames, LieWhereTheKeyframeDoesThatTheyBecome) {
+  trajectory_.anchor_last_to(keyframes_[0]);
+  EXPECT_EQ(trajectory_.back().keyframe, keyframes_[0]);
+  EXPECT_EQ(trajectory_.back().camera_from_keyframe, Pose{});
+}
+
+}  // namespace
+}  // namespace byre

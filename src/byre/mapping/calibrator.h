@@ -1,0 +1,54 @@
+#pragma once
+
+#include "byre/features.h"
+#include "byre/geometry/rectified_change.h"
+#include "byre/slam/self_calibration.h"
+#include "byre/workers/executor.h"
+
+#include <memory>
+#include <optional>
+
+namespace byre {
+
+// Refines the calibration of a session's cameras while it runs: decides when enough new was seen, and corrects the
+// features of frames that were rectified by the calibration given. Called from the session's thread.
+class Calibrator {
+ public:
+  Calibrator(const Calibration& given, const SelfCalibrationOptions& options) : options_(options), state_{given, {}} {
+    state_.change.setZero();
+  }
+
+  const CalibrationState& state() const { return state_; }
+  const std::optional<RefinedCalibration>& result() const { return result_; }  // the newest, empty until there is one
+  const SelfCalibrationOptions& options() const { return options_; }
+
+  // The frame as the present calibration has it; itself while that is the one given.
+  Frame corrected(const Frame& frame) const;
+
+  // Whether a map of so many keyframes has grown enough since the last time for another look. The first ones are close
+  // together, as all that was trusted before a calibration is found to be wrong was trusted wrongly.
+  bool is_due(int keyframes) const {
+    constexpr int kFirst = 7, kStep = 3, kCloseUntil = 28;
+    if (!last_keyframes_) return keyframes >= kFirst;
+    return keyframes >= (*last_keyframes_ < kCloseUntil ? *last_keyframes_ + kStep : 2 * *last_keyframes_);
+  }
+  // The same at the end, when there is no other time. A look that the end cut short has no result.
+  bool is_worth_a_last_look(int keyframes) const {
+    return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;
+  }
+  void note_attempt(int keyframes) { last_keyframes_ = keyframes; }
+
+  // From now on that is the present calibration, and from_given how features of the one given change.
+  void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
+  // The same. Returns how what was seen by the one before changes.
+  RectifiedChange take_over(const RefinedCalibration& refined);
+
+ private:
+  SelfCalibrationOptions options_;  // constant after construction
+  CalibrationState state_;
+  std::optional<RefinedCalibration> result_;
+  std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the one given
+  std::optional<int> last_keyframes_;          // map's size at the last look
+};
+
+}  // namespace byre

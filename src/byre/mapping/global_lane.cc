@@ -1,0 +1,50 @@
+#include "byre/mapping/global_lane.h"
+
+#include <cassert>
+#include <utility>
+
+namespace byre {
+
+void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops) {
+  assert(idle());
+  snapshot_ = std::make_shared<const MapWindow>(whole_map(map));
+  worker_.start([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
+    return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
+  });
+}
+
+void GlobalLane::calibrate(const MapView& map, const CalibrationState& state, int rig,
+                           const SelfCalibrationOptions& options) {
+  assert(idle());
+  const auto snapshot = std::make_shared<const MapWindow>(whole_map(map));
+  worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_] {
+    return self_calibrate(*snapshot, state, rig, options, [&is_hurried] { return is_hurried->load(); });
+  });
+}
+
+std::optional<RefinedCalibration> GlobalLane::take_calibration() {
+  if (!outcome_ || !std::holds_alternative<Refinement>(*outcome_)) return std::nullopt;
+  return std::get<Refinement>(*std::exchange(outcome_, std::nullopt));
+}
+
+void GlobalLane::collect() {
+  keep(worker_.collect());
+}
+
+void GlobalLane::finish() {
+  keep(worker_.finish());
+}
+
+void GlobalLane::keep(std::optional<Worker<Outcome>::Finished> finished) {
+  if (finished) outcome_ = std::move(finished->result);
+}
+
+AppliedCorrection GlobalLane::apply(Map& online) {
+  assert(is_waiting());
+  MapDelta correction = std::get<MapDelta>(*std::exchange(outcome_, std::nullopt));
+  LengthChanges changes = apply_correction(correction, *snapshot_, online);
+  snapshot_.reset();
+  return {std::move(correction), std::move(changes)};
+}
+
+}  // namespace byre

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "byre/slam/global_mapping.h"
+#include "byre/slam/self_calibration.h"
+#include "byre/workers/worker.h"
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace byre {
+
+struct AppliedCorrection {
+  MapDelta delta;
+  LengthChanges length_changes;  // what lies relative to a keyframe is to follow them
+};
+
+// Corrections of the whole map, and of its calibration, one at a time, beside tracking and local mapping. A finished
+// correction waits until local mapping has nothing in flight, for what that works on would be out of date.
+class GlobalLane {
+ public:
+  GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options)
+      : options_(options), worker_(std::move(executor)) {}
+
+  bool idle() const { return worker_.idle() && !outcome_; }
+  bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
+
+  // Bends the map to close these loops. Precondition: idle().
+  void close_loops(const Map& map, const std::vector<LoopEdge>& loops);
+
+  // Looks what the map says of the calibration of a rig of its. Precondition: idle().
+  void calibrate(const MapView& map, const CalibrationState& state, int rig, const SelfCalibrationOptions& options);
+  std::optional<RefinedCalibration> take_calibration();  // empty while there is none
+
+  void collect();                        // once per frame
+  void finish();                         // waits for the job in flight
+  void hurry() { *is_hurried_ = true; }  // the job in flight, and those to come, end soon with what they have reached
+  AppliedCorrection apply(Map& online);  // precondition: is_waiting()
+
+ private:
+  using Refinement = std::optional<RefinedCalibration>;
+  using Outcome = std::variant<MapDelta, Refinement>;
+
+  void keep(std::optional<Worker<Outcome>::Finished> finished);
+
+  GlobalMappingOptions options_;  // constant after construction
+
+  // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
+  Worker<Outcome> worker_;
+  std::shared_ptr<const MapWindow> snapshot_;  // map that is corrected, as it was
+  std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
+  std::optional<Outcome> outcome_;                                                              // not taken over yet
+};
+
+}  // namespace byre

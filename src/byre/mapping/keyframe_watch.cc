@@ -1,0 +1,44 @@
+#include "byre/mapping/keyframe_watch.h"
+
+#include "byre/mapping/anchored_trajectory.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+bool has_disparities(const Frame& frame) {
+  return std::ranges::any_of(frame.features->keypoints(), &Keypoint::has_disparity);
+}
+
+}  // namespace
+
+void KeyframeWatch::note_frame(const Frame& frame, const Rig& rig) {
+  ++frames_since_keyframe_;
+  frames_without_depth_ = rig.is_stereo() && !has_disparities(frame) ? frames_without_depth_ + 1 : 0;
+}
+
+void KeyframeWatch::note_track(KeyframeId reference, int inliers) {
+  if (reference_ != reference) fresh_inliers_ = inliers;
+  reference_ = reference;
+}
+
+void KeyframeWatch::restart() {
+  frames_since_keyframe_ = 0;
+  reference_.reset();
+}
+
+KeyframeEvidence KeyframeWatch::evidence(const HybridTrack& track, const MapView& map, int pending) const {
+  KeyframeEvidence evidence;
+  evidence.fresh_inliers = fresh_inliers_;
+  evidence.frames_since_last = frames_since_keyframe_;
+  evidence.without_depth = frames_without_depth_;
+  evidence.pending = pending;
+  evidence.offline_inliers = track.offline_inliers;
+  const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(map, track.tracked.reference));
+  evidence.turn = rotation_log(motion.rotation).norm();
+  evidence.shift_share = motion.translation.norm() / std::max(1e-3, median_depth(track.tracked, map));
+  return evidence;
+}
+
+}  // namespace byre

@@ -1,0 +1,32 @@
+#include "byre/mapping/loop_closer.h"
+
+#include <utility>
+
+namespace byre {
+
+std::optional<LoopHypothesis> LoopCloser::look(const Look& now, const Map& online, const PlaceIndex& places) {
+  if (++frames_since_loop_ < kMinFramesBetweenLoops) return std::nullopt;
+  if (!hypothesis_) {
+    if (now.is_new) hypothesis_ = find_loop(online, places, now.newest, options_);
+    return std::nullopt;
+  }
+  hypothesis_ = check_loop(*hypothesis_, now.frame, now.camera_from_world, now.rig, online);
+  if (is_refuted(*hypothesis_)) hypothesis_.reset();
+  if (!hypothesis_ || !is_confirmed(*hypothesis_)) return std::nullopt;
+  frames_since_loop_ = 0;
+  return std::exchange(hypothesis_, std::nullopt);
+}
+
+void LoopCloser::follow(const LengthChanges& changes) {
+  for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
+}
+
+void LoopCloser::turn(const RigTurn& turn, const Map& online) {
+  for (LoopEdge& loop : loops_) {
+    loop.keyframe_from_place =
+        turn_of(turn, loop.keyframe, online) * loop.keyframe_from_place * inverse(turn_of(turn, loop.place, online));
+  }
+  forget_hypothesis();
+}
+
+}  // namespace byre

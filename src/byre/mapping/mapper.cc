@@ -1,0 +1,257 @@
+#include "byre/mapping/mapper.h"
+
+#include "byre/slam/keyframes.h"
+
+#include <cassert>
+#include <utility>
+
+namespace byre {
+
+Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
+               std::unique_ptr<Executor> global, MapperKnowledge knowledge)
+    : options_(options),
+      offline_(std::move(knowledge.offline)),
+      local_(std::move(local)),
+      global_(std::move(global), {options.mapping}),
+      loop_closer_(options.loops) {
+  if (knowledge.vocabulary) places_.emplace(*std::move(knowledge.vocabulary));
+  if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
+}
+
+std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
+  return newest_ && segments_.is_in_present_frame(*newest_) ? newest_ : std::nullopt;
+}
+
+void Mapper::continue_map(Map online) {
+  assert(places_ && !offline_ && online.keyframe_count() > 0);
+  online_ = std::move(online);
+  initialiser_.reset();
+  for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
+  newest_ = online_.keyframe_ids().back();
+  segments_.begin_in_map_frame(0);
+}
+
+void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
+  calibrator_.emplace(given, options);
+}
+
+Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world) {
+  Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world) : begin_monocular(frame);
+  if (begun.keyframes.empty()) return begun;
+  newest_ = begun.keyframes.back();
+  for (const KeyframeId id : begun.keyframes) index_place(id);
+  ++revision_;
+  return begun;
+}
+
+// In a mission its place in the offline map is not known yet.
+Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world) {
+  auto first = initialise_stereo(frame, rig, options_.min_initial_points);
+  if (!first) return {};
+  offline_ ? segments_.begin_in_own_frame(next_keyframe_number())
+           : segments_.begin_in_map_frame(next_keyframe_number());
+  if (online_.keyframe_count() == 0) {
+    online_ = *std::move(first);
+    return {{online_.keyframe_ids().front()}};
+  }
+  TrackedFrame tracked;
+  tracked.camera_from_world = camera_from_world;
+  Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig));
+  keyframe.parent.reset();
+  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
+  add_stereo_points(online_, id);
+  return {{id}};
+}
+
+Mapper::Beginning Mapper::begin_monocular(const Frame& frame) {
+  MonocularAttempt attempt = initialiser_->try_start(frame);
+  if (!attempt.start) return {{}, attempt.failure};
+  initialiser_.reset();
+  online_ = std::move(attempt.start->map);
+  segments_.begin_in_map_frame(0);
+  pending_.push_back(attempt.start->second);
+  return {{attempt.start->first, attempt.start->second}, attempt.failure};
+}
+
+void Mapper::begin_where_found(const HybridTrack& found) {
+  if (found.online_reference) {
+    segments_.begin_beside(*found.online_reference, next_keyframe_number());
+  } else {
+    segments_.begin_in_map_frame(next_keyframe_number());
+  }
+}
+
+KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig) {
+  Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig));
+  keyframe.recording = options_.recording;
+  keyframe.parent = track.online_reference;
+  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
+  add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
+  index_place(id);
+  newest_ = id;
+  ++revision_;
+  pending_.push_back(id);
+  start_job();
+  return id;
+}
+
+// New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
+// found there too.
+bool Mapper::look_for_loop(const LoopCloser::Look& now) {
+  if (!places_ || !global_.idle()) return false;
+  const auto loop = loop_closer_.look(now, online_, *places_);
+  if (loop) settle_loop(*loop);
+  return loop.has_value();
+}
+
+// In a mission it is the offline map that large drift is corrected by.
+void Mapper::settle_loop(const LoopHypothesis& loop) {
+  const std::optional<LoopEdge> edge = edge_of(loop, online_);
+  if (!edge) return;  // found redundant meanwhile
+  const bool fusing_will_do = apparent_drift(loop, online_) <= options_.max_drift_to_fuse;
+  if (!fusing_will_do && offline_) return;
+  loop_closer_.add(*edge);
+  if (fusing_will_do) {
+    pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
+  } else {
+    global_.close_loops(online_, loops());
+  }
+}
+
+std::optional<double> Mapper::collect() {
+  const auto finished = local_.collect();
+  if (finished) take_over(finished->result);
+  global_.collect();
+  if (!finished) return std::nullopt;
+  return finished->seconds;
+}
+
+void Mapper::take_over(const MapDelta& delta) {
+  apply(delta, online_);
+  ++revision_;
+  forget_places(delta);
+}
+
+// Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
+bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
+  if (!shutter.has_change() || !local_.idle() || !global_.idle()) return false;
+  shutter.take_over(rig, online_);
+  ++revision_;
+  loop_closer_.forget_hypothesis();
+  if (!offline_ && online_.keyframe_count() > 1) global_.close_loops(online_, loops());
+  return true;
+}
+
+// What is in flight was measured by the calibration before, so that it must be over.
+std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
+  if (!calibrator_ || !local_.idle()) return std::nullopt;
+  if (const auto refined = global_.take_calibration()) {
+    constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
+    const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
+    const RigTurn turn = recalibrate(*refined, rig);
+    if (is_large && global_.idle()) global_.close_loops(online_, loops());
+    return turn;
+  }
+  if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
+  calibrator_->note_attempt(online_.keyframe_count());
+  global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig), calibrator_->options());
+  return std::nullopt;
+}
+
+// The rectified camera turns, as it is made of the real ones in another way.
+RigTurn Mapper::recalibrate(const RefinedCalibration& refined, const Rig& rig) {
+  const int index = online_.add_rig(rig);
+  const RectifiedChange change = calibrator_->take_over(refined);
+  online_.recalibrate(index, change);
+  const RigTurn turn{change.after_from_before(), index, change.rig()};
+  loop_closer_.turn(turn, online_);
+  ++revision_;
+  return turn;
+}
+
+std::optional<LengthChanges> Mapper::take_over_correction() {
+  if (!global_.is_waiting() || !local_.idle()) return std::nullopt;
+  AppliedCorrection applied = global_.apply(online_);
+  forget_places(applied.delta);
+  loop_closer_.follow(applied.length_changes);
+  ++revision_;
+  return std::move(applied.length_changes);
+}
+
+void Mapper::correct_later(const OnlineCorrection& correction) {
+  assert(!waiting_correction_);
+  waiting_correction_ = correction;
+}
+
+bool Mapper::correct_online() {
+  if (!waiting_correction_ || !local_.idle()) return false;
+  const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
+  std::vector<KeyframeId> path = online_.keyframe_ids();
+  std::erase_if(path, [&](KeyframeId id) {
+    return id.number < correction.first_keyframe || segments_.frame(id) != correction.frame;
+  });
+  apply(correction_of(online_, path, correction.offline_from_online, correction.shape), online_);
+  segments_.join_map_frame(correction.frame);
+  ++revision_;
+  if (newest_ && pending_.empty()) pending_.push_back(*newest_);
+  return true;
+}
+
+// A waiting correction goes first: what a job would work on is about to move.
+void Mapper::start_job() {
+  if (pending_.empty() || !local_.idle() || global_.is_waiting() || waiting_correction_) return;
+  MapWindow window = cut_window(map(), pending_, options_.mapping.window);
+  pending_.clear();
+  if (window.keyframes.empty()) return;
+  local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+}
+
+void Mapper::index_place(KeyframeId id) {
+  if (!places_) return;
+  online_.set_words(id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features));
+  places_->add(id, online_.find_keyframe(id)->words);
+}
+
+void Mapper::forget_places(const MapDelta& delta) {
+  if (!places_) return;
+  for (const OnlineKeyframeId id : delta.removed_keyframes) places_->remove(id);
+}
+
+LengthChanges Mapper::finish() {
+  LengthChanges lengths;  // changes by the one correction that may be in flight
+  while (true) {
+    if (const auto finished = local_.finish()) take_over(finished->result);
+    global_.finish();
+    if (auto changes = take_over_correction()) lengths = *std::move(changes);
+    correct_online();
+    if (pending_.empty()) return lengths;
+    start_job();
+  }
+}
+
+std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
+  if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
+  const MapWindow whole = whole_map(map());
+  const auto refined =
+      self_calibrate(whole, calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
+  if (!refined) return std::nullopt;
+  return recalibrate(*refined, rig);
+}
+
+FinishReport Mapper::finish_map(const FinishHooks& hooks) {
+  assert(places_);
+  FinishReport report = byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, {}}, hooks);
+  loop_closer_.follow(report.length_changes);
+  return report;
+}
+
+LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
+  assert(offline_);
+  const MapWindow whole = whole_map(map());
+  const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
+  LengthChanges changes = apply_correction(adjusted, whole, online_);
+  loop_closer_.follow(changes);
+  return changes;
+}
+
+}  // namespace byre

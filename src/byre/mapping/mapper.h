@@ -1,0 +1,123 @@
+#pragma once
+
+#include "byre/mapping/calibrator.h"
+#include "byre/mapping/global_lane.h"
+#include "byre/mapping/loop_closer.h"
+#include "byre/mapping/mapper_options.h"
+#include "byre/mapping/segments.h"
+#include "byre/mapping/shutter.h"
+#include "byre/slam/hybrid_tracking.h"
+#include "byre/slam/offline_map.h"
+#include "byre/slam/registration.h"
+#include "byre/workers/worker.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// Where a part of the online map really lies in the offline one.
+struct OnlineCorrection {
+  Segments::Frame frame = Segments::kMapFrame;
+  std::uint32_t first_keyframe = 0;  // number of the first one in that frame that moves
+  Pose offline_from_online;
+  CorrectionShape shape = CorrectionShape::spread;
+};
+
+// A vocabulary for places, and an offline map that the online one lies on; either may be missing.
+struct MapperKnowledge {
+  std::optional<Vocabulary> vocabulary;
+  std::shared_ptr<const OfflineMap> offline;
+};
+
+// Owns the online map, and is the only one that changes it: with new keyframes at once, with what jobs found once they
+// are done. Called from the session's thread.
+class Mapper {
+ public:
+  Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
+         std::unique_ptr<Executor> global, MapperKnowledge knowledge);
+
+  MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
+  const Map& online() const { return online_; }
+  const Segments& segments() const { return segments_; }
+  const PlaceIndex* places() const { return places_ ? &*places_ : nullptr; }  // index of online keyframes
+  const std::vector<LoopEdge>& loops() const { return loop_closer_.loops(); }
+  const Calibrator* calibrator() const { return calibrator_ ? &*calibrator_ : nullptr; }
+  std::optional<KeyframeId> newest_keyframe() const { return newest_; }
+  std::optional<KeyframeId> newest_in_present_frame() const;
+  int pending() const { return static_cast<int>(pending_.size()); }  // keyframes that mapping has not worked on
+  int revision() const { return revision_; }                         // grows whenever points or keyframes change
+  bool has_correction() const { return waiting_correction_.has_value(); }
+
+  // Before the first frame.
+  void continue_map(Map online);
+  void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
+
+  // Begins a segment with a frame, seen from there or, in an empty map, from where the map's frame is. One camera knows
+  // no scale: it begins one map, and beside another it would not know how large what it sees is.
+  struct Beginning {
+    std::vector<KeyframeId> keyframes;  // empty: no segment was begun
+    TwoViewFailure failure = TwoViewFailure::none;
+  };
+  Beginning begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world);
+  bool can_begin(const Rig& rig) const { return rig.is_stereo() || initialiser_; }
+  // Begins one where a frame was found from nothing.
+  void begin_where_found(const HybridTrack& found);
+  // The present segment does not lie in the map's frame as was believed.
+  void leave_map_frame() { segments_.leave_map_frame(); }
+
+  KeyframeId add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig);
+  // Once for each frame, unless offline points hold it. Whether a loop was found.
+  bool look_for_loop(const LoopCloser::Look& now);
+  void forget_loop() { loop_closer_.forget_hypothesis(); }
+
+  // Once for each frame, in this order: what jobs came to is taken over where nothing in flight stands against it.
+  std::optional<double> collect();                               // seconds of the local job taken over
+  bool take_over_readout(Shutter& shutter, const Rig& rig);      // keyframes seen by a better readout time
+  std::optional<RigTurn> take_over_calibration(const Rig& rig);  // keyframes seen by a better calibration
+  std::optional<LengthChanges> take_over_correction();           // a correction of the whole map
+  void correct_later(const OnlineCorrection& correction);        // precondition: !has_correction()
+  bool correct_online();                                         // whether a waiting correction was carried out
+  void start_job();                                              // job for pending keyframes
+
+  void hurry() { global_.hurry(); }  // a correction of the whole map ends soon, with what it has reached
+
+  // After the last frame. What jobs still have to give, then the last steps, with those changes of length that poses
+  // relative to keyframes are to follow.
+  LengthChanges finish();
+  std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
+  FinishReport finish_map(const FinishHooks& hooks);
+  LengthChanges adjust_around_offline(const FinishHooks& hooks);
+
+ private:
+  Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world);
+  Beginning begin_monocular(const Frame& frame);
+  void take_over(const MapDelta& delta);
+  RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
+  void settle_loop(const LoopHypothesis& loop);
+  void index_place(KeyframeId id);
+  void forget_places(const MapDelta& delta);
+  std::uint32_t next_keyframe_number() const { return newest_ ? newest_->number + 1 : 0; }
+
+  // Constant after construction.
+  MapperOptions options_;
+  std::shared_ptr<const OfflineMap> offline_;
+
+  Worker<MapDelta> local_;
+  GlobalLane global_;
+  std::optional<MonocularInitialiser> initialiser_;  // until there is a map, with a rig without a baseline
+  std::optional<Calibrator> calibrator_;
+  Map online_{Origin::online};
+  int revision_ = 0;
+  Segments segments_;
+  std::optional<PlaceIndex> places_;
+  LoopCloser loop_closer_;
+  std::optional<KeyframeId> newest_;
+  std::vector<KeyframeId> pending_;
+  std::optional<OnlineCorrection> waiting_correction_;  // until mapping has nothing in flight
+};
+
+}  // namespace byre

@@ -1,0 +1,116 @@
+#include "byre/mapping/mapper.h"
+
+#include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/place_scene.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::IsEmpty;
+
+class MapperOfAMission : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = quarter_circle({});
+
+  Mapper mapper(std::unique_ptr<Executor> local, MapperKnowledge knowledge = {}) const {
+    return {mission_.rig, {}, std::move(local), make_inline_executor(), std::move(knowledge)};
+  }
+  Pose true_pose(std::size_t frame) const {  // in the map of the first frame
+    return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
+  }
+  // A frame tracked to its true pose on all that the newest keyframe sees.
+  HybridTrack track(const Mapper& mapper, std::size_t frame) const {
+    const auto points = local_points(mapper.map(), *mapper.newest_keyframe(), 15);
+    HybridTrack result;
+    result.tracked =
+        byre::track(mission_.frames[frame], true_pose(frame), mission_.rig, mapper.map(), points, {}).value();
+    result.online_reference = result.tracked.reference;
+    return result;
+  }
+};
+
+TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
+  Mapper mapper = this->mapper(make_inline_executor());
+  EXPECT_FALSE(mapper.newest_keyframe());
+  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  ASSERT_EQ(begun.keyframes.size(), 1u);
+  EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[0]);
+  EXPECT_TRUE(mapper.segments().is_registered());
+  EXPECT_GT(mapper.online().point_count(), 100);
+}
+
+TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
+  Mapper mapper = this->mapper(make_inline_executor());
+  const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
+  EXPECT_THAT(mapper.begin(blank, mission_.rig, Pose{}).keyframes, IsEmpty());
+  EXPECT_TRUE(mapper.segments().empty());
+  EXPECT_EQ(mapper.revision(), 0);
+}
+
+TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
+  Mapper mapper = this->mapper(make_paced_executor(2));
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  const int begun = mapper.revision();
+  mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  const int added = mapper.revision();
+  EXPECT_GT(added, begun);
+  EXPECT_EQ(mapper.pending(), 0) << "the job has it";
+  EXPECT_FALSE(mapper.collect());
+  EXPECT_EQ(mapper.revision(), added);
+  EXPECT_TRUE(mapper.collect());
+  EXPECT_GT(mapper.revision(), added);
+  EXPECT_THAT(find_faults(mapper.online()), IsEmpty());
+}
+
+TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
+  Mapper mapper = this->mapper(make_paced_executor(5));
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  mapper.add_keyframe(mission_.frames[8], track(mapper, 8), mission_.rig);
+  EXPECT_EQ(mapper.pending(), 1);
+  mapper.finish();
+  EXPECT_EQ(mapper.pending(), 0);
+}
+
+TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
+  Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  EXPECT_FALSE(mapper.segments().is_registered()) << "nobody knows yet where it lies";
+  const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  const Pose offline_from_online{rotation_exp({0.0, 0.0, 0.4}), {1.0, 2.0, 0.0}};
+  mapper.correct_later({mapper.segments().frame(), 0, offline_from_online, CorrectionShape::rigid});
+  EXPECT_TRUE(mapper.has_correction());
+  EXPECT_FALSE(mapper.correct_online()) << "a job works on what would move";
+  mapper.collect();
+  mapper.collect();
+  const Pose before = mapper.online().camera_from_world(id);
+  EXPECT_TRUE(mapper.correct_online());
+  EXPECT_FALSE(mapper.has_correction());
+  EXPECT_TRUE(mapper.segments().is_registered());
+  EXPECT_THAT(mapper.online().camera_from_world(id), PoseNear(before * inverse(offline_from_online), 1e-9, 1e-9));
+}
+
+TEST(MapperOfOneCamera, BeginsOneMap) {
+  Rig rig = simulated_rig();
+  rig.baseline = 0.0;
+  SimulationOptions options;
+  options.landmarks = 8000;
+  options.noise_seed = 2;
+  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(120, 10.0, 2.0, 1.0), options);
+  Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
+  EXPECT_TRUE(mapper.can_begin(rig));
+  std::size_t frame = 0;
+  Mapper::Beginning begun;
+  while (begun.keyframes.empty() && frame < mission.frames.size()) {
+    begun = mapper.begin(mission.frames[frame++], rig, Pose{});
+  }
+  ASSERT_EQ(begun.keyframes.size(), 2u);
+  EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[1]);
+  EXPECT_EQ(mapper.pending(), 1) << "its points wait for mapping";
+  EXPECT_FALSE(mapper.can_begin(rig));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,43 @@
+#include "byre/mapping/shutter.h"
+
+#include <memory>
+
+namespace byre {
+
+void Shutter::refine(const RefinedCalibration& known) {
+  known_ = known;
+  estimator_.emplace(readout_time_);
+}
+
+std::optional<RefinedCalibration> Shutter::refined(std::optional<RefinedCalibration> otherwise) const {
+  if (!known_ || readout_time_ == known_->calibration.readout_time) return otherwise;
+  if (!otherwise) otherwise = known_;
+  otherwise->calibration.readout_time = readout_time_;
+  return otherwise;
+}
+
+Frame Shutter::corrected(const Frame& frame, const Rig& rig, const CameraMotion& motion) {
+  motion_ = motion;
+  if (!is_rolling() || motion.velocity.isZero(0.0)) return frame;
+  Frame result = frame;
+  result.features = std::make_shared<const Features>(seen_at_once(*frame.features, rig, motion, readout_time_));
+  return result;
+}
+
+void Shutter::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
+                   const Vector6& velocity) {
+  if (!estimator_ || has_change()) return;
+  estimator_->note(readout_evidence(frame, rig, tracked, map, velocity));
+}
+
+void Shutter::take_over(const Rig& rig, Map& online) {
+  const double change = estimator_->readout_time() - readout_time_;
+  for (const auto& [id, motion] : motions_) {
+    const Keyframe* const keyframe = online.find_keyframe(id);
+    if (keyframe == nullptr) continue;
+    online.move_features(id, seen_at_once(*keyframe->frame.features, rig, motion, change));
+  }
+  readout_time_ = estimator_->readout_time();
+}
+
+}  // namespace byre

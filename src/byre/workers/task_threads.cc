@@ -1,0 +1,58 @@
+#include "byre/workers/task_threads.h"
+
+#include <utility>
+
+namespace byre {
+
+TaskThreads::TaskThreads(int helpers) {
+  for (int i = 0; i < helpers; ++i) {
+    helpers_.emplace_back([this](const std::stop_token& stop) { help(stop); });
+  }
+}
+
+void TaskThreads::run(int count, const std::function<void(int)>& task) {
+  if (helpers_.empty()) {
+    for (int i = 0; i < count; ++i) task(i);
+    return;
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    task_ = &task;
+    count_ = count;
+    next_ = 0;
+  }
+  begun_.notify_all();
+  work();
+  std::unique_lock lock(mutex_);
+  ended_.wait(lock, [this] { return helping_ == 0; });
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void TaskThreads::help(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (begun_.wait(lock, stop, [this] { return is_left(); })) {
+    ++helping_;
+    lock.unlock();
+    work();
+    lock.lock();
+    if (--helping_ == 0) ended_.notify_one();
+  }
+}
+
+void TaskThreads::work() {
+  std::unique_lock lock(mutex_);
+  while (is_left()) {
+    const int mine = next_++;
+    lock.unlock();
+    try {
+      (*task_)(mine);
+    } catch (...) {
+      const std::scoped_lock failed(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      next_ = count_;
+    }
+    lock.lock();
+  }
+}
+
+}  // namespace byre
