@@ -11,7 +11,7 @@ packages=(
   # the program
   libcli11-dev python3
   # the package for Python
-  pybind11-dev python3-dev python3-numpy python3-pytest
+  pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-wheel
   # packages
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
