@@ -14,7 +14,7 @@ from typing import Iterator, NamedTuple
 # From the ground up; ARCHITECTURE.md says what each room is for.
 FLOORS = [
     {"input", "workers"},
-    {"geometry"},
+    {"geometry", "ros"},
     {"features", "optimise", "evaluation"},
     {"dataset"},
     {"map"},
