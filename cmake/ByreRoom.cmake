@@ -22,7 +22,7 @@ if(BYRE_BUILD_TESTS)
 endif()
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
-    ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} $<BUILD_INTERFACE:Boost::headers>)
+    ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
 # Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests.
 function(byre_add_room room)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Fuzzes the reading of map files under the address and undefined-behaviour sanitizers, which needs Clang.
-# Usage: fuzz.sh [SECONDS]        30 unless given; inputs that reach new code are kept in build/fuzz/corpus
+# Fuzzes the reading of map files, and of bags and their messages, under the address and undefined-behaviour sanitizers,
+# which needs Clang.
+# Usage: fuzz.sh [SECONDS]        of each, 30 unless given; inputs that reach new code are kept in build/fuzz/corpus
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -10,9 +11,16 @@ clang=$(command -v clang++ || command -v clang++-14) || { echo "fuzz.sh: Clang i
 
 cmake -S fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=None >/dev/null
 cmake --build build/fuzz
-mkdir -p build/fuzz/corpus
 # The sanitizers cannot start where the kernel spreads addresses wider than they expect.
 runner=()
 ! setarch --addr-no-randomize true 2>/dev/null || runner=(setarch --addr-no-randomize)
-"${runner[@]}" build/fuzz/map_file_fuzzer build/fuzz/corpus -max_total_time="$seconds" -max_len=20000 -timeout=5 \
-  -malloc_limit_mb=16 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1
+
+# Runs a fuzzer, with so many megabytes in one piece allowed: what a chunk of a bag may claim to hold is far more than a
+# map.
+fuzz() {
+  mkdir -p "build/fuzz/corpus/$1"
+  "${runner[@]}" "build/fuzz/$1" "build/fuzz/corpus/$1" -max_total_time="$seconds" -max_len=20000 -timeout=5 \
+    -malloc_limit_mb="$2" -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1
+}
+fuzz map_file_fuzzer 16
+fuzz bag_fuzzer 512

@@ -7,7 +7,10 @@ packages=(
   # building
   g++ cmake ninja-build ccache git
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
-  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev libdeflate-dev libembree-dev libboost-dev
+  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev libdeflate-dev
+  libembree-dev libboost-dev
+  # bags
+  libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # the program
   libcli11-dev python3
   # the package for Python
@@ -16,6 +19,8 @@ packages=(
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev clang libbenchmark-dev clang-format zsh
+  # tests of bags that others wrote
+  python3-rosbag python3-sensor-msgs python3-tf2-msgs
 )
 # Of tests in a browser, which are skipped without. Node may come from anywhere: Debian's npm does not go together with
 # another's Node.

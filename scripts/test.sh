@@ -79,7 +79,7 @@ if ! $quick; then
   scripts/build.sh tsan
   run_tests tsan
 
-  headline "Fuzzing: map files, for 20 s"
+  headline "Fuzzing: map files and bags, for 20 s each"
   if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then
     grep -E 'stat::number_of_executed_units' build/fuzz.log || true
     passed=$((passed + 1))

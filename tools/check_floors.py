@@ -15,7 +15,7 @@ from typing import Iterator, NamedTuple
 FLOORS = [
     {"input", "workers"},
     {"geometry", "ros"},
-    {"features", "optimise", "evaluation"},
+    {"bag", "features", "optimise", "evaluation"},
     {"dataset"},
     {"map"},
     {"place", "simulation"},
@@ -51,14 +51,15 @@ KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
         "workers", "simulation", "mapping", "playback", "viewer", "cli"},
     r"mutex|shared_mutex": {"workers", "viewer"},
-    r"filesystem|fstream": {"input", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
+    r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
                             "archive", "viewer", "benchmark", "demo", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
-    r"yaml-cpp/.*": {"dataset", "benchmark"},
+    r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
+    r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},
     r"nlohmann/.*": {"assessment", "viewer", "benchmark", "cli"},
 }
 

@@ -18,7 +18,8 @@ namespace byre {
 //   tum     rgb.txt of a TUM RGB-D folder, and depth.txt for depth
 //   images  image files in a folder, or for stereo in its folders left and right
 //   video   a video file
-enum class RecordingFormat : std::uint8_t { euroc, kitti, tum, images, video };
+//   bag     what ROS records: a folder of rosbag2, an .mcap, .db3 or .bag file
+enum class RecordingFormat : std::uint8_t { euroc, kitti, tum, images, video, bag };
 
 std::string_view to_string(RecordingFormat format);
 
@@ -41,6 +42,9 @@ struct OpenOptions {
   std::optional<CameraChoice> camera{};  // empty: both where there are two, with depth where there is depth
   std::optional<std::filesystem::path> calibration{};  // a file read_calibration knows, in place of the recording's own
   std::optional<double> frame_rate_hz{};               // frame rate of images and videos, in place of what they say
+  // Topics of a bag's images; empty where it leaves no choice. The left one alone: that camera, or its only pair.
+  std::optional<std::string> left_topic{};
+  std::optional<std::string> right_topic{};
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
@@ -70,7 +74,8 @@ bool is_video_file(const std::filesystem::path& path);
 
 // A recording in any of the formats. Images and videos need a calibration: that of the options, or one that
 // find_calibration finds in the folder (of a video: beside it). They have the times that their file names say, else
-// those of a steady frame rate, 30 Hz with a warning where nothing says which. Of a recording of one camera with the
+// those of a steady frame rate, 30 Hz with a warning where nothing says which. Bags tell their calibration in camera
+// info and /tf_static. Of a recording of one camera with the
 // calibration of a pair, the choice of camera says which of the two that was. Throws InputError, naming the file and
 // what is wrong with it: missing files, a calibration that does not parse, makes no sense or is of another image size,
 // a camera that is not there, time stamps out of order, no frame in range.

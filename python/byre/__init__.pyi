@@ -191,6 +191,8 @@ class Recording:
         start_s: Optional[float] = None,
         end_s: Optional[float] = None,
         stride: int = 1,
+        left_topic: Optional[str] = None,
+        right_topic: Optional[str] = None,
     ) -> None: ...
     @property
     def calibration(self) -> Calibration: ...

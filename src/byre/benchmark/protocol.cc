@@ -48,6 +48,8 @@ OpenOptions read_open_options(const YamlValue& recording) {
   OpenOptions options;
   if (const auto camera = recording.find("camera")) options.camera = read_camera(*camera);
   if (const auto calibration = recording.find("calibration")) options.calibration = calibration->text();
+  if (const auto topic = recording.find("left")) options.left_topic = topic->text();
+  if (const auto topic = recording.find("right")) options.right_topic = topic->text();
   if (const auto rate = recording.find("fps")) {
     options.frame_rate_hz = rate->number(kLowestFrameRate, kHighestFrameRate);
   }
@@ -55,7 +57,8 @@ OpenOptions read_open_options(const YamlValue& recording) {
 }
 
 BenchmarkRecording read_recording(const YamlValue& value) {
-  value.require_fields({"name", "folder", "frames", "camera", "calibration", "fps", "truth", "truth_offset_s"});
+  value.require_fields(
+      {"name", "folder", "frames", "camera", "calibration", "fps", "left", "right", "truth", "truth_offset_s"});
   BenchmarkRecording recording;
   recording.name = value["name"].text();
   recording.folder = value["folder"].text();

@@ -1,5 +1,6 @@
 #include "byre/dataset/files_read.h"
 
+#include "byre/bag/bag.h"
 #include "byre/dataset/floor_plan.h"
 #include "byre/dataset/image_names.h"
 #include "byre/input/text_file.h"
@@ -83,6 +84,14 @@ void add_truth(const fs::path& recording, Files& files) {
   }
 }
 
+void add_bag(const fs::path& folder, Files& files) {
+  try {
+    for (const fs::path& file : files_of_bag(folder)) add_if_there(file, files);
+  } catch (const std::exception&) {  // a folder that may not be looked into
+    return;
+  }
+}
+
 void add_calibrations(const fs::path& folder, Files& files) {
   for (const char* const name : {"calibration.yaml", "camera.yaml", "sensor.yaml", "depth.yaml"}) {
     add_if_there(folder / name, files);
@@ -104,9 +113,12 @@ Files files_of_recording(const fs::path& recording) {
   Files files;
   if (!is_folder(recording)) {
     files.push_back(recording);
-    if (is_file(recording) && is_video_file(recording)) add_calibrations(recording.parent_path(), files);
+    if (is_file(recording) && (is_video_file(recording) || is_bag(recording))) {
+      add_calibrations(recording.parent_path(), files);
+    }
     return files;
   }
+  if (is_bag(recording)) add_bag(recording, files);
   add_calibrations(recording, files);
   for (const char* const list : {"calib.txt", "times.txt", "rgb.txt", "depth.txt", "groundtruth.txt"}) {
     add_if_there(recording / list, files);

@@ -89,9 +89,13 @@ cv::Mat decode(const Bytes& bytes, int flags) {
 }  // namespace
 
 ImageReading<Image> try_image(const std::filesystem::path& path) {
-  const ImageReading<Image> broken{std::nullopt, "is not a whole image"};
   const auto [bytes, failure] = read_bytes(path);
   if (!failure.empty()) return {std::nullopt, failure};
+  return decoded_image(bytes);
+}
+
+ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
+  const ImageReading<Image> broken{std::nullopt, "is not a whole image"};
   if (bytes.empty() || is_cut_jpeg(bytes)) return broken;
   const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) return broken;

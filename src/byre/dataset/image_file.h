@@ -2,9 +2,11 @@
 
 #include "byre/image.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
@@ -18,6 +20,9 @@ struct ImageReading {
 // As read_image and read_depth_image below.
 ImageReading<Image> try_image(const std::filesystem::path& path);
 ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path);
+
+// What the bytes of such a file hold.
+ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes);
 
 // A PNG, JPEG or other common image file as 8-bit grey, not turned by its EXIF tag. Empty when the file is missing,
 // no image, or cut short. Of 16-bit images the upper byte is taken.

@@ -1,6 +1,8 @@
 #include "byre/recording.h"
 
+#include "byre/bag/bag.h"
 #include "byre/calibration_file.h"
+#include "byre/dataset/bag_recording.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/recording_index.h"
@@ -122,6 +124,11 @@ void require_untimed(RecordingFormat format, const fs::path& path, const OpenOpt
                    "leave it out, or name the folder of the images");
 }
 
+void require_no_topics(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
+  if (format == RecordingFormat::bag || (!options.left_topic && !options.right_topic)) return;
+  throw InputError(path.string(), "is no bag, so it has no topics", "leave them out");
+}
+
 fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options) {
   if (options.calibration) return *options.calibration;
   if (const std::optional<fs::path> file = find_calibration(folder)) return *file;
@@ -167,6 +174,8 @@ std::string_view to_string(RecordingFormat format) {
       return "images";
     case RecordingFormat::video:
       return "video";
+    case RecordingFormat::bag:
+      return "bag";
   }
   return "";
 }
@@ -188,11 +197,14 @@ std::string_view to_string(CameraChoice choice) {
 RecordingFormat guess_format(const fs::path& path) {
   if (is_video_file(path)) return RecordingFormat::video;
   if (!fs::is_directory(path)) {
-    throw InputError(path.string(), "is no folder and no video", "give the folder of a recording, or a video file");
+    if (is_bag(path)) return RecordingFormat::bag;
+    throw InputError(path.string(), "is no folder, no video and no bag",
+                     "give the folder of a recording, a video file or a bag");
   }
   if (find_mav_folder(path)) return RecordingFormat::euroc;
   if (fs::exists(path / "rgb.txt")) return RecordingFormat::tum;
   if (fs::exists(path / "calib.txt") || fs::is_directory(path / "image_0")) return RecordingFormat::kitti;
+  if (is_bag(path)) return RecordingFormat::bag;
   if (holds_images(path)) return RecordingFormat::images;
   throw InputError(path.string(), "holds no recording that byre knows",
                    "looked for mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
@@ -212,13 +224,21 @@ RecordingIndex index_recording(const fs::path& path, const OpenOptions& options)
     case RecordingFormat::images:
       return index_images(path, options);
     case RecordingFormat::video:
+    case RecordingFormat::bag:
       break;
   }
-  throw InputError(path.string(), "is a video, which has no image files", "extract its images into a folder");
+  throw InputError(path.string(), "is a " + std::string(to_string(format)) + ", which has no image files",
+                   "extract its images into a folder");
 }
 
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
-  if (is_video_file(path)) return open_video(path, range, options);
+  const RecordingFormat format = guess_format(path);
+  require_no_topics(format, path, options);
+  if (format == RecordingFormat::video) return open_video(path, range, options);
+  if (format == RecordingFormat::bag) {
+    require_untimed(format, path, options);
+    return open_bag_recording(path, range, options);
+  }
   const RecordingIndex whole = index_recording(path, options);
   const BesideLeft beside = images_beside_left(whole);
   require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));

@@ -12,29 +12,54 @@ namespace fs = std::filesystem;
 constexpr Timestamp kPairTolerance = std::chrono::milliseconds(2);
 constexpr Timestamp kDepthTolerance = std::chrono::milliseconds(20);
 
+Timestamp time_of(Timestamp time) {
+  return time;
+}
+
+template <typename Item>
+Timestamp time_of(const Item& item) {
+  return item.time;
+}
+
 // The one nearest in time, when it is within the tolerance; else the end. Precondition: they ascend in time.
 template <typename Range>
 auto find_nearest(Range& items, Timestamp time, Timestamp tolerance) {
-  const auto before = [](const auto& item, Timestamp t) { return item.time < t; };
+  const auto before = [](const auto& item, Timestamp t) { return time_of(item) < t; };
   auto nearest = std::lower_bound(items.begin(), items.end(), time, before);
-  if (nearest != items.begin() && (nearest == items.end() || time - std::prev(nearest)->time < nearest->time - time)) {
+  if (nearest != items.begin() &&
+      (nearest == items.end() || time - time_of(*std::prev(nearest)) < time_of(*nearest) - time)) {
     --nearest;
   }
-  const bool is_near = nearest != items.end() && std::chrono::abs(nearest->time - time) <= tolerance;
+  const bool is_near = nearest != items.end() && std::chrono::abs(time_of(*nearest) - time) <= tolerance;
   return is_near ? nearest : items.end();
 }
 
-// The file taken at nearly the same time. Precondition: files ascend in time.
-std::optional<fs::path> partner_of(Timestamp time, const std::vector<TimedFile>& files) {
-  const auto partner = find_nearest(files, time, kPairTolerance);
-  return partner == files.end() ? std::nullopt : std::optional(partner->path);
+std::vector<Timestamp> times_of(const std::vector<TimedFile>& files) {
+  std::vector<Timestamp> times;
+  for (const TimedFile& file : files) times.push_back(file.time);
+  return times;
 }
 
 }  // namespace
 
+std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
+                                                         const std::vector<Timestamp>& others) {
+  std::vector<std::optional<std::size_t>> partners;
+  for (const Timestamp time : times) {
+    const auto partner = find_nearest(others, time, kPairTolerance);
+    const auto number = static_cast<std::size_t>(partner - others.begin());
+    partners.push_back(partner == others.end() ? std::nullopt : std::optional(number));
+  }
+  return partners;
+}
+
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right) {
   std::vector<FrameFiles> frames;
-  for (const TimedFile& file : left) frames.push_back({file.time, file.path, partner_of(file.time, right)});
+  const std::vector<std::optional<std::size_t>> partners = partners_in_time(times_of(left), times_of(right));
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    frames.push_back({left[i].time, left[i].path, std::nullopt});
+    if (partners[i]) frames.back().right = right[*partners[i]].path;
+  }
   return frames;
 }
 

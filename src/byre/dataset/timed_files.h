@@ -2,7 +2,9 @@
 
 #include "byre/dataset/recording_index.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,10 @@ struct TimedFile {
   Timestamp time{};
   std::filesystem::path path;
 };
+
+// For each time the number of the other one nearest to it, where that is within 2 ms. Precondition: both ascend.
+std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
+                                                         const std::vector<Timestamp>& others);
 
 // The frames of the left images, each with the right one taken within 2 ms, where there is one. Precondition: both
 // ascend in time.

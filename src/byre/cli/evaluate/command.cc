@@ -127,7 +127,7 @@ void declare_inputs(CLI::App& command, EvaluateOptions& options) {
       ->type_name("FILE");
   CLI::Option* const frames_of = add_input(command, Input::recording, "--frames-of", options.frames_of,
                                            "Recording whose frames should have a pose, for the coverage")
-                                     ->type_name("FOLDER|VIDEO");
+                                     ->type_name("FOLDER|VIDEO|BAG");
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
   command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
       ->type_name("body|camera")

@@ -1,4 +1,5 @@
 #include "byre/assessment/localisation_report.h"
+#include "byre/bag/bag.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -58,7 +59,7 @@ another recording name that one's truth too (--map-truth). An image has the time
 seconds with a point; where one says none, they are a second apart. Exit code 0 also when no frame is found.)";
 
 bool is_recording(const fs::path& input) {
-  return fs::is_directory(input) || is_video_file(input);
+  return fs::is_directory(input) || is_video_file(input) || is_bag(input);
 }
 
 // One recording, or images that exist.

@@ -45,6 +45,9 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
           "--fps", set_frame_rate,
           "Frame rate of images and videos, in place of the times in their names or of what the video says")
       ->type_name("HZ");
+  add_text(command, "--left", options.left_topic, "Topic of a bag's left images, or of its only camera's")
+      ->type_name("TOPIC");
+  add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");
 }
 
 void declare_frame_range(CLI::App& command, FrameRange& range) {

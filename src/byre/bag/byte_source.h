@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace byre {
+
+// Bytes that are read piece by piece, wherever they are.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual std::uint64_t size() const = 0;
+  // Fills the piece with the bytes that begin there. Throws InputError when they cannot be read. Precondition: they lie
+  // within size().
+  virtual void read(std::uint64_t begin, std::span<std::byte> piece) = 0;
+};
+
+// The bytes from there on, at most so many and none behind the end.
+std::vector<std::byte> read_piece(ByteSource& source, std::uint64_t begin, std::uint64_t most);
+
+// A file, read where it is asked for; small pieces close to each other cost one call.
+class FileSource final : public ByteSource {
+ public:
+  explicit FileSource(const std::filesystem::path& path);  // throws InputError when it cannot be opened
+  ~FileSource() override;
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+
+  std::uint64_t size() const override { return size_; }
+  void read(std::uint64_t begin, std::span<std::byte> piece) override;
+
+ private:
+  void read_directly(std::uint64_t begin, std::span<std::byte> piece) const;
+
+  std::filesystem::path path_;            // constant after construction
+  int descriptor_ = -1;                   // constant after construction
+  std::uint64_t size_ = 0;                // constant after construction
+  std::array<std::byte, 4096> window_{};  // bytes of the file around the last small piece
+  std::uint64_t window_begin_ = 0;
+  std::size_t window_size_ = 0;
+};
+
+// Bytes in memory, borrowed.
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  std::uint64_t size() const override { return bytes_.size(); }
+  void read(std::uint64_t begin, std::span<std::byte> piece) override;
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace byre

@@ -1,0 +1,72 @@
+#include "byre/bag/rosbag2_metadata.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <system_error>
+
+#include <yaml-cpp/yaml.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_beside(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code unreadable;
+    if (has_rosbag2_name(entry->path()) && entry->is_regular_file(unreadable)) files.push_back(entry->path());
+  }
+  // Recorders number them; "bag_10" comes after "bag_9".
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    const std::string name = a.filename().string(), other = b.filename().string();
+    return name.size() != other.size() ? name.size() < other.size() : name < other;
+  });
+  return files;
+}
+
+// Relative to the folder; the first versions put the folder's own name before them.
+fs::path found_in(const fs::path& folder, const fs::path& named) {
+  const std::array<fs::path, 2> places = {folder / named, folder / named.filename()};
+  std::error_code error;
+  return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
+}
+
+std::vector<fs::path> files_named(const fs::path& metadata) {
+  const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
+  std::vector<fs::path> files;
+  for (const YAML::Node& file : bag["relative_file_paths"]) {
+    files.push_back(found_in(metadata.parent_path(), file.as<std::string>()));
+  }
+  return files;
+}
+
+}  // namespace
+
+bool has_rosbag2_name(const fs::path& file) {
+  constexpr std::array<std::string_view, 4> kEndings = {".mcap", ".db3", ".mcap.zstd", ".db3.zstd"};
+  const std::string name = file.filename().string();
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+Rosbag2Files rosbag2_files(const fs::path& folder) {
+  const fs::path metadata = folder / kRosbag2Metadata;
+  std::error_code error;
+  std::string why;
+  if (!fs::is_regular_file(metadata, error)) {
+    why = "is missing, as after a recorder that was stopped hard";
+  } else {
+    try {
+      std::vector<fs::path> files = files_named(metadata);
+      if (!files.empty()) return {std::move(files)};
+      why = "names no files";
+    } catch (const YAML::Exception& exception) {
+      why = std::string("cannot be understood (") + exception.what() + ")";
+    }
+  }
+  return {files_beside(folder), {metadata.string() + ": " + why + "; the files beside it are taken"}};
+}
+
+}  // namespace byre

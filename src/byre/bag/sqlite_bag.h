@@ -1,0 +1,46 @@
+#pragma once
+
+#include "byre/bag/bag.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace byre {
+
+// A database as rosbag2 writes it. Only its tables topics and messages are read.
+class SqliteBag final : public Bag {
+ public:
+  // Throws InputError when it cannot be opened or lacks those tables.
+  SqliteBag(const std::filesystem::path& path, const TypeFilter& wanted);
+  ~SqliteBag() override;
+
+  const BagContent& content() const override { return content_; }
+  BagContent take_content() override { return std::exchange(content_, {}); }
+  std::vector<std::byte> read(const BagMessage& message) override;
+
+ private:
+  using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
+  struct Database {
+    sqlite3* handle = nullptr;
+    ~Database();
+  };
+
+  [[noreturn]] void fail() const;
+  Statement prepare(const char* text) const;
+  void read_topics(const TypeFilter& wanted);
+  void read_messages();
+
+  std::filesystem::path path_;  // constant after construction
+  Database database_;
+  Statement message_;  // gives the bytes of a row
+  BagContent content_;
+  std::vector<std::int64_t> topic_ids_;  // ids in the database, by topic
+  std::vector<bool> is_wanted_;          // by topic
+};
+
+}  // namespace byre

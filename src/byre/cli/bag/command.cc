@@ -1,0 +1,62 @@
+#include "byre/bag/bag.h"
+
+#include "byre/cli/bag/report.h"
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+
+#include <filesystem>
+#include <memory>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path bag;
+  bool json = false;
+};
+
+constexpr const char* kInfoFooter = R"(Examples:
+  byre bag info walk.mcap
+  byre bag info recordings/2026-11-20
+  byre bag info evening.bag --json
+
+A bag is a folder of rosbag2, an .mcap, a .db3 or a .bag file of ROS 1. All of it is gone through, so that what is
+damaged or cut is told, whether the bag was closed or not. "images" are the topics that "byre map" and "byre run" would
+take as left and right.
+
+Exit codes: 0 all of it can be read, 1 a part of it cannot, 3 it is no bag or cannot be opened.)";
+
+ExitCode run_info(const InfoOptions& options, std::ostream& result) {
+  const auto bag = open_bag(options.bag, [](std::string_view) { return false; });
+  const BagContent& content = bag->content();
+  if (options.json) {
+    constexpr int kIndent = 2;
+    result << bag_json(content, options.bag).dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+           << "\n";
+  } else {
+    result << describe(content, options.bag);
+  }
+  return content.damage.empty() ? ExitCode::done : ExitCode::failed;
+}
+
+}  // namespace
+
+Action declare_bag(CLI::App& command) {
+  const auto chosen = std::make_shared<Action>();
+  command.require_subcommand(1);
+  const auto info = std::make_shared<InfoOptions>();
+  CLI::App& telling = *command.add_subcommand("info", "Tell the topics, the length and the damage of a bag");
+  add_input(telling, Input::recording, "BAG", info->bag, "Folder of rosbag2, or an .mcap, .db3 or .bag file")
+      ->type_name("PATH")
+      ->required();
+  telling.add_flag("--json", info->json, "Print it as JSON");
+  telling.footer(kInfoFooter);
+  telling.callback([=] { *chosen = [=](std::ostream& result) { return run_info(*info, result); }; });
+  return [chosen](std::ostream& result) { return (*chosen)(result); };
+}
+
+}  // namespace byre::cli

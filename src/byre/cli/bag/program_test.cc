@@ -1,0 +1,64 @@
+// "byre bag" as a user runs it.
+
+#include "byre/bag/bag_scene.h"
+#include "byre/cli/shared/program_fixture.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace byre::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class BagProgram : public ProgramTest {
+ protected:
+  void write_scene(const std::string& name, std::size_t left_out = 0) const {
+    BagBytes bytes = mcap_bytes(scene_messages(), "-");
+    bytes.resize(bytes.size() - left_out);
+    write(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+};
+
+TEST_F(BagProgram, TellsWhatABagHolds) {
+  write_scene("walk.mcap");
+  const Outcome outcome = run("bag info walk.mcap");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("storage      mcap, "));
+  EXPECT_THAT(outcome.output, HasSubstr("messages     18\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("topic        /left/image_raw   sensor_msgs/msg/Image  6, 20.0 Hz\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("images       left /left/image_raw, right /right/image_raw\n"));
+}
+
+TEST_F(BagProgram, TellsTheSameAsJson) {
+  write_scene("walk.mcap");
+  const json told = json::parse(run("bag info walk.mcap --json").output);
+  EXPECT_EQ(told.at("program"), "byre bag info");
+  EXPECT_EQ(told.at("topics").size(), 3u);
+  EXPECT_EQ(told.at("topics")[0].at("messages"), 6);
+  EXPECT_EQ(told.at("images").at("left"), "/left/image_raw");
+  EXPECT_EQ(told.at("first_ns"), 1'003'000'000);
+  EXPECT_THAT(told.at("damage"), IsEmpty());
+}
+
+TEST_F(BagProgram, TellsOfDamageByItsExitCodeToo) {
+  write_scene("cut.mcap", 200);
+  const Outcome outcome = run("bag info cut.mcap");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("DAMAGE       cut.mcap: is cut or damaged from byte"));
+  EXPECT_EQ(run("bag info absent.mcap").exit_code, 3);
+  EXPECT_EQ(run("bag").exit_code, 2);
+}
+
+TEST_F(BagProgram, ListsTopicsWhereANameIsWrong) {
+  write_scene("walk.mcap");
+  const Outcome outcome = run("check walk.mcap --left /front");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors,
+              HasSubstr("has no images of the topic /front; its topics of images: /left/image_raw (6)"));
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,125 @@
+#include "byre/dataset/bag_calibration.h"
+
+#include "byre/dataset/test_folder.h"
+#include "byre/geometry/geometry_matchers.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+
+const Pose kRightFromLeft{rotation_exp({0.01, -0.02, 0.005}), {-0.11, 0.002, 0.001}};
+
+PlacedCameraInfo info(const std::string& frame) {
+  PlacedCameraInfo placed{{.height = 480, .width = 752}, "walk.bag: /" + frame + "/camera_info"};
+  placed.info.header.frame_id = frame;
+  placed.info.k = {458.0, 0.0, 367.0, 0.0, 457.0, 248.0, 0.0, 0.0, 1.0};
+  placed.info.distortion_model = "plumb_bob";
+  placed.info.d = {-0.28, 0.07, 0.0002, 0.00002, 0.001};
+  placed.info.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  return placed;
+}
+
+ros::TransformStamped transform(const std::string& parent, const std::string& child, const Pose& parent_from_child) {
+  const Eigen::Vector3d& t = parent_from_child.translation;
+  const Eigen::Quaterniond& q = parent_from_child.rotation;
+  return {{.frame_id = parent}, child, {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+TEST(BagCalibration, IsOfTheModelThatTheInfoNames) {
+  const Camera camera = camera_of(info("left"));
+  EXPECT_EQ(camera.model, CameraModel::radial_tangential);
+  EXPECT_EQ(camera, (Camera{CameraModel::radial_tangential,
+                            752,
+                            480,
+                            458.0,
+                            457.0,
+                            367.0,
+                            248.0,
+                            {-0.28, 0.07, 0.0002, 0.00002, 0.001}}));
+  PlacedCameraInfo fisheye = info("left");
+  fisheye.info.distortion_model = "equidistant";
+  fisheye.info.d = {0.1, 0.2, 0.3, 0.4};
+  EXPECT_EQ(camera_of(fisheye).model, CameraModel::equidistant);
+  EXPECT_EQ(camera_of(fisheye).distortion[3], 0.4);
+  PlacedCameraInfo rational = info("left");
+  rational.info.distortion_model = "rational_polynomial";
+  rational.info.d.resize(8, 0.0);
+  EXPECT_EQ(camera_of(rational), camera);
+}
+
+TEST(BagCalibration, OfRectifiedImagesIsInTheirProjection) {
+  PlacedCameraInfo placed = info("left");
+  placed.is_rectified = true;
+  placed.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 431.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
+}
+
+TEST(BagCalibration, IsRefusedWhereByreDoesNotKnowTheLens) {
+  PlacedCameraInfo rational = info("left");
+  rational.info.distortion_model = "rational_polynomial";
+  rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
+  EXPECT_THAT(error_of([&] { camera_of(rational); }),
+              HasSubstr("walk.bag: /left/camera_info: is of the lens model \"rational_polynomial\" with 8"));
+  PlacedCameraInfo none = info("left");
+  none.info.k = {};
+  EXPECT_THAT(error_of([&] { camera_of(none); }), HasSubstr("not calibrated (name a calibration"));
+  PlacedCameraInfo binned = info("left");
+  binned.info.binning_x = 2;
+  EXPECT_THAT(error_of([&] { camera_of(binned); }), HasSubstr("binned"));
+  PlacedCameraInfo cut = info("left");
+  cut.info.roi = {10, 10, 100, 100, false};
+  EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("cut out"));
+}
+
+TEST(BagCalibration, HasTheBaselineOfTheProjectionOfRectifiedImages) {
+  PlacedCameraInfo left = info("left"), right = info("left");
+  left.is_rectified = right.is_rectified = true;
+  left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  right.info.p[3] = -43.0;
+  const Pose right_from_left = partner_of(left, right, {}).right_from_left;
+  EXPECT_THAT(right_from_left.translation.x(), DoubleNear(-0.1, 1e-12));
+  EXPECT_THAT(right_from_left, PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}, 1e-12, 1e-12));
+}
+
+TEST(BagCalibration, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
+  // Rectified frames as a stereo calibration makes them: turned like each other, one behind the other along x.
+  const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
+  const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
+  const Pose expected = inverse(right_turn) * Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}} * left_turn;
+  PlacedCameraInfo left = info("left"), right = info("right");
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(left.info.r.data()) = left_turn.rotation.toRotationMatrix();
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(right.info.r.data()) =
+      right_turn.rotation.toRotationMatrix();
+  right.info.p = {430.0, 0.0, 360.0, -0.11 * 430.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  EXPECT_THAT(partner_of(left, right, {}).right_from_left, PoseNear(expected, 1e-9, 1e-9));
+}
+
+TEST(BagCalibration, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
+  FrameTree frames;
+  const Pose base_from_left{rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.05, 0.4}};
+  frames.add({{transform("/base_link", "left", base_from_left), transform("left", "right", inverse(kRightFromLeft))}});
+  EXPECT_THAT(partner_of(info("left"), info("right"), frames).right_from_left, PoseNear(kRightFromLeft, 1e-9, 1e-9));
+  EXPECT_THAT(body_from_camera("left", frames), PoseNear(base_from_left, 1e-9, 1e-9));
+  EXPECT_THAT(body_from_camera("right", frames), PoseNear(base_from_left * inverse(kRightFromLeft), 1e-9, 1e-9));
+}
+
+TEST(BagCalibration, IsRefusedWhereNothingTellsTheBaseline) {
+  EXPECT_THAT(error_of([] { partner_of(info("left"), info("right"), {}); }),
+              HasSubstr("does not lead from the frame \"left\" to \"right\" (name a calibration"));
+  EXPECT_THAT(error_of([] { partner_of(info("left"), info("left"), {}); }), HasSubstr("walk.bag: /left/camera_info"));
+  EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
+}
+
+TEST(FrameTree, EndsWhereFramesLeadRoundInACircle) {
+  FrameTree frames;
+  frames.add({{transform("a", "b", kRightFromLeft), transform("b", "a", kRightFromLeft)}});
+  EXPECT_TRUE(frames.between("a", "b").has_value());
+  EXPECT_FALSE(frames.between("a", "c").has_value());
+}
+
+}  // namespace
+}  // namespace byre

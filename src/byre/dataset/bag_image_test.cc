@@ -1,0 +1,80 @@
+#include "byre/dataset/bag_image.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ros::Image image(const std::string& encoding, std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> data,
+                 std::uint32_t step) {
+  return {{}, height, width, encoding, 0, step, std::move(data)};
+}
+
+std::vector<std::uint8_t> pixels_of(const ros::Image& message) {
+  const ImageReading<Image> read = grey_of(message);
+  EXPECT_TRUE(read.image.has_value()) << message.encoding << " " << read.failure;
+  return read.image ? read.image->pixels : std::vector<std::uint8_t>();
+}
+
+TEST(BagImage, OfGreyIsTakenAsItIsWithoutThePaddingOfRows) {
+  EXPECT_THAT(pixels_of(image("mono8", 2, 2, {1, 2, 99, 3, 4, 99}, 3)), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(pixels_of(image("8UC1", 2, 2, {1, 2, 99, 3, 4}, 3)), ElementsAre(1, 2, 3, 4));
+}
+
+TEST(BagImage, OfColourBecomesGrey) {
+  // 0.299 red + 0.587 green + 0.114 blue.
+  EXPECT_THAT(pixels_of(image("rgb8", 1, 1, {200, 100, 50}, 3)), ElementsAre(124));
+  EXPECT_THAT(pixels_of(image("bgr8", 1, 1, {50, 100, 200}, 3)), ElementsAre(124));
+  EXPECT_THAT(pixels_of(image("rgba8", 1, 1, {200, 100, 50, 7}, 4)), ElementsAre(124));
+  EXPECT_THAT(pixels_of(image("bgra8", 1, 1, {50, 100, 200, 7}, 4)), ElementsAre(124));
+}
+
+TEST(BagImage, OfLuminanceAndColourGivesItsLuminance) {
+  for (const char* const name : {"yuyv", "yuv422_yuy2"}) {
+    EXPECT_THAT(pixels_of(image(name, 2, 1, {10, 128, 20, 128}, 4)), ElementsAre(10, 20)) << name;
+  }
+  for (const char* const name : {"uyvy", "yuv422"}) {
+    EXPECT_THAT(pixels_of(image(name, 2, 1, {128, 10, 128, 20}, 4)), ElementsAre(10, 20)) << name;
+  }
+  EXPECT_THAT(pixels_of(image("nv12", 2, 2, {1, 2, 3, 4, 128, 128}, 2)), ElementsAre(1, 2, 3, 4));
+}
+
+TEST(BagImage, OfSixteenBitsIsReadInEitherOrder) {
+  ros::Image message = image("mono16", 2, 1, {0x00, 0x80, 0xFF, 0xFF}, 4);
+  EXPECT_THAT(pixels_of(message), ElementsAre(128, 255));
+  message.is_bigendian = 1;
+  message.data = {0x80, 0x00, 0xFF, 0xFF};
+  EXPECT_THAT(pixels_of(message), ElementsAre(128, 255));
+}
+
+TEST(BagImage, OfABayerPatternIsReadByTheRightPattern) {
+  // All red: the red cells are bright, so grey is about 0.299 of them wherever the pattern is read rightly.
+  const std::vector<std::pair<std::string, std::vector<std::uint8_t>>> red = {{"bayer_rggb8", {200, 0, 0, 0}},
+                                                                              {"bayer_bggr8", {0, 0, 0, 200}},
+                                                                              {"bayer_grbg8", {0, 200, 0, 0}},
+                                                                              {"bayer_gbrg8", {0, 0, 200, 0}}};
+  for (const auto& [encoding, cell] : red) {
+    std::vector<std::uint8_t> data;
+    for (int row = 0; row < 8; ++row) {
+      for (int column = 0; column < 8; ++column)
+        data.push_back(cell[static_cast<std::size_t>(row % 2 * 2 + column % 2)]);
+    }
+    EXPECT_THAT(pixels_of(image(encoding, 8, 8, data, 8)), Each(testing::AllOf(testing::Ge(58), testing::Le(61))))
+        << encoding;
+  }
+}
+
+TEST(BagImage, ThatMakesNoSenseIsRefusedWithAReason) {
+  EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("encoded as \"jpeg2000\""));
+  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a whole image");
+  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a whole image");
+  EXPECT_EQ(grey_of(image("mono8", 0, 2, {}, 0)).failure, "is of no sensible size");
+  EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "is of no sensible size");
+}
+
+}  // namespace
+}  // namespace byre

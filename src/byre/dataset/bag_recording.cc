@@ -1,0 +1,327 @@
+#include "byre/dataset/bag_recording.h"
+
+#include "byre/bag/bag.h"
+#include "byre/calibration_file.h"
+#include "byre/dataset/bag_calibration.h"
+#include "byre/dataset/bag_image.h"
+#include "byre/dataset/bag_topics.h"
+#include "byre/dataset/frame_selection.h"
+#include "byre/dataset/timed_files.h"
+#include "byre/geometry/median.h"
+#include "byre/input_error.h"
+#include "byre/ros/message_reader.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A message of images and its time.
+struct TimedMessage {
+  Timestamp time{};
+  BagMessage message;
+};
+
+struct BagFrame {
+  Timestamp time{};
+  BagMessage left;
+  std::optional<BagMessage> right{};
+};
+
+bool is_of_transforms(const BagTopic& topic) {
+  return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
+}
+
+bool is_wanted(std::string_view type) {
+  const BagTopic topic{"", std::string(type), ""};
+  return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||
+         is_of_transforms(topic);
+}
+
+// The messages of a topic in the order of their time stamps, each of which is later than the one before. What that
+// leaves out is told.
+std::vector<TimedMessage> timed_messages(const BagContent& content, std::size_t topic, const std::string& place,
+                                         std::vector<std::string>& warnings) {
+  std::vector<TimedMessage> messages;
+  for (const BagMessage& message : content.messages) {
+    if (message.topic == topic) messages.push_back({stamp_of(content, message), message});
+  }
+  const std::string name = place + ": " + content.topics[topic].name + ": ";
+  if (std::ranges::all_of(messages, [](const TimedMessage& each) { return each.time == Timestamp(0); })) {
+    warnings.push_back(name + "has no time stamps in its headers, so those of the recorder are taken");
+    for (TimedMessage& each : messages) each.time = each.message.log_time;
+  }
+  std::size_t late = 0;
+  for (std::size_t i = 1; i < messages.size(); ++i) late += messages[i].time < messages[i - 1].time ? 1 : 0;
+  if (late > 0) warnings.push_back(name + std::to_string(late) + " images were recorded after later ones");
+  std::ranges::stable_sort(messages, {}, &TimedMessage::time);
+  const auto repeated = std::ranges::unique(messages, {}, &TimedMessage::time);
+  if (!repeated.empty()) {
+    warnings.push_back(name + std::to_string(repeated.size()) + " images bear the time of another and are left out");
+  }
+  messages.erase(repeated.begin(), repeated.end());
+  return messages;
+}
+
+std::vector<Timestamp> times_of(const std::vector<TimedMessage>& messages) {
+  std::vector<Timestamp> times;
+  for (const TimedMessage& each : messages) times.push_back(each.time);
+  return times;
+}
+
+// The median of the times from each image to the nearest one of the other camera, ms.
+double usual_difference_ms(const std::vector<Timestamp>& left, const std::vector<Timestamp>& right) {
+  std::vector<double> differences;
+  for (const Timestamp time : left) {
+    const auto after = std::ranges::lower_bound(right, time);
+    Timestamp nearest = Timestamp::max();
+    if (after != right.end()) nearest = *after - time;
+    if (after != right.begin()) nearest = std::min(nearest, time - *std::prev(after));
+    differences.push_back(1e3 * to_seconds(nearest));
+  }
+  return median(std::move(differences));
+}
+
+// Frames of the left images, each with the right one taken with it. Counts of those without are told.
+std::vector<BagFrame> frames_of(const std::vector<TimedMessage>& left, const std::vector<TimedMessage>& right,
+                                const std::string& place, std::vector<std::string>& warnings) {
+  const auto partners = partners_in_time(times_of(left), times_of(right));
+  std::vector<BagFrame> frames;
+  std::vector<bool> is_used(right.size());
+  std::size_t alone = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    frames.push_back({left[i].time, left[i].message});
+    if (partners[i]) {
+      frames.back().right = right[*partners[i]].message;
+      is_used[*partners[i]] = true;
+    } else {
+      ++alone;
+    }
+  }
+  if (right.empty()) return frames;
+  if (alone == left.size()) {
+    throw InputError(place,
+                     "no right image was taken within 2 ms of any left one; the nearest is off by " +
+                         std::to_string(usual_difference_ms(times_of(left), times_of(right))) + " ms as a rule",
+                     "check that both cameras are triggered together and use one clock, or take one: --camera left");
+  }
+  const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
+  if (alone + unused > 0) {
+    warnings.push_back(place + ": " + std::to_string(alone) + " of " + std::to_string(left.size()) +
+                       " left images have no right one taken within 2 ms, " + std::to_string(unused) + " of " +
+                       std::to_string(right.size()) + " right images no left one");
+  }
+  return frames;
+}
+
+class BagRecording final : public Recording {
+ public:
+  BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames, std::string place,
+               std::vector<std::string> warnings)
+      : bag_(std::move(bag)),
+        calibration_(std::move(calibration)),
+        frames_(std::move(frames)),
+        place_(std::move(place)),
+        warnings_(std::move(warnings)) {
+    for (const BagFrame& frame : frames_) times_.push_back(frame.time);
+  }
+
+  const Calibration& calibration() const override { return calibration_.cameras; }
+  const std::vector<Timestamp>& times() const override { return times_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::optional<ImageFrame> read(int index) override;
+
+ private:
+  std::optional<Image> read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera);
+  void warn(const BagFrame& frame, const BagMessage& message, const std::string& what);
+
+  std::unique_ptr<Bag> bag_;
+  PlacedCalibration calibration_;      // constant after construction
+  std::vector<BagFrame> frames_;       // constant after construction
+  std::vector<Timestamp> times_;       // constant after construction
+  std::string place_;                  // constant after construction
+  std::vector<std::string> warnings_;  // grows with read
+};
+
+void BagRecording::warn(const BagFrame& frame, const BagMessage& message, const std::string& what) {
+  warnings_.push_back(place_ + ": " + bag_->content().topics[message.topic].name + " at " +
+                      std::to_string(frame.time.count()) + ": " + what);
+}
+
+std::optional<Image> BagRecording::read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera) {
+  ImageReading<Image> read = image_of(*bag_, message);
+  if (!read.image) {
+    warn(frame, message, read.failure);
+    return std::nullopt;
+  }
+  if (read.image->width == camera.width && read.image->height == camera.height) return std::move(read.image);
+  warn(frame, message,
+       "is " + std::to_string(read.image->width) + "x" + std::to_string(read.image->height) + " instead of " +
+           std::to_string(camera.width) + "x" + std::to_string(camera.height));
+  return std::nullopt;
+}
+
+std::optional<ImageFrame> BagRecording::read(int index) {
+  assert(index >= 0 && index < size());
+  const BagFrame& frame = frames_[static_cast<std::size_t>(index)];
+  std::optional<Image> left = read_image(frame, frame.left, calibration().left);
+  if (!left) return std::nullopt;
+  ImageFrame images{frame.time, std::move(*left), std::nullopt};
+  if (!calibration().right) return images;
+  if (frame.right) {
+    images.right = read_image(frame, *frame.right, calibration().right->camera);
+  } else {
+    warn(frame, frame.left, "has no right image of the same time");
+  }
+  return images;
+}
+
+// What a bag says of the cameras, and where.
+class BagCalibration {
+ public:
+  BagCalibration(Bag& bag, std::string place) : bag_(bag), place_(std::move(place)) {}
+
+  // Empty where no camera info goes with the left images.
+  std::optional<PlacedCalibration> read(const ImageTopics& topics) const {
+    const std::optional<PlacedCameraInfo> left = info_of(topics.left);
+    if (!left) return std::nullopt;
+    const FrameTree frames = tree();
+    PlacedCalibration calibration{
+        {camera_of(*left), std::nullopt, body_from_camera(left->info.header.frame_id, frames)}, left->place, ""};
+    if (!topics.right) return calibration;
+    const std::optional<PlacedCameraInfo> right = info_of(*topics.right);
+    if (!right) {
+      throw InputError(place_, "has no camera info of " + bag_.content().topics[*topics.right].name,
+                       "name a calibration of the pair (--calibration FILE), or take one camera: --camera left");
+    }
+    calibration.cameras.right = partner_of(*left, *right, frames);
+    calibration.right_size = right->place;
+    return calibration;
+  }
+
+ private:
+  // Empty when it is damaged.
+  template <ros::Message M>
+  std::optional<M> message(const BagMessage& message) const {
+    const BagTopic& topic = bag_.content().topics[message.topic];
+    try {
+      return ros::read_message<M>(bag_.read(message), *encoding_of(topic), place_ + ": " + topic.name);
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  // The first one of the topic that goes with the images.
+  std::optional<PlacedCameraInfo> info_of(std::size_t images) const {
+    const BagContent& content = bag_.content();
+    const std::string wanted = camera_info_topic(content.topics[images].name);
+    for (const BagMessage& each : content.messages) {
+      const BagTopic& topic = content.topics[each.topic];
+      if (topic.name != wanted || !holds<ros::CameraInfo>(topic) || !encoding_of(topic)) continue;
+      if (auto info = message<ros::CameraInfo>(each)) {
+        return PlacedCameraInfo{std::move(*info), place_ + ": " + wanted, is_rectified(content.topics[images])};
+      }
+    }
+    return std::nullopt;
+  }
+
+  FrameTree tree() const {
+    FrameTree frames;
+    const BagContent& content = bag_.content();
+    for (const BagMessage& each : content.messages) {
+      const BagTopic& topic = content.topics[each.topic];
+      if (!topic.name.ends_with("tf_static") || !is_of_transforms(topic) || !encoding_of(topic)) continue;
+      if (const auto transforms = message<ros::TFMessage>(each)) frames.add(*transforms);
+    }
+    return frames;
+  }
+
+  Bag& bag_;
+  std::string place_;
+};
+
+PlacedCalibration calibration_of(Bag& bag, const fs::path& path, const ImageTopics& topics,
+                                 const OpenOptions& options) {
+  const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
+  if (options.calibration) return calibration_for(folder, options);
+  if (auto calibration = BagCalibration(bag, path.string()).read(topics)) return std::move(*calibration);
+  if (find_calibration(folder)) return calibration_for(folder, options);
+  throw InputError(path.string(),
+                   "has no camera info of the topic " + camera_info_topic(bag.content().topics[topics.left].name) +
+                       ", and no calibration lies beside it",
+                   "name one (--calibration FILE)");
+}
+
+// Throws InputError where the first images that can be read are of another size than calibrated, or none can be read.
+void require_calibrated_size(Bag& bag, const std::vector<BagMessage>& messages, const Camera& camera,
+                             const std::string& size, const fs::path& path) {
+  std::string first_failure;
+  for (const BagMessage& message : messages) {
+    const ImageReading<Image> read = image_of(bag, message);
+    if (read.image) return require_calibrated_size(read.image->width, read.image->height, camera, size);
+    if (first_failure.empty()) first_failure = bag.content().topics[message.topic].name + " " + read.failure;
+  }
+  throw InputError(path.string(), "none of its images can be read: " + first_failure,
+                   "take another topic: --left TOPIC");
+}
+
+void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, const PlacedCalibration& calibration,
+                              const fs::path& path) {
+  std::vector<BagMessage> left, right;
+  for (const BagFrame& frame : frames) {
+    left.push_back(frame.left);
+    if (frame.right) right.push_back(*frame.right);
+  }
+  const auto& [cameras, left_size, right_size, depth_size] = calibration;
+  require_calibrated_size(bag, left, cameras.left, left_size, path);
+  if (cameras.right) require_calibrated_size(bag, right, cameras.right->camera, right_size, path);
+}
+
+// Frames with the images of the cameras that are asked for.
+std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const PlacedCalibration& calibration,
+                                       const std::optional<CameraChoice>& choice) {
+  if (calibration.cameras.right) return frames;
+  if (choice == CameraChoice::right) {
+    std::erase_if(frames, [](const BagFrame& frame) { return !frame.right; });
+    for (BagFrame& frame : frames) frame.left = *frame.right;
+  }
+  for (BagFrame& frame : frames) frame.right.reset();
+  return frames;
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameRange& range,
+                                              const OpenOptions& options) {
+  std::unique_ptr<Bag> bag = open_bag(path, is_wanted);
+  const BagContent& content = bag->content();
+  const std::string place = path.string();
+  std::vector<std::string> warnings = content.damage;
+  ImageTopics topics = choose_image_topics(content, options, path);
+  if (options.camera == CameraChoice::left) topics.right.reset();
+  const std::vector<TimedMessage> left = timed_messages(content, topics.left, place, warnings);
+  std::vector<TimedMessage> right;
+  if (topics.right) right = timed_messages(content, *topics.right, place, warnings);
+  std::vector<BagFrame> frames = frames_of(left, right, place, warnings);
+
+  PlacedCalibration calibration = calibration_of(*bag, path, topics, options);
+  if (topics.right && !calibration.cameras.right && !options.camera) {
+    warnings.push_back(place + ": is calibrated for one camera only, so its right images are left out");
+  }
+  calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
+  frames = frames_of_choice(std::move(frames), calibration, options.camera);
+  require_calibrated_sizes(*bag, frames, calibration, path);
+
+  std::vector<Timestamp> times;
+  for (const BagFrame& frame : frames) times.push_back(frame.time);
+  std::vector<BagFrame> selected;
+  for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(frames[i]);
+  return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), place,
+                                        std::move(warnings));
+}
+
+}  // namespace byre

@@ -1,0 +1,192 @@
+#include "byre/dataset/bag_recording.h"
+
+#include "byre/bag/bag_scene.h"
+#include "byre/dataset/files_read.h"
+#include "byre/dataset/test_folder.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kLeft = "/left/image_raw";
+constexpr const char* kRight = "/right/image_raw";
+
+Timestamp ms(int milliseconds) {
+  return std::chrono::milliseconds(milliseconds);
+}
+
+ros::CameraInfo info(const std::string& frame, double p3 = 0.0) {
+  ros::CameraInfo info{.header = {.frame_id = frame}, .height = 4, .width = 6, .distortion_model = "plumb_bob"};
+  info.k = {5.0, 0.0, 2.5, 0.0, 5.0, 1.5, 0.0, 0.0, 1.0};
+  info.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  info.p = {5.0, 0.0, 2.5, p3, 0.0, 5.0, 1.5, 0.0, 0.0, 0.0, 1.0, 0.0};
+  return info;
+}
+
+std::vector<SceneMessage> infos() {
+  return {scene_message("/left/camera_info", ms(1000), info("left")),
+          scene_message("/right/camera_info", ms(1000), info("left", -0.5))};
+}
+
+SceneMessage image(const std::string& topic, int number, Timestamp stamp, Timestamp log_time) {
+  return scene_message(topic, log_time, scene_image(number, stamp));
+}
+
+std::vector<SceneMessage> with_infos(std::vector<SceneMessage> messages) {
+  for (SceneMessage& each : infos()) messages.push_back(std::move(each));
+  return messages;
+}
+
+class BagRecordings : public BagFolderTest {
+ protected:
+  std::unique_ptr<Recording> open(const std::vector<SceneMessage>& messages, const OpenOptions& options = {},
+                                  const FrameRange& range = {}) const {
+    return open_recording(write("walk.mcap", mcap_bytes(messages, "zstd")), range, options);
+  }
+  std::string open_error(const std::vector<SceneMessage>& messages, const OpenOptions& options = {}) const {
+    return error_of([&] { open(messages, options); });
+  }
+};
+
+TEST_F(BagRecordings, GiveTheirImagesAtTheTimesOfTheirHeaders) {
+  const auto recording = open(with_infos(scene_messages()));
+  EXPECT_THAT(recording->warnings(), IsEmpty());
+  EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050), ms(1100), ms(1150), ms(1200), ms(1250)));
+  ASSERT_TRUE(recording->calibration().right.has_value());
+  EXPECT_NEAR(recording->calibration().right->right_from_left.translation.x(), -0.1, 1e-12);
+  for (const int index : {3, 0, 5}) {
+    const std::optional<ImageFrame> frame = recording->read(index);
+    ASSERT_TRUE(frame && frame->right);
+    EXPECT_EQ(frame->time, ms(1000 + 50 * index));
+    EXPECT_EQ(frame->left.pixels, scene_image(index, {}).data);
+    EXPECT_EQ(frame->right->pixels, scene_image(100 + index, {}).data);
+  }
+}
+
+TEST_F(BagRecordings, AreTheSameInEveryFormat) {
+  const std::vector<SceneMessage> messages = with_infos(scene_messages());
+  write_db3(folder_ / "walk.db3", messages);
+  for (const fs::path& path :
+       {folder_ / "walk.db3", write("walk.bag", ros1_bytes(messages)), write("walk.mcap", mcap_bytes(messages, "-"))}) {
+    EXPECT_EQ(guess_format(path), RecordingFormat::bag);
+    const auto recording = open_recording(path, {});
+    ASSERT_EQ(recording->size(), 6) << path;
+    EXPECT_EQ(recording->read(2)->right->pixels, scene_image(102, {}).data) << path;
+    EXPECT_EQ(recording->calibration(), open_recording(folder_ / "walk.mcap", {})->calibration());
+    EXPECT_THAT(files_of_recording(path), ElementsAre(path));
+  }
+}
+
+TEST_F(BagRecordings, KeepToTheRangeAskedFor) {
+  EXPECT_THAT(open(with_infos(scene_messages()), {}, {.first = 1, .last = 4, .stride = 2})->times(),
+              ElementsAre(ms(1050), ms(1150)));
+}
+
+TEST_F(BagRecordings, PairImagesThatAreTwoMillisecondsApartAtMost) {
+  const auto recording = open(with_infos({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1002), ms(1002)),
+                                          image(kLeft, 3, ms(1050), ms(1051)), image(kRight, 4, ms(1053), ms(1053)),
+                                          image(kLeft, 5, ms(1100), ms(1101)), image(kRight, 6, ms(1098), ms(1102)),
+                                          image(kRight, 7, ms(1100), ms(1103))}));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 of 3 left images have no right one taken within 2 ms, "
+                                                           "2 of 4 right images no left one")));
+  EXPECT_EQ(recording->read(0)->right->pixels, scene_image(2, {}).data);
+  EXPECT_FALSE(recording->read(1)->right.has_value());
+  EXPECT_THAT(recording->warnings().back(), HasSubstr("has no right image of the same time"));
+  EXPECT_EQ(recording->read(2)->right->pixels, scene_image(7, {}).data);
+}
+
+TEST_F(BagRecordings, AreRefusedWhereNoImagesBelongTogether) {
+  EXPECT_THAT(open_error(with_infos({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1025), ms(1026)),
+                                     image(kLeft, 3, ms(1050), ms(1051))})),
+              HasSubstr("no right image was taken within 2 ms of any left one; the nearest is off by 25.0"));
+}
+
+TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
+  const auto recording = open({image(kLeft, 1, ms(1050), ms(1001)), image(kLeft, 2, ms(1000), ms(1002)),
+                               image(kLeft, 3, ms(1050), ms(1003)), infos()[0]});
+  EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050)));
+  EXPECT_EQ(recording->read(1)->left.pixels, scene_image(1, {}).data);
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 images were recorded after later ones"),
+                                                 HasSubstr("1 images bear the time of another")));
+}
+
+TEST_F(BagRecordings, WithoutTimesInTheirHeadersHaveThoseOfTheRecorder) {
+  const auto recording = open({image(kLeft, 1, ms(0), ms(1001)), image(kLeft, 2, ms(0), ms(1051)), infos()[0]});
+  EXPECT_THAT(recording->times(), ElementsAre(ms(1001), ms(1051)));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("has no time stamps in its headers")));
+}
+
+TEST_F(BagRecordings, MayBeOfOneCameraOfAPair) {
+  const std::vector<SceneMessage> messages = with_infos(scene_messages());
+  const auto left = open(messages, {.camera = CameraChoice::left});
+  EXPECT_FALSE(left->calibration().right.has_value());
+  EXPECT_EQ(left->read(1)->left.pixels, scene_image(1, {}).data);
+  const auto right = open(messages, {.camera = CameraChoice::right});
+  EXPECT_FALSE(right->calibration().right.has_value());
+  EXPECT_EQ(right->read(1)->left.pixels, scene_image(101, {}).data);
+  EXPECT_THAT(open_error(messages, {.camera = CameraChoice::rgbd}), HasSubstr("has no depth images"));
+}
+
+TEST_F(BagRecordings, TakeTheCalibrationNamedOrOneBesideThem) {
+  const std::string camera =
+      "camera_matrix: {rows: 3, cols: 3, data: [4.0, 0, 2.5, 0, 4.0, 1.5, 0, 0, 1]}\nimage_width: 6\nimage_height: 4\n"
+      "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\ndistortion_model: plumb_bob\n";
+  const std::vector<SceneMessage> images = {image(kLeft, 1, ms(1000), ms(1001))};
+  EXPECT_THAT(open_error(images), HasSubstr("has no camera info of the topic /left/camera_info"));
+  write("calibration.yaml", camera);
+  EXPECT_EQ(open(images)->calibration().left.fx, 4.0);
+  const std::vector<SceneMessage> with_info = {images[0], infos()[0]};
+  EXPECT_EQ(open(with_info)->calibration().left.fx, 5.0);
+  EXPECT_EQ(open(with_info, {.calibration = folder_ / "calibration.yaml"})->calibration().left.fx, 4.0);
+}
+
+TEST_F(BagRecordings, NameTheCameraInfoThatIsMissingOrOfAnotherSize) {
+  EXPECT_THAT(open_error({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1000), ms(1001)), infos()[0]}),
+              HasSubstr("has no camera info of /right/image_raw"));
+  ros::CameraInfo large = info("left");
+  large.width = 640;
+  EXPECT_THAT(open_error({image(kLeft, 1, ms(1000), ms(1001)), scene_message("/left/camera_info", ms(1000), large)}),
+              HasSubstr("/left/camera_info: is 640x4, but the images are 6x4"));
+}
+
+TEST_F(BagRecordings, PlaceTheCameraInTheRobotByTheFramesThatDoNotMove) {
+  ros::TransformStamped mount{{.frame_id = "base_link"}, "left", {{0.3, 0.1, 0.5}, {0.0, 0.0, 0.0, 1.0}}};
+  std::vector<SceneMessage> messages = with_infos(scene_messages());
+  messages.push_back(scene_message("/tf_static", ms(900), ros::TFMessage{{mount}}));
+  EXPECT_EQ(open(messages)->calibration().body_from_left.translation, Eigen::Vector3d(0.3, 0.1, 0.5));
+}
+
+TEST_F(BagRecordings, SayWhichImagesCannotBeRead) {
+  std::vector<SceneMessage> messages = {image(kLeft, 1, ms(1000), ms(1001)), infos()[0]};
+  ros::Image strange = scene_image(2, ms(1050));
+  strange.encoding = "jpeg2000";
+  messages.push_back(scene_message(kLeft, ms(1051), strange));
+  const auto recording = open(messages);
+  EXPECT_FALSE(recording->read(1).has_value());
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("/left/image_raw at 1050000000: is encoded as")));
+}
+
+TEST_F(BagRecordings, SayWhatOfTheBagIsDamaged) {
+  std::vector<SceneMessage> messages = infos();
+  for (SceneMessage& each : scene_messages()) messages.push_back(std::move(each));
+  BagBytes bytes = mcap_bytes(messages, "-");
+  bytes.resize(bytes.size() - 400);
+  const auto recording = open_recording(write("cut.mcap", bytes), {}, {.calibration = {}, .left_topic = kLeft});
+  EXPECT_THAT(recording->warnings(), testing::Contains(HasSubstr("cut.mcap: is cut or damaged from byte")));
+}
+
+TEST_F(BagRecordings, AloneHaveTopics) {
+  write("images/a.png", std::string("no image"));
+  EXPECT_THAT(error_of([&] { open_recording(folder_ / "images", {}, {.left_topic = kLeft}); }),
+              HasSubstr("is no bag, so it has no topics"));
+  EXPECT_THAT(open_error(with_infos(scene_messages()), {.frame_rate_hz = 20.0}), HasSubstr("has time stamps"));
+}
+
+}  // namespace
+}  // namespace byre

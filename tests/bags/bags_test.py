@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""byre on bags that others wrote, made of the recording MH_01_easy: what it gives must be what the folder gives.
+
+Usage: bags_test.py BYRE        BYRE is the program; the recording is looked for below $BYRE_DATA, or in ../shared/data
+beside the project's folder. Exit code 77 where it or a writer of bags is missing.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    from bag_writers import write_rosbag, write_rosbag2_mcap, write_rosbag2_sqlite
+    from euroc_messages import Camera, camchain, messages_of
+except ImportError as error:
+    print(f"Skipped: {error.name} is not installed (python3-rosbag, python3-sensor-msgs, python3-tf2-msgs)")
+    sys.exit(77)
+
+PROJECT = pathlib.Path(__file__).resolve().parents[2]
+DATA = pathlib.Path(os.environ.get("BYRE_DATA", PROJECT.parent / "shared" / "data"))
+RECORDING = DATA / "euroc" / "MH_01_easy"
+BYRE = None
+
+
+def run(*arguments, expected=0):
+    done = subprocess.run([BYRE, *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == expected, f"{arguments}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+class Bags(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.cameras = [Camera(RECORDING / "mav0" / name) for name in ("cam0", "cam1")]
+        cls.calibration = cls.folder / "camchain.yaml"
+        cls.calibration.write_text(camchain(cls.cameras), encoding="utf-8")
+        cls.from_folder = {frames: cls.trajectory(RECORDING, frames) for frames in (10, 60)}
+        cls.long = messages_of(cls.cameras, 60, raw=False)
+        cls.short = messages_of(cls.cameras, 10, raw=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def trajectory(cls, recording, frames):
+        written = cls.folder / "trajectory.txt"
+        run("map", recording, "--calibration", cls.calibration, "--frames", f":{frames}", "--pace", "paced", "--quiet",
+            "-o", cls.folder / "walk.byre", "--trajectory", written)
+        return written.read_bytes()
+
+    def expect_same(self, bag, frames):
+        self.assertGreaterEqual(self.from_folder[frames].count(b"\n"), frames)
+        self.assertTrue(self.trajectory(bag, frames) == self.from_folder[frames], f"{bag} gives another trajectory")
+
+    def test_a_bag_of_ros1_gives_what_the_folder_gives(self):
+        write_rosbag(self.folder / "long.bag", self.long, "lz4")
+        self.expect_same(self.folder / "long.bag", 60)
+
+    def test_a_bag_of_ros1_may_be_compressed_in_each_way(self):
+        for compression in ("none", "bz2", "lz4"):
+            bag = self.folder / f"{compression}.bag"
+            write_rosbag(bag, self.short, compression)
+            self.expect_same(bag, 10)
+            told = json.loads(run("bag", "info", bag, "--json"))
+            self.assertEqual(told["compression"], [] if compression == "none" else [compression])
+            self.assertEqual(told["damage"], [])
+            self.assertEqual(told["messages"], len(self.short))
+
+    def test_a_rosbag2_in_sqlite_gives_what_the_folder_gives(self):
+        write_rosbag2_sqlite(self.folder / "sqlite", self.long)
+        self.expect_same(self.folder / "sqlite", 60)
+
+    def test_a_rosbag2_in_mcap_gives_what_the_folder_gives(self):
+        write_rosbag2_mcap(self.folder / "mcap", self.short)
+        self.expect_same(self.folder / "mcap", 10)
+
+    def test_bags_tell_their_topics(self):
+        write_rosbag2_mcap(self.folder / "topics", self.short)
+        told = json.loads(run("bag", "info", self.folder / "topics", "--json"))
+        counts = {topic["name"]: topic["messages"] for topic in told["topics"]}
+        self.assertEqual(counts, {"/tf_static": 1, "/cam0/camera_info": 1, "/cam1/camera_info": 1,
+                                  "/cam0/image_raw": 10, "/cam1/image_raw": 10})
+        self.assertEqual(told["images"], {"left": "/cam0/image_raw", "right": "/cam1/image_raw"})
+        self.assertEqual(told["storage"], "mcap")
+
+    def test_camera_info_and_frames_are_the_calibration(self):
+        write_rosbag2_sqlite(self.folder / "calibrated", self.short)
+        in_bag = json.loads(run("check", self.folder / "calibrated", "--json"))
+        in_folder = json.loads(run("check", RECORDING, "--frames", ":10", "--json"))
+        self.assertAlmostEqual(in_bag["baseline_m"], in_folder["baseline_m"], places=8)
+        self.assertAlmostEqual(in_bag["pair"]["row_error_px"], in_folder["pair"]["row_error_px"], places=4)
+
+    def test_a_bag_that_is_cut_is_mapped_as_far_as_it_goes(self):
+        write_rosbag(self.folder / "whole.bag", self.short, "none")
+        cut = self.folder / "cut.bag"
+        cut.write_bytes((self.folder / "whole.bag").read_bytes()[:4_000_000])
+        told = run("bag", "info", cut, expected=1)
+        self.assertIn("DAMAGE", told)
+        self.assertIn("is cut or damaged from byte", told)
+        checked = json.loads(run("check", cut, "--calibration", self.calibration, "--json"))
+        self.assertGreaterEqual(checked["frames"], 4)
+        self.assertLess(checked["frames"], 10)
+
+
+if __name__ == "__main__":
+    if not RECORDING.is_dir():
+        print(f"Skipped: no recording at {RECORDING}; BYRE_DATA may name the folder that holds euroc/MH_01_easy")
+        sys.exit(77)
+    BYRE = sys.argv.pop(1)
+    unittest.main()

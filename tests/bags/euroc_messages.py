@@ -1,0 +1,123 @@
+"""An EuRoC recording as messages of ROS 1, for bags to be made of."""
+import re
+import struct
+import zlib
+
+import genpy
+import numpy
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from tf2_msgs.msg import TFMessage
+
+from bag_writers import transform
+
+
+def numbers_of(text, field):
+    found = re.search(field + r":[^\[]*\[([^\]]*)\]", text)
+    return [float(number) for number in found[1].replace("\n", " ").split(",")]
+
+
+class Camera:
+    def __init__(self, folder):
+        text = (folder / "sensor.yaml").read_text(encoding="utf-8")
+        self.body_from_camera = numpy.array(numbers_of(text.split("T_BS")[1], "data")).reshape(4, 4)
+        self.intrinsics = numbers_of(text, "intrinsics")
+        self.distortion = numbers_of(text, "distortion_coefficients")
+        self.size = [int(number) for number in numbers_of(text, "resolution")]
+        lines = (folder / "data.csv").read_text(encoding="utf-8").split()
+        self.images = [(int(line.split(",")[0]), folder / "data" / line.split(",")[1])
+                       for line in lines if re.match(r"\d+,", line)]
+
+
+def rotation_of(matrix):
+    """x, y, z, w of a rotation whose w is not small, or which is turned until it is."""
+    r = matrix[:3, :3]
+    squares = [1 + r[0, 0] - r[1, 1] - r[2, 2], 1 - r[0, 0] + r[1, 1] - r[2, 2],
+               1 - r[0, 0] - r[1, 1] + r[2, 2], 1 + numpy.trace(r)]
+    largest = int(numpy.argmax(squares))
+    s = 2 * numpy.sqrt(squares[largest])
+    pairs = {0: [s / 4, (r[0, 1] + r[1, 0]) / s, (r[0, 2] + r[2, 0]) / s, (r[2, 1] - r[1, 2]) / s],
+             1: [(r[0, 1] + r[1, 0]) / s, s / 4, (r[1, 2] + r[2, 1]) / s, (r[0, 2] - r[2, 0]) / s],
+             2: [(r[0, 2] + r[2, 0]) / s, (r[1, 2] + r[2, 1]) / s, s / 4, (r[1, 0] - r[0, 1]) / s],
+             3: [(r[2, 1] - r[1, 2]) / s, (r[0, 2] - r[2, 0]) / s, (r[1, 0] - r[0, 1]) / s, s / 4]}
+    return pairs[largest]
+
+
+def camchain(cameras):
+    """Both cameras as Kalibr writes them."""
+    text = ""
+    for i, camera in enumerate(cameras):
+        text += f"cam{i}:\n  camera_model: pinhole\n  intrinsics: {camera.intrinsics}\n"
+        text += f"  distortion_model: radtan\n  distortion_coeffs: {camera.distortion}\n  resolution: {camera.size}\n"
+        if i == 1:
+            chain = numpy.linalg.inv(camera.body_from_camera) @ cameras[0].body_from_camera
+            text += "  T_cn_cnm1: " + str(chain.tolist()) + "\n"
+    return text
+
+
+def grey_pixels(file):
+    """Pixels of a PNG of 8-bit grey, by the PNG specification."""
+    data, packed, at = file.read_bytes(), b"", 8
+    width, height = struct.unpack(">II", data[16:24])
+    while at < len(data):
+        size, = struct.unpack(">I", data[at:at + 4])
+        if data[at + 4:at + 8] == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += size + 12
+    lines, pixels, above = zlib.decompress(packed), bytearray(), bytes(width)
+    for row in range(height):
+        kind, line = lines[row * (width + 1)], bytearray(lines[row * (width + 1) + 1:(row + 1) * (width + 1)])
+        left = corner = 0
+        for i in range(width):
+            up = above[i]
+            if kind == 1:
+                line[i] = (line[i] + left) & 255
+            elif kind == 2:
+                line[i] = (line[i] + up) & 255
+            elif kind == 3:
+                line[i] = (line[i] + (left + up) // 2) & 255
+            elif kind == 4:
+                a, b, c = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+                line[i] = (line[i] + (left if a <= b and a <= c else up if b <= c else corner)) & 255
+            left, corner = line[i], up
+        above = bytes(line)
+        pixels += line
+    return width, height, bytes(pixels)
+
+
+def stamped(message, number, time):
+    message.header.seq = number
+    message.header.stamp = genpy.Time(time // 10**9, time % 10**9)
+    message.header.frame_id = "camera"
+    return message
+
+
+def image_message(file, raw):
+    if not raw:
+        return CompressedImage(format="png", data=file.read_bytes())
+    width, height, pixels = grey_pixels(file)
+    return Image(height=height, width=width, encoding="mono8", step=width, data=pixels)
+
+
+def info_message(camera, number):
+    fx, fy, cx, cy = camera.intrinsics
+    info = CameraInfo(height=camera.size[1], width=camera.size[0], distortion_model="plumb_bob")
+    info.D = [*camera.distortion, 0.0]
+    info.K = [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]
+    info.R = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+    info.header.frame_id = f"cam{number}"
+    return info
+
+
+def messages_of(cameras, frames, raw):
+    """(topic, message, time in ns) of both cameras' first frames, recorded a little later than they were taken."""
+    begin = cameras[0].images[0][0]
+    mounts = [transform("base_link", f"cam{i}", camera.body_from_camera, rotation_of(camera.body_from_camera))
+              for i, camera in enumerate(cameras)]
+    messages = [("/tf_static", TFMessage(transforms=mounts), begin)]
+    suffix = "" if raw else "/compressed"
+    for i, camera in enumerate(cameras):
+        messages.append((f"/cam{i}/camera_info", info_message(camera, i), begin + 1))
+        for number, (time, file) in enumerate(camera.images[:frames]):
+            message = stamped(image_message(file, raw), number, time)
+            messages.append((f"/cam{i}/image_raw{suffix}", message, time + 3_000_000 + i))
+    return sorted(messages, key=lambda message: message[2])
