@@ -48,6 +48,8 @@ def test_recordings_are_lists_of_frames(room):
         recording[30]
     assert byre.Recording(room, camera=byre.CameraChoice.left)[0].right is None
     assert len(byre.Recording(room, start_s=1.0, end_s=2.0)) == 10
+    with pytest.raises(byre.InputError, match="is no bag"):
+        byre.Recording(room, left_topic="/left", right_topic="/right")
 
 
 def test_pixels_outlive_what_they_came_from(room, frames):

@@ -47,6 +47,9 @@ TEST_F(Protocols, SayHowToTakeARecording) {
   EXPECT_EQ(protocol.recording("a").open.camera, CameraChoice::right);
   EXPECT_EQ(protocol.recording("a").open.calibration, "cameras.yaml");
   EXPECT_EQ(protocol.recording("a").open.frame_rate_hz, 12.5);
+  const OpenOptions bag = read(recording + "left: /cam0/image, right: /cam1/image}\n" + cases).recording("a").open;
+  EXPECT_EQ(bag.left_topic, "/cam0/image");
+  EXPECT_EQ(bag.right_topic, "/cam1/image");
   EXPECT_THAT(fault_of(recording + "camera: middle}\n" + cases),
               HasSubstr("\"middle\" is no choice of cameras | use stereo, left, right or rgbd"));
   EXPECT_THAT(fault_of(recording + "fps: 0}\n" + cases), HasSubstr("is no number from 0.01"));

@@ -86,6 +86,7 @@ std::optional<FileContent> content_of(const fs::path& path) {
     return FileContent::map;
   if (bytes.starts_with("byrevoc\n")) return FileContent::vocabulary;
   if (bytes.starts_with("\x89PNG\r\n")) return FileContent::png;
+  if (bytes.starts_with("\x89MCAP0\r\n")) return FileContent::mcap;
   if (bytes.starts_with("ply\n")) return FileContent::point_cloud;
   if (std::string_view(bytes).substr(std::min<std::size_t>(4, bytes.size())).starts_with("ftyp"))
     return FileContent::video;

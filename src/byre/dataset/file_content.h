@@ -14,6 +14,7 @@ enum class FileContent : std::uint8_t {
   png,
   video,
   point_cloud,
+  mcap,
   svg,
   json,
   trajectory,

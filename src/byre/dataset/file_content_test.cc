@@ -25,6 +25,7 @@ TEST(ContentOf, TellsWhatByreWrites) {
   EXPECT_EQ(content_of_bytes("byrevoc\n"), FileContent::vocabulary);
   EXPECT_EQ(content_of_bytes("\x89PNG\r\n\x1a\n"), FileContent::png);
   EXPECT_EQ(content_of_bytes(std::string("\0\0\0 ftypisom", 12)), FileContent::video);
+  EXPECT_EQ(content_of_bytes("\x89MCAP0\r\n\x01"), FileContent::mcap);
   EXPECT_EQ(content_of_bytes("ply\nformat binary_little_endian 1.0\n"), FileContent::point_cloud);
   EXPECT_EQ(content_of_bytes("<?xml version=\"1.0\"?>\n<svg width=\"1\">"), FileContent::svg);
   EXPECT_EQ(content_of_bytes("{\"time_s\": 1}\n{}"), FileContent::json);

@@ -1,7 +1,8 @@
-// "byre bag" as a user runs it.
+// "byre bag" as a user runs it, and bags where commands take recordings.
 
 #include "byre/bag/bag_scene.h"
 #include "byre/cli/shared/program_fixture.h"
+#include "byre/simulation/rendered_fixture.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+const std::string kRoom = RenderedFixture::shared().folder().string();
 
 class BagProgram : public ProgramTest {
  protected:
@@ -58,6 +61,25 @@ TEST_F(BagProgram, ListsTopicsWhereANameIsWrong) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.errors,
               HasSubstr("has no images of the topic /front; its topics of images: /left/image_raw (6)"));
+}
+
+TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
+  const Outcome mapped = run("map " + kRoom +
+                             " --frames :6 --no-loops --pace inline --quiet --trajectory walk.txt "
+                             "--record walk.mcap --record-images");
+  ASSERT_EQ(mapped.exit_code, 0) << mapped.errors;
+  EXPECT_EQ(run("bag info walk.mcap").exit_code, 0);
+  const Outcome again = run("map walk.mcap --no-loops --pace inline --quiet --trajectory again.txt");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(std::ranges::count(read("again.txt"), '\n'), std::ranges::count(read("walk.txt"), '\n'));
+}
+
+TEST_F(BagProgram, DoesNotRecordOverWhatIsReadOrOfAnotherKind) {
+  write_scene("walk.mcap");
+  EXPECT_THAT(run("map walk.mcap -o walk.byre --record walk.mcap").errors, HasSubstr("is read, for RECORDING"));
+  write("notes.txt", "bring hay\n");
+  EXPECT_THAT(run("map walk.mcap -o walk.byre --record notes.txt").errors, HasSubstr("is no MCAP file"));
+  EXPECT_EQ(run("map walk.mcap -o walk.byre --record-images").exit_code, 2);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "byre/cli/map/posed_map.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
@@ -43,12 +44,17 @@ void save(Map offline, const std::optional<RefinedCalibration>& calibration, con
 }
 
 MapRun run_and_autosave(Recording& recording, const EngineOptions& run_options, const MapOptions& options,
-                        const MapRecord& record, std::optional<Map> before, const InterruptCatcher& interrupt) {
+                        const MapRecord& record, std::optional<Map> before, RecordFile& messages,
+                        const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
                     [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {
                       save(offline_copy(online), calibration, record);
                     });
   MapRunHooks hooks;
+  if (messages.is_wanted()) hooks.look = [&messages](const RunView& view) { messages.note(view); };
+  hooks.after_frame = [&messages](int, const MappedFrame& frame) {
+    if (!frame.report) messages.note_unread(frame);
+  };
   if (options.autosave_s) {
     hooks.offer_map = [&autosave](const Map& online, const std::optional<RefinedCalibration>& calibration) {
       autosave.offer(online, calibration);
@@ -126,7 +132,10 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   limit_image_threads(1);
   if (!options.quiet) show_check(std::cerr, *recording);
   const InterruptCatcher interrupt(options.outputs());
-  const MapRun run = run_and_autosave(*recording, protocol.options, options, record, std::move(extended), interrupt);
+  RecordFile messages(options.record, recording->calibration(), options.record_images);
+  const MapRun run =
+      run_and_autosave(*recording, protocol.options, options, record, std::move(extended), messages, interrupt);
+  messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
   const ResourceUse resources = resources_used_so_far();
@@ -139,6 +148,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   outputs.require_written();
   result << to_text(run, protocol, resources, names_of(options.outputs()));
   if (interrupt.caught()) return ExitCode::interrupted;
+  messages.require_written();
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -5,6 +5,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/recording_options.h"
 
 #include <string>
@@ -25,6 +26,8 @@ constexpr const char* kMapFooter = R"(Examples:
   byre map MH_01_easy --trajectory out.txt --start 10 --end 25.5 --stride 2
   byre map MH_01_easy --trajectory out.txt --pace live --quiet
   byre map images --calibration camchain.yaml --fps 20 -o barn.byre
+  byre map walk.bag --calibration camchain.yaml -o barn.byre
+  byre map rosbag2_2026_11_20 --left /cam0/image_raw --right /cam1/image_raw -o barn.byre --record mapping.mcap
 
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
@@ -34,7 +37,7 @@ writes all files, then the exit code is 130 or 143; "byre refine" makes up for i
 
 void declare_files(CLI::App& command, MapOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
-      ->type_name("FOLDER|VIDEO")
+      ->type_name("FOLDER|VIDEO|BAG")
       ->required();
   add_output(command, Output::map, "-o,--output", options.map,
              "The map, for \"byre localise\", \"byre inspect\" and later missions")
@@ -89,8 +92,9 @@ void require_consistent(const MapOptions& options) {
   if (options.given_poses && !options.map) {
     throw CLI::ValidationError("--poses", "makes a map only: name a file for it (-o barn.byre)");
   }
-  if (options.given_poses && (options.trajectory || options.causal_trajectory || options.stats)) {
-    throw CLI::ValidationError("--poses", "estimates no trajectory, so none can be written, nor its statistics");
+  if (options.given_poses && (options.trajectory || options.causal_trajectory || options.stats || options.record)) {
+    throw CLI::ValidationError("--poses",
+                               "estimates no trajectory, so none can be written, nor statistics or a record");
   }
   if (options.given_poses && (options.extended || options.autosave_s || options.no_loops)) {
     throw CLI::ValidationError("--poses", "goes with none of --extend, --autosave and --no-loops");
@@ -104,7 +108,7 @@ void require_consistent(const MapOptions& options) {
 }  // namespace
 
 std::vector<fs::path> MapOptions::outputs() const {
-  return asked_for({map, trajectory, causal_trajectory, stats});
+  return asked_for({map, trajectory, causal_trajectory, stats, record});
 }
 
 EngineOptions MapOptions::engine_options() const {
@@ -125,6 +129,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   add_choice(command, "--refine", options.refinement, {Refinement::none, Refinement::stereo, Refinement::all},
              "Matches refined in the image; less than all is for comparison (all)");
   declare_trajectory_format(command, options.trajectory_format);
+  declare_recording(command, options.record, options.record_images);
   declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });

@@ -35,6 +35,8 @@ struct MapOptions {
   bool no_loops = false;
   bool no_self_calibration = false;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  std::optional<std::filesystem::path> record;  // what happens, as messages of ROS 2
+  bool record_images = false;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for

@@ -6,6 +6,7 @@
 #include "byre/cli/run/options.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/cli/shared/warnings.h"
@@ -101,11 +102,18 @@ class EventFile {
 };
 
 MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options, RunViewer* viewer,
-                   EventFile& events, const InterruptCatcher& interrupt) {
+                   EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
   if (viewer != nullptr) hooks.look = shown_in(*viewer);
+  if (record.is_wanted()) {
+    hooks.look = [&record, show = hooks.look](const RunView& view) {
+      if (show) show(view);
+      record.note(view);
+    };
+  }
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
+    if (!frame.report) record.note_unread(frame);
   };
   return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
 }
@@ -153,7 +161,9 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
           : nullptr;
   const InterruptCatcher interrupt(options.outputs());
   EventFile events(options.events);
-  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), events, interrupt);
+  RecordFile record(options.record, opened.recording->calibration(), options.record_images);
+  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), events, record, interrupt);
+  record.finish(run);
   if (viewer) viewer->end_run();
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
@@ -176,6 +186,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
     serve_after_run(options.view, interrupt, options.quiet);
   }
   events.require_written();
+  record.require_written();
   require_frames(mission.statistics);
   require_poses(run, protocol);
   return ExitCode::done;

@@ -5,6 +5,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/input/formatted.h"
 
@@ -25,6 +26,8 @@ constexpr const char* kRunFooter = R"(Examples:
   byre run evening_round --map barn.byre --camera left --events events.jsonl
   byre run evening_round --map barn-plan.byre --frame plan --trajectory plan.txt
   byre run evening_round --map barn.byre --pace live --view
+  byre run evening.mcap --map barn.byre --left /front/left/image_raw --right /front/right/image_raw
+  byre run evening_round --map barn.byre --record evening.mcap --record-images
   byre run evening_round --truth evening_round --stats without_map.json
 
 With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
@@ -42,7 +45,7 @@ describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
-      ->type_name("FOLDER|VIDEO")
+      ->type_name("FOLDER|VIDEO|BAG")
       ->required();
   CLI::Option* const map =
       add_input(command, Input::file, "--map", options.map, "The offline map of the mission (none: plain SLAM)")
@@ -122,7 +125,7 @@ void declare_tracking(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 std::vector<fs::path> RunOptions::outputs() const {
-  return asked_for({online_map, events, trajectory, causal_trajectory, odometry, stats});
+  return asked_for({online_map, events, trajectory, causal_trajectory, odometry, stats, record});
 }
 
 EngineOptions RunOptions::engine_options() const {
@@ -143,6 +146,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_tracking(command, options);
   declare_watching(command, options.view);
   declare_trajectory_format(command, options.trajectory_format);
+  declare_recording(command, options.record, options.record_images);
   declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });

@@ -42,6 +42,8 @@ struct RunOptions {
   std::optional<OfflinePolicy> offline_policy;
   ViewOptions view;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  std::optional<std::filesystem::path> record;  // what happens, as messages of ROS 2
+  bool record_images = false;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for

@@ -175,6 +175,8 @@ std::string_view kind_of(const Written& written, const fs::path& file) {
       return "video";
     case Output::point_cloud:
       return "point cloud";
+    case Output::mcap:
+      return "MCAP file";
     case Output::calibration:
       return "calibration";
     case Output::vocabulary:
@@ -204,6 +206,8 @@ bool may_replace(const Written& written, const fs::path& file, FileContent conte
       return content == FileContent::video;
     case Output::point_cloud:
       return content == FileContent::point_cloud;
+    case Output::mcap:
+      return content == FileContent::mcap;
     case Output::calibration:
       return content == FileContent::yaml;
     case Output::vocabulary:

@@ -29,6 +29,7 @@ enum class Output : std::uint8_t {
   picture,  // as its name ends: .svg or .png
   video,
   point_cloud,
+  mcap,
   calibration,
   vocabulary,
   colmap_model,

@@ -1,0 +1,185 @@
+#include "byre/assessment/ros_report.h"
+
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace byre {
+namespace {
+
+ros::Header header(const char* frame, Timestamp time) {
+  return {ros::to_time(time), frame};
+}
+
+ros::Quaternion ros_rotation(const Eigen::Quaterniond& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+ros::Pose ros_bare_pose(const Pose& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  return {{t.x(), t.y(), t.z()}, ros_rotation(pose.rotation)};
+}
+
+ros::TransformStamped ros_transform(const char* parent, const char* child, const Pose& parent_from_child,
+                                    Timestamp time) {
+  const Eigen::Vector3d& t = parent_from_child.translation;
+  return {header(parent, time), child, {{t.x(), t.y(), t.z()}, ros_rotation(parent_from_child.rotation)}};
+}
+
+bool is_believed(const FrameReport& report) {
+  return report.map_from_body && report.health.verdict != Verdict::untrusted;
+}
+
+std::byte level_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::trusted:
+      return ros::DiagnosticStatus::kOk;
+    case Verdict::degraded:
+      return ros::DiagnosticStatus::kWarn;
+    case Verdict::untrusted:
+      break;
+  }
+  return ros::DiagnosticStatus::kError;
+}
+
+ros::KeyValue number(const char* name, double value) {
+  return {name, formatted("%.6g", value)};
+}
+
+std::vector<ros::KeyValue> values_of(const FrameReport& report) {
+  const Health& health = report.health;
+  return {{"state", std::string(to_string(report.state))},
+          {"verdict", std::string(to_string(health.verdict))},
+          {"doubt", std::string(to_string(health.doubt))},
+          number("features", report.features),
+          number("matches", report.matches),
+          number("inliers", report.inliers),
+          number("offline_expected", health.offline_expected),
+          number("offline_inliers", health.offline_inliers),
+          number("online_inliers", health.online_inliers),
+          number("suspended", health.suspended),
+          number("inlier_share", health.inlier_share),
+          number("spread", health.spread),
+          number("position_sigma_m", health.position_sigma),
+          number("rotation_sigma_rad", health.rotation_sigma),
+          number("distance_since_offline_m", health.distance_since_offline),
+          number("seconds_since_offline", health.seconds_since_offline),
+          number("track_seconds", report.track_seconds)};
+}
+
+void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + size);
+  std::memcpy(bytes.data() + begin, value, size);
+}
+
+}  // namespace
+
+ros::PoseWithCovariance ros_pose(const Pose& parent_from_body, const Matrix6& body_covariance) {
+  const Eigen::Matrix3d rotation = parent_from_body.rotation.toRotationMatrix();
+  Matrix6 turned = Matrix6::Zero();
+  turned.topLeftCorner<3, 3>() = rotation;
+  turned.bottomRightCorner<3, 3>() = rotation;
+  ros::PoseWithCovariance pose{ros_bare_pose(parent_from_body)};
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(pose.covariance.data()) =
+      turned * body_covariance * turned.transpose();
+  return pose;
+}
+
+ros::TFMessage ros_transforms(const FrameReport& report) {
+  ros::TFMessage message;
+  if (!report.odometry_from_body) return message;
+  if (is_believed(report)) {
+    const Pose map_from_odometry = *report.map_from_body * inverse(*report.odometry_from_body);
+    message.transforms.push_back(ros_transform(kMapFrame, kOdometryFrame, map_from_odometry, report.time));
+  }
+  message.transforms.push_back(ros_transform(kOdometryFrame, kBodyFrame, *report.odometry_from_body, report.time));
+  return message;
+}
+
+ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before) {
+  ros::Odometry odometry{header(kOdometryFrame, report.time), kBodyFrame,
+                         ros_pose(*report.odometry_from_body, report.odometry_covariance)};
+  if (!before || before->time >= report.time) return odometry;
+  const double seconds = to_seconds(report.time - before->time);
+  const Vector6 motion = log_pose(inverse(before->world_from_body) * *report.odometry_from_body) / seconds;
+  odometry.twist.twist = {{motion[0], motion[1], motion[2]}, {motion[3], motion[4], motion[5]}};
+  return odometry;
+}
+
+std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report) {
+  if (!is_believed(report)) return std::nullopt;
+  return ros::PoseWithCovarianceStamped{header(kMapFrame, report.time),
+                                        ros_pose(*report.map_from_body, report.covariance)};
+}
+
+ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& frame) {
+  ros::DiagnosticStatus status{ros::DiagnosticStatus::kStale, "byre: localisation", "no image", "camera", {}};
+  if (frame.report) {
+    const Health& health = frame.report->health;
+    status.level = level_of(health.verdict);
+    status.message = to_string(health.verdict);
+    if (health.doubt != Doubt::none) status.message.append(": ").append(to_string(health.doubt));
+    status.values = values_of(*frame.report);
+  }
+  status.values.push_back({"frame", std::to_string(number_of_frame)});
+  status.values.push_back({"keyframes", std::to_string(frame.keyframes)});
+  status.values.push_back({"map_points", std::to_string(frame.points)});
+  return {header("", frame.time), {std::move(status)}};
+}
+
+ros::Path ros_path(const Trajectory& trajectory, Timestamp time) {
+  ros::Path path{header(kMapFrame, time), {}};
+  for (const StampedPose& sample : trajectory) {
+    path.poses.push_back({header(kMapFrame, sample.time), ros_bare_pose(sample.world_from_body)});
+  }
+  return path;
+}
+
+ros::PointCloud2 ros_cloud(const Map& map, Timestamp time) {
+  constexpr std::uint32_t kStep = 16;
+  ros::PointCloud2 cloud{header(kMapFrame, time), 1, 0, {{"x", 0}, {"y", 4}, {"z", 8}}};
+  cloud.point_fields.push_back({"observations", 12, ros::PointField::kUint32, 1});
+  for (const PointId id : map.point_ids()) {
+    const Eigen::Vector3f position = map.find_point(id)->position_in_world.cast<float>();
+    const auto observations = static_cast<std::uint32_t>(map.observations(id).size());
+    put(cloud.data, position.data(), 3 * sizeof(float));
+    put(cloud.data, &observations, sizeof(observations));
+    ++cloud.width;
+  }
+  cloud.point_step = kStep;
+  cloud.row_step = kStep * cloud.width;
+  cloud.is_dense = true;
+  return cloud;
+}
+
+ros::TFMessage ros_mounts(const Calibration& calibration, Timestamp time) {
+  ros::TFMessage mounts{{ros_transform(kBodyFrame, kLeftFrame, calibration.body_from_left, time)}};
+  if (calibration.right) {
+    const Pose left_from_right = inverse(calibration.right->right_from_left);
+    mounts.transforms.push_back(ros_transform(kLeftFrame, kRightFrame, left_from_right, time));
+  }
+  return mounts;
+}
+
+ros::CameraInfo ros_camera_info(const Camera& camera, const std::string& frame, Timestamp time) {
+  ros::CameraInfo info{.header = header(frame.c_str(), time),
+                       .height = static_cast<std::uint32_t>(camera.height),
+                       .width = static_cast<std::uint32_t>(camera.width)};
+  const bool is_fisheye = camera.model == CameraModel::equidistant;
+  info.distortion_model = is_fisheye ? "equidistant" : "plumb_bob";
+  info.d.assign(camera.distortion.begin(), camera.distortion.begin() + (is_fisheye ? 4 : 5));
+  info.k = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+  info.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  info.p = {camera.fx, 0.0, camera.cx, 0.0, 0.0, camera.fy, camera.cy, 0.0, 0.0, 0.0, 1.0, 0.0};
+  return info;
+}
+
+ros::Image ros_image(const Image& image, const std::string& frame, Timestamp time) {
+  const auto width = static_cast<std::uint32_t>(image.width);
+  return {
+      header(frame.c_str(), time), static_cast<std::uint32_t>(image.height), width, "mono8", 0, width, image.pixels};
+}
+
+}  // namespace byre

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Records a run in an MCAP file and has it read by the readers of those who made the format.
+# Usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER
+# FOLDER holds the packages and the recording. Exit code 77: skipped, for lack of Node or the registry of its packages.
+set -euo pipefail
+
+byre=${1:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
+render_room=${2:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
+folder=${3:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+skip() {
+  echo "Skipped: $1"
+  exit 77
+}
+
+command -v node >/dev/null || skip "Node is not installed"
+command -v npm >/dev/null || skip "npm is not installed"
+
+# npm puts packages beside the files that use them: not into the source tree.
+mkdir -p "$folder"
+cp "$source"/*.mjs "$source"/package.json "$source"/package-lock.json "$folder"
+cd "$folder"
+if ! cmp -s package-lock.json node_modules/installed-lock.json; then
+  npm ci --no-audit --no-fund --fetch-retries=1 >npm.log 2>&1 || skip "npm cannot fetch @mcap/core, see $folder/npm.log"
+  cp package-lock.json node_modules/installed-lock.json
+fi
+
+rm -rf room record.mcap
+"$render_room" room --frames 24 --rate 10 --laps 0.15 2>/dev/null
+"$byre" map room --pace inline --quiet --record record.mcap --record-images --trajectory final.txt \
+  --causal-trajectory causal.txt >/dev/null
+RECORD=record.mcap TRAJECTORY=causal.txt node --test record_test.mjs
+"$byre" bag info record.mcap
+"$byre" map record.mcap --pace inline --quiet --trajectory again.txt >/dev/null
+[[ $(wc -l <again.txt) == $(wc -l <final.txt) ]] || { echo "the record gives another number of poses" >&2; exit 1; }
