@@ -3,11 +3,10 @@
 #include "byre/bag/bag.h"
 #include "byre/calibration_file.h"
 #include "byre/dataset/bag_calibration.h"
+#include "byre/dataset/bag_frames.h"
 #include "byre/dataset/bag_image.h"
 #include "byre/dataset/bag_topics.h"
 #include "byre/dataset/frame_selection.h"
-#include "byre/dataset/timed_files.h"
-#include "byre/geometry/median.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
 
@@ -20,18 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A message of images and its time.
-struct TimedMessage {
-  Timestamp time{};
-  BagMessage message;
-};
-
-struct BagFrame {
-  Timestamp time{};
-  BagMessage left;
-  std::optional<BagMessage> right{};
-};
-
 bool is_of_transforms(const BagTopic& topic) {
   return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
 }
@@ -40,82 +27,6 @@ bool is_wanted(std::string_view type) {
   const BagTopic topic{"", std::string(type), ""};
   return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||
          is_of_transforms(topic);
-}
-
-// The messages of a topic in the order of their time stamps, each of which is later than the one before. What that
-// leaves out is told.
-std::vector<TimedMessage> timed_messages(const BagContent& content, std::size_t topic, const std::string& place,
-                                         std::vector<std::string>& warnings) {
-  std::vector<TimedMessage> messages;
-  for (const BagMessage& message : content.messages) {
-    if (message.topic == topic) messages.push_back({stamp_of(content, message), message});
-  }
-  const std::string name = place + ": " + content.topics[topic].name + ": ";
-  if (std::ranges::all_of(messages, [](const TimedMessage& each) { return each.time == Timestamp(0); })) {
-    warnings.push_back(name + "has no time stamps in its headers, so those of the recorder are taken");
-    for (TimedMessage& each : messages) each.time = each.message.log_time;
-  }
-  std::size_t late = 0;
-  for (std::size_t i = 1; i < messages.size(); ++i) late += messages[i].time < messages[i - 1].time ? 1 : 0;
-  if (late > 0) warnings.push_back(name + std::to_string(late) + " images were recorded after later ones");
-  std::ranges::stable_sort(messages, {}, &TimedMessage::time);
-  const auto repeated = std::ranges::unique(messages, {}, &TimedMessage::time);
-  if (!repeated.empty()) {
-    warnings.push_back(name + std::to_string(repeated.size()) + " images bear the time of another and are left out");
-  }
-  messages.erase(repeated.begin(), repeated.end());
-  return messages;
-}
-
-std::vector<Timestamp> times_of(const std::vector<TimedMessage>& messages) {
-  std::vector<Timestamp> times;
-  for (const TimedMessage& each : messages) times.push_back(each.time);
-  return times;
-}
-
-// The median of the times from each image to the nearest one of the other camera, ms.
-double usual_difference_ms(const std::vector<Timestamp>& left, const std::vector<Timestamp>& right) {
-  std::vector<double> differences;
-  for (const Timestamp time : left) {
-    const auto after = std::ranges::lower_bound(right, time);
-    Timestamp nearest = Timestamp::max();
-    if (after != right.end()) nearest = *after - time;
-    if (after != right.begin()) nearest = std::min(nearest, time - *std::prev(after));
-    differences.push_back(1e3 * to_seconds(nearest));
-  }
-  return median(std::move(differences));
-}
-
-// Frames of the left images, each with the right one taken with it. Counts of those without are told.
-std::vector<BagFrame> frames_of(const std::vector<TimedMessage>& left, const std::vector<TimedMessage>& right,
-                                const std::string& place, std::vector<std::string>& warnings) {
-  const auto partners = partners_in_time(times_of(left), times_of(right));
-  std::vector<BagFrame> frames;
-  std::vector<bool> is_used(right.size());
-  std::size_t alone = 0;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    frames.push_back({left[i].time, left[i].message});
-    if (partners[i]) {
-      frames.back().right = right[*partners[i]].message;
-      is_used[*partners[i]] = true;
-    } else {
-      ++alone;
-    }
-  }
-  if (right.empty()) return frames;
-  if (alone == left.size()) {
-    throw InputError(place,
-                     "no right image was taken within 2 ms of any left one; the nearest is off by " +
-                         std::to_string(usual_difference_ms(times_of(left), times_of(right))) + " ms as a rule",
-                     "check that both cameras are triggered together and use one clock, or take one: --camera left");
-  }
-  const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
-  if (alone + unused > 0) {
-    warnings.push_back(place + ": " + std::to_string(alone) + " of " + std::to_string(left.size()) +
-                       " left images have no right one taken within 2 ms, " + std::to_string(unused) + " of " +
-                       std::to_string(right.size()) + " right images no left one");
-  }
-  return frames;
 }
 
 class BagRecording final : public Recording {
@@ -303,10 +214,8 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   std::vector<std::string> warnings = content.damage;
   ImageTopics topics = choose_image_topics(content, options, path);
   if (options.camera == CameraChoice::left) topics.right.reset();
-  const std::vector<TimedMessage> left = timed_messages(content, topics.left, place, warnings);
-  std::vector<TimedMessage> right;
-  if (topics.right) right = timed_messages(content, *topics.right, place, warnings);
-  std::vector<BagFrame> frames = frames_of(left, right, place, warnings);
+  auto [frames, frame_warnings] = bag_frames(content, topics, place);
+  warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
 
   PlacedCalibration calibration = calibration_of(*bag, path, topics, options);
   if (topics.right && !calibration.cameras.right && !options.camera) {
