@@ -77,8 +77,10 @@ class Bags(unittest.TestCase):
         self.expect_same(self.folder / "sqlite", 60)
 
     def test_a_rosbag2_in_mcap_gives_what_the_folder_gives(self):
-        write_rosbag2_mcap(self.folder / "mcap", self.short)
-        self.expect_same(self.folder / "mcap", 10)
+        write_rosbag2_mcap(self.folder / "mcap", self.long)
+        self.expect_same(self.folder / "mcap", 60)
+        write_rosbag2_mcap(self.folder / "mcap_raw", self.short)
+        self.expect_same(self.folder / "mcap_raw", 10)
 
     def test_bags_tell_their_topics(self):
         write_rosbag2_mcap(self.folder / "topics", self.short)

@@ -34,3 +34,9 @@ RECORD=record.mcap TRAJECTORY=causal.txt node --test record_test.mjs
 "$byre" bag info record.mcap
 "$byre" map record.mcap --pace inline --quiet --trajectory again.txt >/dev/null
 [[ $(wc -l <again.txt) == $(wc -l <final.txt) ]] || { echo "the record gives another number of poses" >&2; exit 1; }
+
+# The same messages, written by others, give the same poses.
+node rewrite_mcap.mjs record.mcap rewritten.mcap
+"$byre" bag info rewritten.mcap
+"$byre" map rewritten.mcap --pace inline --quiet --trajectory rewritten.txt >/dev/null
+cmp again.txt rewritten.txt
