@@ -24,8 +24,10 @@ endif()
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
-# Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests.
+# Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests. LINKS: what it needs beside what
+# all rooms are linked with.
 function(byre_add_room room)
+  cmake_parse_arguments(PARSE_ARGV 1 its "" "" "LINKS")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/${room}/*.cc)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cc$")
@@ -34,7 +36,7 @@ function(byre_add_room room)
     return()
   endif()
   add_library(byre_${room} OBJECT ${sources})
-  target_link_libraries(byre_${room} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES})
+  target_link_libraries(byre_${room} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS})
   set_target_properties(byre_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   byre_precompile(room byre_${room})
 
@@ -45,7 +47,7 @@ function(byre_add_room room)
     foreach(below IN LISTS rooms_below)
       target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${below}>)
     endforeach()
-    target_link_libraries(byre_${room}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} GTest::gmock_main)
+    target_link_libraries(byre_${room}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock_main)
     target_compile_definitions(byre_${room}_tests PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     byre_precompile(test byre_${room}_tests)
     add_dependencies(byre_unit_tests byre_${room}_tests)

@@ -13,6 +13,8 @@ packages=(
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # the program
   libcli11-dev python3
+  # ROS 2 on the wire
+  cyclonedds-dev
   # the package for Python
   pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-wheel
   # packages

@@ -15,7 +15,7 @@ from typing import Iterator, NamedTuple
 FLOORS = [
     {"input", "workers"},
     {"geometry", "ros"},
-    {"bag", "features", "optimise", "evaluation"},
+    {"bag", "features", "optimise", "evaluation", "dds"},
     {"dataset"},
     {"map"},
     {"place", "simulation"},
@@ -57,6 +57,7 @@ KEPT_IN = {
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},
+    r"dds/.*": {"dds"},
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
     r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},

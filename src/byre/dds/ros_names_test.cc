@@ -1,0 +1,35 @@
+#include "byre/dds/ros_names.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(RosNames, AreThoseOfDds) {
+  EXPECT_EQ(dds_topic_name("/left/image_raw"), "rt/left/image_raw");
+  EXPECT_EQ(dds_type_name("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
+}
+
+TEST(RosNames, AreResolvedInTheNodesNamespace) {
+  EXPECT_EQ(resolved("odometry", "/"), "/odometry");
+  EXPECT_EQ(resolved("odometry", "/barn/robot_1"), "/barn/robot_1/odometry");
+  EXPECT_EQ(resolved("/tf", "/barn"), "/tf");
+}
+
+TEST(RosNames, HaveAFormThatIsChecked) {
+  EXPECT_THAT(fault_in_name("/"), IsEmpty());
+  EXPECT_THAT(fault_in_name("/left/image_raw2"), IsEmpty());
+  EXPECT_THAT(fault_in_name(""), HasSubstr("begin with a slash"));
+  EXPECT_THAT(fault_in_name("left"), HasSubstr("begin with a slash"));
+  EXPECT_THAT(fault_in_name("/left//image"), HasSubstr("two slashes"));
+  EXPECT_THAT(fault_in_name("/left/"), HasSubstr("ends with a slash"));
+  EXPECT_THAT(fault_in_name("/2nd"), HasSubstr("digit"));
+  EXPECT_THAT(fault_in_name("/left-image"), HasSubstr("letters"));
+  EXPECT_THAT(fault_in_name("/" + std::string(300, 'a')), HasSubstr("longer"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "byre/dds/ros_names.h"
+#include "byre/ros/message.h"
+
+#include <string_view>
+
+namespace byre {
+
+// The hash of a message's fields (REP-2011: RIHS01_ and 64 digits); empty for messages that are never sent alone.
+std::string_view type_hash(std::string_view type_name);
+
+template <ros::Message T>
+MessageType message_type() {
+  return {std::string(T::kType), std::string(type_hash(T::kType))};
+}
+
+}  // namespace byre
