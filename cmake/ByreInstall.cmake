@@ -49,3 +49,10 @@ function(byre_install_dir variable folder debian_folder component)
     endif()" COMPONENT ${component})
   set(${variable} "\${BYRE_${variable}}" PARENT_SCOPE)
 endfunction()
+
+# The service of `byre node`, for systemd, which only an administrator starts; and what goes with it in ROS.
+function(byre_install_service)
+  byre_install_dir(service_dir ${CMAKE_INSTALL_LIBDIR}/systemd/system lib/systemd/system program)
+  install(FILES share/systemd/byre.service DESTINATION ${service_dir} COMPONENT program)
+  install(DIRECTORY ros2 DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT program)
+endfunction()

@@ -28,7 +28,7 @@ FLOORS = [
     {"archive"},
     {"assessment", "viewer"},
     {"benchmark"},
-    {"demo"},
+    {"demo", "node"},
     {"cli"},
 ]
 # Headers of include/byre, by the room that each belongs to.
@@ -52,16 +52,17 @@ KEPT_IN = {
         "workers", "simulation", "mapping", "playback", "viewer", "cli"},
     r"mutex|shared_mutex": {"workers", "viewer"},
     r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
-                            "archive", "viewer", "benchmark", "demo", "cli"},
+                            "archive", "viewer", "benchmark", "demo", "node", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},
     r"dds/.*": {"dds"},
-    r"opencv2/.*": {"features", "dataset", "simulation", "viewer"},
+    r"opencv2/.*": {"features", "dataset", "simulation", "viewer", "node"},
     r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},
-    r"nlohmann/.*": {"assessment", "viewer", "benchmark", "cli"},
+    r"nlohmann/.*": {"assessment", "viewer", "benchmark", "node", "cli"},
+    r"systemd/.*": {"node"},
 }
 
 

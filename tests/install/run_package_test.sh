@@ -53,6 +53,10 @@ unset BYRE_DATA BYRE_VOCABULARY
 usr=$root/usr
 byre=$usr/bin/byre
 
+if grep -q '^BYRE_BUILD_NODE:BOOL=ON' "$build_dir/CMakeCache.txt"; then
+  [[ -f $usr/lib/systemd/system/byre.service ]] || fail "there is no service"
+  "$byre" node --print-config >/dev/null || fail "byre node does not start"
+fi
 "$byre" --version
 [[ "$("$byre" --version) " == "byre ${version%-*} " ]] || fail "the program has another version than its package, $version"
 [[ $("$byre" vocabulary show) == "vocabulary   $usr/share/byre/default.vocabulary"* ]] || fail "the vocabulary is not found"

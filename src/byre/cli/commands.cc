@@ -22,6 +22,9 @@ constexpr std::array kCommands = {
     Command{"bag", "Tell what a bag of ROS holds", declare_bag},
     Command{"map", "Turn a recording into a map and a trajectory", declare_map},
     Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
+#ifdef BYRE_WITH_NODE
+    Command{"node", "Track what topics of ROS 2 bring, and publish poses and health there", declare_node},
+#endif
     Command{"localise", "Find frames in a map, each without a guess", declare_localise},
     Command{"register", "Find where a map lies on a floor plan", declare_register},
     Command{"refine", "Look for loops in a map once more and adjust all of it", declare_refine},

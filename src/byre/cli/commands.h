@@ -32,6 +32,7 @@ Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
+Action declare_node(CLI::App& command);  // where byre is built with ROS 2
 Action declare_register(CLI::App& command);
 Action declare_draw(CLI::App& command);
 Action declare_view(CLI::App& command);

@@ -1,0 +1,97 @@
+#include "byre/cli/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/features/image_threads.h"
+#include "byre/node/node.h"
+
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct NodeOptions {
+  std::optional<std::filesystem::path> config;
+  std::string distribution;  // empty: by the environment
+  bool check = false;
+  bool quiet = false;
+};
+
+constexpr const char* kNodeFooter = R"(Examples:
+  byre node --print-config > robot.yaml
+  byre node --config robot.yaml --check
+  byre node --config robot.yaml
+  ROS_DOMAIN_ID=7 byre node --config robot.yaml --ros-distro humble
+
+A node of ROS 2 that needs no ROS: it speaks to others by Cyclone DDS. It heeds ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
+ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO and CYCLONEDDS_URI, and goes on until it is stopped (Ctrl-C,
+SIGTERM), when it keeps what was mapped. docs/ros2.md tells its topics, frames and settings.
+
+Exit codes: 0 stopped, or --check found nothing wrong, 1 failed at work, 3 settings or files that cannot be used.)";
+
+NodeConfig sound_config(const NodeOptions& options) {
+  if (!options.config) throw InputError("--config", "is missing", "name a file, as --print-config prints it");
+  NodeConfigReading reading = read_node_config(*options.config);
+  if (!reading.faults.empty()) throw InputError(reading.faults.front());
+  return reading.config;
+}
+
+// All that is wrong, and not just the first thing.
+ExitCode check(const std::filesystem::path& path, std::ostream& result) {
+  NodeConfigReading reading = read_node_config(path);
+  std::vector<InputError> faults = std::move(reading.faults);
+  if (faults.empty()) faults = faults_in_files(reading.config);
+  for (const InputError& fault : faults) std::cerr << "byre: error: " << fault.what() << "\n";
+  if (!faults.empty()) return ExitCode::bad_input;
+  result << path.string() << ": nothing wrong found\n";
+  return ExitCode::done;
+}
+
+RosNetwork network_of(const NodeOptions& options) {
+  RosNetwork network = read_ros_network(program_environment());
+  if (options.distribution.empty()) return network;
+  const auto distribution = distribution_of(options.distribution);
+  if (!distribution) throw InputError("--ros-distro", "is no release of ROS 2", "give a name as humble or jazzy");
+  network.distribution = *distribution;
+  return network;
+}
+
+ExitCode run_node(const NodeOptions& options, std::ostream& result) {
+  if (options.check && options.config) return check(*options.config, result);
+  const NodeConfig config = sound_config(options);
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  const bool is_quiet = options.quiet;
+  Node node(config, network_of(options), program_environment()("CYCLONEDDS_URI").value_or(""),
+            [is_quiet](const std::string& line) {
+              if (!is_quiet) std::cerr << "byre node: " << line << std::endl;
+            });
+  node.run([&interrupt] { return interrupt.caught(); });
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_node(CLI::App& command) {
+  const auto options = std::make_shared<NodeOptions>();
+  add_input(command, Input::file, "--config", options->config, "Settings, as --print-config prints them")
+      ->type_name("YAML");
+  add_text(
+      command, "--ros-distro", options->distribution,
+      "Release of ROS 2 that the other programs are of: humble and before, or any later one (ROS_DISTRO, else jazzy)")
+      ->type_name("NAME");
+  command.add_flag("--check", options->check, "Say what is wrong with the settings and the files they name, and exit");
+  command.add_flag("--quiet", options->quiet, "Do not tell what happens on the standard error stream");
+  const auto print = [options] {
+    std::cout << node_config_file(options->config ? sound_config(*options) : NodeConfig{}) << std::flush;
+    if (!std::cout) throw std::runtime_error("the settings cannot be written to the standard output");
+    throw CLI::Success();
+  };
+  command.add_flag_callback("--print-config", print, "Print all settings as they would be used, as YAML, and exit");
+  command.footer(kNodeFooter);
+  return [options](std::ostream& result) { return run_node(*options, result); };
+}
+
+}  // namespace byre::cli

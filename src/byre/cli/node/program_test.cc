@@ -1,0 +1,63 @@
+// "byre node" as a user runs it, up to where it speaks to others: tests/ros2 has the rest.
+
+#include "byre/cli/shared/program_fixture.h"
+
+#include <gmock/gmock.h>
+
+namespace byre::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class NodeProgram : public ProgramTest {};
+
+TEST_F(NodeProgram, ExplainsItself) {
+  const Outcome help = run("node --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output, AllOf(HasSubstr("--print-config"), HasSubstr("ROS_DOMAIN_ID"), HasSubstr("docs/ros2.md")));
+}
+
+TEST_F(NodeProgram, PrintsSettingsThatItTakesBack) {
+  const Outcome first = run("node --print-config");
+  EXPECT_EQ(first.exit_code, 0);
+  EXPECT_THAT(first.output, HasSubstr("task: mission"));
+  write("own.yaml", "slam:\n  map: barn.byre\ntopics:\n  pose: /amcl_pose\n");
+  const Outcome printed = run("node --config own.yaml --print-config");
+  EXPECT_EQ(printed.exit_code, 0) << printed.errors;
+  EXPECT_THAT(printed.output, AllOf(HasSubstr("pose: /amcl_pose"), HasSubstr("map: barn.byre")));
+}
+
+TEST_F(NodeProgram, ChecksSettingsAndTellsAllThatIsWrong) {
+  write("robot.yaml", "slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n");
+  const Outcome faults = run("node --config robot.yaml --check");
+  EXPECT_EQ(faults.exit_code, 3);
+  EXPECT_THAT(faults.output, IsEmpty());
+  EXPECT_THAT(faults.errors, AllOf(HasSubstr("byre: error: robot.yaml:3: there is no setting slam.worker"),
+                                   HasSubstr("byre: error: robot.yaml:5: images.pair_wait is 'soon'")));
+  write("robot.yaml", "slam:\n  map: barn.byre\n");
+  const Outcome files = run("node --config robot.yaml --check");
+  EXPECT_EQ(files.exit_code, 3);
+  EXPECT_THAT(files.errors, HasSubstr("byre: error: barn.byre: cannot be opened"));
+  write("robot.yaml", "slam:\n  task: map\n  save: barn.byre\n");
+  const Outcome sound = run("node --config robot.yaml --check");
+  EXPECT_EQ(sound.exit_code, 0) << sound.errors;
+  EXPECT_EQ(sound.output, "robot.yaml: nothing wrong found\n");
+}
+
+TEST_F(NodeProgram, NamesBadInput) {
+  write("robot.yaml", "slam:\n  task: map\n  save: barn.byre\n");
+  for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
+           {"node", "byre: error: --config: is missing"},
+           {"node --config absent.yaml", "byre: error: absent.yaml: "},
+           {"node --config robot.yaml --ros-distro 'Humble 2'", "byre: error: --ros-distro: is no release"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith(message));
+  }
+}
+
+}  // namespace
+}  // namespace byre::cli

@@ -1,0 +1,120 @@
+#include "byre/node/camera_watch.h"
+
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace byre {
+namespace {
+
+using std::chrono_literals::operator""s;
+using std::chrono_literals::operator""ms;
+
+constexpr std::byte kWarn = ros::DiagnosticStatus::kWarn;
+constexpr std::byte kError = ros::DiagnosticStatus::kError;
+constexpr std::byte kStale = ros::DiagnosticStatus::kStale;
+
+constexpr Timestamp kRecently = 1s;
+constexpr Timestamp kRemembered = 10s;  // so that somebody who looks now and then sees what is over
+
+}  // namespace
+
+void CameraWatch::note_arrival(Timestamp now) {
+  if (last_arrival_) {
+    const Timestamp passed = now - *last_arrival_;
+    if (passed < kRecently) interval_ = interval_ == Timestamp{} ? passed : (9 * interval_ + passed) / 10;
+  }
+  last_arrival_ = now;
+  ++arrived_;
+}
+
+void CameraWatch::note_unusable(const InputError& fault, Timestamp now) {
+  unusable_ = Note{now, fault.what()};
+}
+
+void CameraWatch::note_frame(const CameraFrame& frame, Timestamp now) {
+  frames_.push_back({now, frame.wants_right && !frame.has_right, frame.seconds});
+  if (frame.is_frozen) frozen_ = Note{now, "the camera repeats its image; restart its driver"};
+  if (frame.jump) {
+    jump_ = Note{now, formatted("stamps jumped by %.3f s; keep the clocks of camera and computer together (chrony)",
+                                to_seconds(*frame.jump))};
+  }
+  if (is_dropped(frame.fault) || frame.fault == InputFault::late_right) {
+    dropped_ = Note{now, "an image was not used: " + std::string(to_string(frame.fault))};
+  }
+  forget_before(now - kRecently);
+}
+
+void CameraWatch::note_passed_over(int total, Timestamp now) {
+  for (; passed_over_ < total; ++passed_over_) passed_over_at_.push_back(now);
+  forget_before(now - kRecently);
+}
+
+void CameraWatch::forget_before(Timestamp time) {
+  while (!frames_.empty() && frames_.front().time < time) frames_.pop_front();
+  while (!passed_over_at_.empty() && passed_over_at_.front() < time) passed_over_at_.pop_front();
+}
+
+// Slow cameras are silent for longer.
+Timestamp CameraWatch::longest_silence() const {
+  return std::max<Timestamp>(500ms, 3 * interval_);
+}
+
+std::optional<CameraWatch::Finding> CameraWatch::silence(Timestamp now) const {
+  const double silent = to_seconds(now - last_arrival_.value_or(since_));
+  if (!last_arrival_) {
+    if (silent < 1.0) return std::nullopt;
+    return Finding{kStale, "no images on " + topic_ + "; look at the camera's driver, the topic and ROS_DOMAIN_ID"};
+  }
+  if (silent < to_seconds(longest_silence())) return std::nullopt;
+  return Finding{kStale, formatted("no image for %.1f s on ", silent) + topic_};
+}
+
+std::optional<CameraWatch::Finding> CameraWatch::lost_right_images() const {
+  const auto lacking = std::ranges::count_if(frames_, &Recent::lacks_right);
+  if (lacking == 0) return std::nullopt;
+  return Finding{lacking == std::ssize(frames_) ? kError : kWarn,
+                 formatted("right images are missing: %d of the last %d", static_cast<int>(lacking),
+                           static_cast<int>(frames_.size()))};
+}
+
+std::vector<CameraWatch::Finding> CameraWatch::findings(Timestamp now) const {
+  std::vector<Finding> found;
+  const auto add = [&](std::byte level, const std::optional<Note>& note, Timestamp age) {
+    if (note && now - note->time < age) found.push_back({level, note->text});
+  };
+  add(kError, unusable_, kRecently);
+  if (const auto finding = silence(now)) found.push_back(*finding);
+  add(kError, frozen_, kRecently);
+  if (const auto finding = lost_right_images()) found.push_back(*finding);
+  add(kWarn, jump_, kRemembered);
+  add(kWarn, dropped_, kRecently);
+  if (!passed_over_at_.empty()) {
+    found.push_back({kWarn, formatted("%d images of the last second were left out, as newer ones were there",
+                                      static_cast<int>(passed_over_at_.size()))});
+  }
+  return found;
+}
+
+ros::DiagnosticStatus CameraWatch::status(Timestamp now) const {
+  ros::DiagnosticStatus status;
+  status.name = "byre: cameras";
+  for (const Finding& finding : findings(now)) {
+    status.level = std::max(status.level, finding.level);
+    status.message += (status.message.empty() ? "" : "; ") + finding.text;
+  }
+  if (status.message.empty()) {
+    status.message = formatted("%d frames a second", static_cast<int>(frames_.size()));
+  }
+  status.hardware_id = topic_;
+  double slowest = 0.0;
+  for (const Recent& frame : frames_) slowest = std::max(slowest, frame.seconds);
+  status.values = {{"images", std::to_string(arrived_)},
+                   {"images left out", std::to_string(passed_over_)},
+                   {"frames in the last second", std::to_string(frames_.size())},
+                   {"slowest of these, ms", formatted("%.1f", 1e3 * slowest)}};
+  return status;
+}
+
+}  // namespace byre

@@ -1,0 +1,123 @@
+// Frames of a robot: what is fixed to what, and map -> odom -> base.
+
+#include "byre/node/pose_frames.h"
+#include "byre/node/pose_messages.h"
+#include "byre/node/static_frames.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+Pose some_pose(double seed) {
+  const Eigen::Vector3d turn(0.3 * seed, -0.2, 0.1 + seed);
+  return {rotation_exp(turn), {seed, 2.0 - seed, 0.5 * seed}};
+}
+
+double distance(const Pose& a, const Pose& b) {
+  return (a.translation - b.translation).norm() + angle_between(a.rotation, b.rotation);
+}
+
+ros::TFMessage fixed(const std::string& parent, const std::string& child, const Pose& parent_from_child) {
+  return {{transform_message({{}, parent}, child, parent_from_child)}};
+}
+
+TEST(StaticFrames, LeadUpAndDownTheTree) {
+  StaticFrames frames;
+  frames.take(fixed("base_link", "mast", some_pose(1)));
+  frames.take(fixed("/mast", "camera", some_pose(2)));
+  frames.take(fixed("base_link", "laser", some_pose(3)));
+  EXPECT_LT(distance(*frames.between("base_link", "camera"), some_pose(1) * some_pose(2)), 1e-9);
+  EXPECT_LT(distance(*frames.between("laser", "camera"), inverse(some_pose(3)) * some_pose(1) * some_pose(2)), 1e-9);
+  EXPECT_LT(distance(*frames.between("mast", "mast"), Pose{}), 1e-12);
+  EXPECT_FALSE(frames.between("base_link", "wheel"));
+}
+
+TEST(StaticFrames, SurviveWhatMakesNoSense) {
+  StaticFrames frames;
+  frames.take(fixed("a", "b", some_pose(1)));
+  frames.take(fixed("b", "a", some_pose(2)));  // round in a circle
+  ros::TFMessage broken = fixed("a", "c", {});
+  broken.transforms[0].transform.rotation.w = 0.0;
+  frames.take(broken);
+  broken = fixed("a", "d", {});
+  broken.transforms[0].transform.translation.x = std::numeric_limits<double>::quiet_NaN();
+  frames.take(broken);
+  EXPECT_FALSE(frames.between("x", "b"));
+  EXPECT_FALSE(frames.between("a", "c"));
+  EXPECT_FALSE(frames.between("a", "d"));
+  EXPECT_TRUE(frames.between("a", "b"));
+}
+
+FrameReport report_at(const std::optional<Pose>& odometry, Verdict verdict = Verdict::trusted) {
+  FrameReport report;
+  report.state = State::tracking;
+  report.odometry_from_body = odometry;
+  report.health.verdict = verdict;
+  return report;
+}
+
+TEST(PoseFrames, PutMapAndOdometryTogether) {
+  PoseFrames frames;
+  frames.note(report_at(some_pose(1)), some_pose(2));
+  EXPECT_LT(distance(*frames.map_from_odom() * *frames.odom_from_base(), some_pose(2)), 1e-9);
+  EXPECT_FALSE(frames.is_held());
+}
+
+TEST(PoseFrames, HoldTheMapWhileItIsDoubtfulAndWithdrawItOnceTheRobotIsLost) {
+  PoseFrames frames;
+  frames.note(report_at(some_pose(1), Verdict::untrusted), some_pose(2));
+  EXPECT_FALSE(frames.map_from_odom()) << "nothing was trusted so far";
+  frames.note(report_at(some_pose(1)), some_pose(2));
+  const Pose known = *frames.map_from_odom();
+  frames.note(report_at(some_pose(3), Verdict::untrusted), some_pose(0.5));
+  ASSERT_TRUE(frames.map_from_odom());
+  EXPECT_LT(distance(*frames.map_from_odom(), known), 1e-12);
+  EXPECT_TRUE(frames.is_held());
+  FrameReport lost = report_at(std::nullopt, Verdict::untrusted);
+  lost.events = {SessionEvent::navigation_error};
+  frames.note(lost, std::nullopt);
+  EXPECT_FALSE(frames.map_from_odom());
+  EXPECT_FALSE(frames.odom_from_base());
+}
+
+TEST(PoseFrames, GoOnWithOdometryWhereTrackingBeginsAnew) {
+  PoseFrames frames;
+  frames.note(report_at(some_pose(1)), some_pose(2));
+  const Pose before = *frames.odom_from_base();
+  frames.begin_anew();
+  EXPECT_FALSE(frames.map_from_odom());
+  frames.note(report_at(some_pose(7)), std::nullopt);
+  EXPECT_LT(distance(*frames.odom_from_base(), before), 1e-9);
+  frames.note(report_at(some_pose(7) * some_pose(0.2)), std::nullopt);
+  EXPECT_LT(distance(*frames.odom_from_base(), before * some_pose(0.2)), 1e-9);
+}
+
+TEST(PoseMessages, TurnCovariancesIntoTheParentsAxes) {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance(0, 0) = 4.0;   // along the body's x
+  covariance(5, 5) = 0.01;  // about its z
+  covariance(0, 5) = covariance(5, 0) = 0.1;
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));  // x becomes y
+  const std::array<double, 36> turned = ros_covariance(covariance, quarter);
+  EXPECT_NEAR(turned[0], 0.0, 1e-12);
+  EXPECT_NEAR(turned[7], 4.0, 1e-12);
+  EXPECT_NEAR(turned[35], 0.01, 1e-12);
+  EXPECT_NEAR(turned[11], 0.1, 1e-12) << "row y, column of the rotation about z";
+}
+
+TEST(PoseMessages, TellMotionAsSeenInTheBody) {
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  const ros::Twist twist = twist_between({quarter, {1, 0, 0}}, {quarter, {1, 0.1, 0}}, from_seconds(0.05));
+  EXPECT_NEAR(twist.linear.x, 2.0, 1e-9) << "forward, which is y of the parent";
+  EXPECT_NEAR(twist.linear.y, 0.0, 1e-9);
+  const ros::Twist turning =
+      twist_between({}, {rotation_exp({0, 0, 0.02}), Eigen::Vector3d::Zero()}, from_seconds(0.1));
+  EXPECT_NEAR(turning.angular.z, 0.2, 1e-9);
+}
+
+}  // namespace
+}  // namespace byre

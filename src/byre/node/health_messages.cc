@@ -1,0 +1,72 @@
+#include "byre/node/health_messages.h"
+
+#include "byre/assessment/report_json.h"
+#include "byre/input/formatted.h"
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+std::byte level_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::trusted:
+      return ros::DiagnosticStatus::kOk;
+    case Verdict::degraded:
+      return ros::DiagnosticStatus::kWarn;
+    case Verdict::untrusted:
+      break;
+  }
+  return ros::DiagnosticStatus::kError;
+}
+
+}  // namespace
+
+std::string advice_for(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::no_pose:
+      return "lead the robot to where the map was made";
+    case Doubt::blinded:
+      return "look for covered lenses, darkness and glare";
+    case Doubt::frozen:
+      return "restart the camera's driver";
+    case Doubt::right_camera:
+      return "look at the right camera's lens and exposure";
+    case Doubt::cameras_disagree:
+      return "look whether the cameras are in step, exchanged or were moved; calibrate them";
+    case Doubt::calibration:
+      return "calibrate the cameras";
+    default:
+      return "";
+  }
+}
+
+ros::DiagnosticStatus localisation_status(const FrameReport& report) {
+  const Health& health = report.health;
+  ros::DiagnosticStatus status;
+  status.level = level_of(health.verdict);
+  status.name = "byre: localisation";
+  const std::string advice = advice_for(health.doubt);
+  status.message = std::string(to_string(health.verdict));
+  if (health.doubt != Doubt::none) status.message += ": " + std::string(to_string(health.doubt));
+  if (!advice.empty()) status.message += "; " + advice;
+  status.values = {{"verdict", std::string(to_string(health.verdict))},
+                   {"doubt", std::string(to_string(health.doubt))},
+                   {"state", std::string(to_string(report.state))},
+                   {"offline inliers", std::to_string(health.offline_inliers)},
+                   {"offline points expected", std::to_string(health.offline_expected)},
+                   {"online inliers", std::to_string(health.online_inliers)},
+                   {"position sigma, m", formatted("%.4f", health.position_sigma)},
+                   {"rotation sigma, rad", formatted("%.5f", health.rotation_sigma)},
+                   {"distance since offline points, m", formatted("%.2f", health.distance_since_offline)}};
+  return status;
+}
+
+std::string health_line(const FrameReport& report, const std::optional<Pose>& map_from_body) {
+  nlohmann::ordered_json line = {{"time_ns", report.time.count()}, {"state", to_string(report.state)}};
+  line["pose"] = map_from_body ? pose_json(*map_from_body, report.covariance) : nlohmann::ordered_json();
+  line["health"] = health_json(report.health);
+  return dumped(line);
+}
+
+}  // namespace byre

@@ -1,0 +1,112 @@
+#include "byre/node/image_message.h"
+
+#include "byre/dataset/image_size.h"
+#include "byre/input_error.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace byre {
+namespace {
+
+// How an encoding of sensor_msgs/image_encodings.hpp is taken. Old names, which drivers still send, count as well.
+struct Encoding {
+  std::string_view name;
+  PixelFormat format = PixelFormat::grey8;
+  int cv_type = CV_8UC1;            // type of the rows as they come
+  std::optional<int> to_grey = {};  // OpenCV's conversion, where tracking does not take the format as it is
+};
+
+constexpr std::array kEncodings = {
+    Encoding{"mono8"},
+    Encoding{"8UC1"},
+    Encoding{"mono16", PixelFormat::grey16, CV_16UC1},
+    Encoding{"16UC1", PixelFormat::grey16, CV_16UC1},
+    Encoding{"bgr8", PixelFormat::bgr8, CV_8UC3},
+    Encoding{"8UC3", PixelFormat::bgr8, CV_8UC3},
+    Encoding{"rgb8", PixelFormat::rgb8, CV_8UC3},
+    Encoding{"bgra8", PixelFormat::grey8, CV_8UC4, cv::COLOR_BGRA2GRAY},
+    Encoding{"8UC4", PixelFormat::grey8, CV_8UC4, cv::COLOR_BGRA2GRAY},
+    Encoding{"rgba8", PixelFormat::grey8, CV_8UC4, cv::COLOR_RGBA2GRAY},
+    Encoding{"yuyv", PixelFormat::yuyv, CV_8UC2},
+    Encoding{"yuv422_yuy2", PixelFormat::yuyv, CV_8UC2},
+    Encoding{"uyvy", PixelFormat::grey8, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
+    Encoding{"yuv422", PixelFormat::grey8, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
+    // OpenCV names a pattern by its second row's second and third pixel.
+    Encoding{"bayer_rggb8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerBG2GRAY},
+    Encoding{"bayer_bggr8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerRG2GRAY},
+    Encoding{"bayer_gbrg8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerGR2GRAY},
+    Encoding{"bayer_grbg8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerGB2GRAY},
+};
+
+void require_size(const ros::Image& message, const Encoding& encoding, const std::string& place) {
+  constexpr std::uint32_t kMostSide = 1u << 16;
+  const bool is_of_a_size = message.width > 0 && message.height > 0 && message.width <= kMostSide &&
+                            message.height <= kMostSide && message.width * double(message.height) <= kMostPixels;
+  const std::size_t row = message.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.cv_type));
+  if (!is_of_a_size || message.step < row || message.data.size() < std::size_t{message.step} * message.height) {
+    throw InputError(place,
+                     "has an image of " + std::to_string(message.width) + " x " + std::to_string(message.height) +
+                         " pixels whose rows are not all there",
+                     "look at width, height, step and data of what the camera's driver sends");
+  }
+}
+
+ReceivedImage grey_image(ros::Header header, const cv::Mat& grey) {
+  ReceivedImage image;
+  image.header = std::move(header);
+  image.about = {.width = grey.cols, .height = grey.rows, .format = PixelFormat::grey8};
+  image.pixels.assign(grey.datastart, grey.dataend);
+  image.about.time = ros::to_nanoseconds(image.header.stamp);
+  return image;
+}
+
+}  // namespace
+
+ReceivedImage received_image(ros::Image message, const std::string& place) {
+  const auto* const encoding = std::ranges::find(kEncodings, message.encoding, &Encoding::name);
+  if (encoding == kEncodings.end()) {
+    throw InputError(place, "has images of the encoding '" + message.encoding.substr(0, 40) + "'",
+                     "have the driver send mono8, mono16, bgr8, rgb8, bgra8, rgba8, yuyv, uyvy or Bayer of 8 bits");
+  }
+  require_size(message, *encoding, place);
+  if (encoding->format == PixelFormat::grey16 && message.is_bigendian != 0) {
+    throw InputError(place, "has 16-bit images with the highest byte first", "have the driver send mono8");
+  }
+  const int width = static_cast<int>(message.width), height = static_cast<int>(message.height);
+  if (encoding->to_grey) {
+    const cv::Mat given(height, width, encoding->cv_type, message.data.data(), message.step);
+    cv::Mat grey;
+    cv::cvtColor(given, grey, *encoding->to_grey);
+    return grey_image(std::move(message.header), grey);
+  }
+  ReceivedImage image;
+  image.header = std::move(message.header);
+  image.about = {.width = width, .height = height, .stride = message.step, .format = encoding->format};
+  image.about.time = ros::to_nanoseconds(image.header.stamp);
+  image.pixels = std::move(message.data);
+  return image;
+}
+
+ReceivedImage received_image(const ros::CompressedImage& message, const std::string& place) {
+  const auto size = stated_size(std::span(message.data));
+  const bool is_sensible = size && size->pixels() > 0.0 && size->pixels() <= kMostPixels;
+  cv::Mat grey;
+  try {
+    if (is_sensible) grey = cv::imdecode(message.data, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
+  }
+  if (grey.empty()) {
+    throw InputError(place, "has an image that is no whole JPEG or PNG ('" + message.format.substr(0, 40) + "')",
+                     "look at what the camera's driver compresses to");
+  }
+  return grey_image(message.header, grey);
+}
+
+}  // namespace byre

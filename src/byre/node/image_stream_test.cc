@@ -1,0 +1,161 @@
+// Images as they come: pairs, stamps that jump, and what is said of the cameras.
+
+#include "byre/node/camera_watch.h"
+#include "byre/node/image_pairs.h"
+#include "byre/node/stamp_clock.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+using std::chrono_literals::operator""h;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+using Pairs = ImagePairs<int>;
+
+TEST(ImagePairs, GivesTheNewestWholePairAndPassesOlderOnesOver) {
+  Pairs pairs({true, 0ms, 50ms});
+  pairs.add_left(1s, 1, 0ms);
+  pairs.add_right(1s, 11, 0ms);
+  pairs.add_left(2s, 2, 1ms);
+  pairs.add_right(2s, 12, 1ms);
+  pairs.add_left(3s, 3, 2ms);
+  const auto pair = pairs.next(3ms);
+  ASSERT_TRUE(pair.has_value());
+  EXPECT_EQ(pair->left, 2);
+  EXPECT_EQ(pair->right, 12);
+  EXPECT_EQ(pairs.counts().passed_over, 1);
+  EXPECT_FALSE(pairs.next(4ms)) << "the third waits for its right image";
+  pairs.add_right(3s, 13, 5ms);
+  EXPECT_EQ(pairs.next(5ms)->right, 13);
+}
+
+TEST(ImagePairs, GivesALeftImageAloneOnceItHasWaited) {
+  Pairs pairs({true, 0ms, 50ms});
+  pairs.add_left(1s, 1, 0ms);
+  pairs.add_right(1s + 1ms, 11, 0ms);
+  EXPECT_FALSE(pairs.next(49ms));
+  const auto pair = pairs.next(50ms);
+  ASSERT_TRUE(pair.has_value());
+  EXPECT_FALSE(pair->right.has_value());
+  EXPECT_EQ(pairs.counts().without_right, 1);
+}
+
+TEST(ImagePairs, TakesTheNearestRightImageWithinTheTolerance) {
+  Pairs pairs({true, 5ms, 50ms});
+  pairs.add_right(1s - 4ms, 10, 0ms);
+  pairs.add_right(1s + 2ms, 11, 0ms);
+  pairs.add_left(1s, 1, 0ms);
+  EXPECT_EQ(pairs.next(0ms)->right, 11);
+}
+
+TEST(ImagePairs, AreLeftImagesAloneOfOneCamera) {
+  Pairs pairs({false, 0ms, 50ms});
+  pairs.add_left(1s, 1, 0ms);
+  pairs.add_left(2s, 2, 0ms);
+  EXPECT_EQ(pairs.next(0ms)->left, 2);
+  EXPECT_FALSE(pairs.next(0ms));
+}
+
+TEST(ImagePairs, KeepFewImagesThatNobodyAsksFor) {
+  Pairs pairs({true, 0ms, 1s});
+  for (int i = 0; i < 100; ++i) pairs.add_left(Timestamp(i * 50ms), i, 0ms);
+  EXPECT_EQ(pairs.counts().passed_over, 92);
+}
+
+TEST(StampClock, LeavesStampsAloneThatGoOn) {
+  StampClock clock;
+  for (int i = 0; i < 5; ++i) {
+    const auto reading = clock.read(Timestamp(100s + i * 50ms), Timestamp(i * 900ms));
+    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "however late they come";
+    EXPECT_FALSE(reading.jump);
+  }
+  EXPECT_FALSE(clock.read(100s + 100ms, 5s).jump) << "an image of before";
+  EXPECT_FALSE(clock.read(160s, 65s).jump) << "a pause of a minute";
+}
+
+TEST(StampClock, TakesJumpsOut) {
+  StampClock clock;
+  clock.read(1000s, 10s);
+  const auto back = clock.read(400s, 10s + 50ms);
+  ASSERT_TRUE(back.jump);
+  EXPECT_EQ(*back.jump, Timestamp(-600s - 50ms));
+  EXPECT_EQ(back.time, Timestamp(1000s + 50ms));
+  EXPECT_EQ(clock.read(400s + 50ms, 10s + 100ms).time, Timestamp(1000s + 100ms));
+  const auto forward = clock.read(4000s, 10s + 150ms);
+  ASSERT_TRUE(forward.jump);
+  EXPECT_EQ(forward.time, Timestamp(1000s + 150ms));
+}
+
+class Watch : public testing::Test {
+ protected:
+  void frames(Timestamp from, int count, const CameraFrame& frame) {
+    for (int i = 0; i < count; ++i) {
+      watch_.note_arrival(from + i * 50ms);
+      watch_.note_frame(frame, from + i * 50ms);
+    }
+  }
+  std::string said(Timestamp now) const { return watch_.status(now).message; }
+  std::byte level(Timestamp now) const { return watch_.status(now).level; }
+
+  CameraWatch watch_{"/left", 0s};
+  CameraFrame good_;
+  CameraFrame left_alone_ = [] {
+    CameraFrame frame;
+    frame.has_right = false;
+    return frame;
+  }();
+};
+
+TEST_F(Watch, IsContentWithACameraThatWorks) {
+  frames(1s, 40, good_);
+  EXPECT_EQ(level(3s), ros::DiagnosticStatus::kOk);
+}
+
+TEST_F(Watch, NamesACameraThatIsSilent) {
+  EXPECT_EQ(level(1500ms), ros::DiagnosticStatus::kStale);
+  EXPECT_THAT(said(1500ms), HasSubstr("no images on /left"));
+  frames(2s, 20, good_);
+  EXPECT_EQ(level(3s), ros::DiagnosticStatus::kOk);
+  EXPECT_EQ(level(3600ms), ros::DiagnosticStatus::kStale) << "within a second";
+  EXPECT_THAT(said(3600ms), HasSubstr("no image for"));
+}
+
+TEST_F(Watch, NamesLostRightImages) {
+  frames(1s, 20, good_);
+  frames(2s, 4, left_alone_);
+  EXPECT_EQ(level(2200ms), ros::DiagnosticStatus::kWarn);
+  frames(2200ms, 20, left_alone_);
+  EXPECT_EQ(level(3200ms), ros::DiagnosticStatus::kError);
+  EXPECT_THAT(said(3200ms), HasSubstr("right images are missing"));
+  frames(3200ms, 25, good_);
+  EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
+}
+
+TEST_F(Watch, NamesFrozenImagesJumpsAndUnusableOnes) {
+  CameraFrame frame = good_;
+  frame.is_frozen = true;
+  frames(1s, 1, frame);
+  EXPECT_THAT(said(1s), HasSubstr("repeats its image"));
+  frame = good_;
+  frame.jump = -3600s;
+  frames(3s, 1, frame);
+  EXPECT_THAT(said(3s), HasSubstr("stamps jumped by -3600.000 s"));
+  frames(3500ms, 10, good_);
+  watch_.note_unusable(InputError("/left", "is odd", "mend it"), 4s);
+  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); stamps jumped")) << "all there is to say";
+  EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
+}
+
+TEST_F(Watch, CountsImagesThatWereLeftOut) {
+  frames(1s, 20, good_);
+  watch_.note_passed_over(3, 1950ms);
+  EXPECT_EQ(level(2s), ros::DiagnosticStatus::kWarn);
+  EXPECT_THAT(said(2s), HasSubstr("3 images of the last second"));
+}
+
+}  // namespace
+}  // namespace byre

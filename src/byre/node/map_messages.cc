@@ -1,0 +1,96 @@
+#include "byre/node/map_messages.h"
+
+#include "byre/dataset/image_file.h"
+#include "byre/input_error.h"
+#include "byre/map/map_file.h"
+#include "byre/node/pose_messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace byre {
+namespace {
+
+// Limits of map_server's trinary mode, of darkness from 0 (white) to 1.
+std::int8_t occupancy_of(std::uint8_t grey) {
+  const double darkness = (255.0 - grey) / 255.0;
+  if (darkness > 0.65) return 100;
+  return darkness < 0.196 ? 0 : -1;
+}
+
+// From pixels to metres by one number, without a mirror: then only a turn is left, which the grid's origin tells.
+double side_of_pixel(const FloorPlan& plan) {
+  const Eigen::Vector2d right = plan.metres_per_pixel.col(0), up = -plan.metres_per_pixel.col(1);
+  constexpr double kMostSkew = 1e-3;
+  const double side = right.norm();
+  if ((Eigen::Vector2d(-right.y(), right.x()) - up).norm() > kMostSkew * side) {
+    throw InputError(plan.image.string(), "has pixels that are no squares, which an occupancy grid cannot tell",
+                     "scale the image to square pixels, or leave slam.plan empty");
+  }
+  return side;
+}
+
+}  // namespace
+
+ros::OccupancyGrid grid_of(const FloorPlan& plan) {
+  const auto image = read_image(plan.image);
+  if (!image) throw InputError(plan.image.string(), "cannot be read as an image", "check that it exists");
+  ros::OccupancyGrid grid;
+  grid.info.resolution = static_cast<float>(side_of_pixel(plan));
+  grid.info.width = static_cast<std::uint32_t>(image->width);
+  grid.info.height = static_cast<std::uint32_t>(image->height);
+  const Eigen::Vector2d corner = plan.point_at({-0.5, image->height - 0.5});
+  const Eigen::Vector2d right = plan.metres_per_pixel.col(0);
+  const Eigen::AngleAxisd turn(std::atan2(right.y(), right.x()), Eigen::Vector3d::UnitZ());
+  grid.info.origin = ros_pose({Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
+  grid.data.reserve(image->pixels.size());
+  for (int row = image->height - 1; row >= 0; --row) {  // from the lowest up
+    const auto begin = image->pixels.begin() + static_cast<std::ptrdiff_t>(row) * image->width;
+    std::transform(begin, begin + image->width, std::back_inserter(grid.data), occupancy_of);
+  }
+  return grid;
+}
+
+std::vector<Eigen::Vector3f> points_of(const std::filesystem::path& map, bool in_plan) {
+  const StoredMap stored = load_map(map);
+  std::vector<Eigen::Vector3f> points;
+  for (const PointId id : stored.map.point_ids()) {
+    const Eigen::Vector3d point = stored.map.find_point(id)->position_in_world;
+    const Eigen::Vector3d placed = in_plan && stored.plan ? stored.plan->plan_from_map * point : point;
+    points.push_back(placed.cast<float>());
+  }
+  return points;
+}
+
+ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<Eigen::Vector3f>& points) {
+  ros::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(points.size());
+  cloud.point_fields = {{"x", 0, ros::PointField::kFloat32, 1},
+                        {"y", 4, ros::PointField::kFloat32, 1},
+                        {"z", 8, ros::PointField::kFloat32, 1}};
+  cloud.point_step = 12;
+  cloud.row_step = cloud.point_step * cloud.width;
+  cloud.data.resize(cloud.row_step);
+  for (std::size_t i = 0; i < points.size(); ++i) std::memcpy(cloud.data.data() + 12 * i, points[i].data(), 12);
+  cloud.is_dense = true;
+  return cloud;
+}
+
+ros::Path path_message(const ros::Header& header, const Trajectory& trajectory,
+                       const std::function<Pose(const Pose&)>& published) {
+  constexpr std::size_t kMostPoses = 5000;
+  ros::Path path;
+  path.header = header;
+  const std::size_t stride = trajectory.size() / kMostPoses + 1;
+  for (std::size_t i = 0; i < trajectory.size(); i += stride) {
+    ros::Header stamped = header;
+    stamped.stamp = ros::to_time(trajectory[i].time);
+    path.poses.push_back({stamped, ros_pose(published(trajectory[i].world_from_body))});
+  }
+  return path;
+}
+
+}  // namespace byre

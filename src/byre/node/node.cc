@@ -1,0 +1,250 @@
+#include "byre/node/node.h"
+
+#include "byre/dds/type_hashes.h"
+#include "byre/input/formatted.h"
+#include "byre/node/health_messages.h"
+#include "byre/node/message_parsing.h"
+
+#include <chrono>
+#include <utility>
+
+namespace byre {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+// A time that never goes back, and is none of the day.
+Timestamp steady_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+// Numbers change all the time.
+std::string without_digits(std::string text) {
+  std::erase_if(text, [](char letter) { return letter >= '0' && letter <= '9'; });
+  return text;
+}
+
+PairingOptions pairing_options(const NodeConfig& config) {
+  return {config.has_right(), from_seconds(config.pair_tolerance), from_seconds(config.pair_wait)};
+}
+
+}  // namespace
+
+Node::Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings,
+           std::function<void(const std::string& line)> log)
+    : config_(config),
+      log_(std::move(log)),
+      participant_(network, cyclone_settings),
+      graph_(participant_, {config.name, config.name_space.empty() ? "/" : config.name_space}),
+      calibration_source_(config, participant_, graph_),
+      runner_(config),
+      outputs_(config, participant_, graph_),
+      pairs_(pairing_options(config)),
+      watch_(config.topic(config.left), steady_now()) {
+  const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
+    std::optional<Subscriber> subscriber;
+    if (topic.empty()) return subscriber;
+    subscriber = participant_.subscribe(config_.topic(topic), type, qos);
+    graph_.add(*subscriber);
+    return subscriber;
+  };
+  const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
+  const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
+  command_ = subscribe(config.command, message_type<ros::String>(), {});
+  initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), {});
+  calibration_ = calibration_source_.take("");
+  if (calibration_) runner_.start(*calibration_);
+  outputs_.tell_plan();
+  left_ = subscribe(config.left, image, images);
+  right_ = subscribe(config.right, image, images);
+  graph_.tell();
+}
+
+void Node::take_images(Timestamp now) {
+  const auto stamp_of = [](const Message& message, const std::string& topic) -> std::optional<ros::Header> {
+    return parsed_message<ros::Header>(message, topic);  // both kinds of images begin with one
+  };
+  for (Message& message : left_->take()) {
+    const auto header = stamp_of(message, config_.left);
+    if (!header) continue;
+    watch_.note_arrival(now);
+    left_frame_ = header->frame_id;
+    pairs_.add_left(ros::to_nanoseconds(header->stamp), std::move(message), now);
+  }
+  if (!right_) return;
+  for (Message& message : right_->take()) {
+    const auto header = stamp_of(message, config_.right);
+    if (header) pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
+  }
+}
+
+void Node::take_calibration(Timestamp now) {
+  if (calibration_) return;
+  try {
+    calibration_ = calibration_source_.take(left_frame_);
+    if (calibration_) runner_.start(*calibration_);
+  } catch (const InputError& error) {
+    calibration_.reset();
+    watch_.note_unusable(error, now);
+    log_(error.what());
+  }
+}
+
+void Node::answer(const std::string& asked, const std::function<std::string()>& done) {
+  try {
+    const std::string answer = done();
+    log_(asked + ": " + answer);
+    outputs_.tell_answer(asked, true, answer);
+  } catch (const InputError& error) {
+    log_(asked + ": " + error.what());
+    outputs_.tell_answer(asked, false, error.what());
+  }
+}
+
+void Node::begin_anew() {
+  pose_frames_.begin_anew();
+  outputs_.forget_points();
+  map_from_body_.reset();
+  last_report_.reset();
+}
+
+// A pose given by hand is a hint: where it contradicts a pose that is relied on, the robot is looked for anew.
+std::string Node::compare(const ros::PoseWithCovarianceStamped& hint) {
+  constexpr double kNear = 2.0;  // metres
+  const auto& [x, y, z] = hint.pose.pose.position;
+  if (!map_from_body_) return "the robot is being looked for in the whole map anyway";
+  const double distance = (map_from_body_->translation.head<2>() - Eigen::Vector2d(x, y)).norm();
+  if (distance <= kNear) return formatted("agrees with the present pose within %.1f m", distance);
+  const std::string answer = runner_.relocalise();
+  begin_anew();
+  return formatted("%.1f m from the present pose; ", distance) + answer;
+}
+
+void Node::take_requests() {
+  const auto take = [](std::optional<Subscriber>& subscriber) {
+    return subscriber ? subscriber->take() : std::vector<Message>();
+  };
+  for (const Message& message : take(command_)) {
+    const auto command = parsed_message<ros::String>(message, config_.command);
+    if (!command) continue;
+    answer(command->data, [&] {
+      const std::string done = obey(runner_, command->data);
+      if (!done.starts_with("saved")) begin_anew();
+      return done;
+    });
+  }
+  for (const Message& message : take(initial_pose_)) {
+    const auto hint = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
+    if (hint) answer("initial pose", [&] { return compare(*hint); });
+  }
+}
+
+ReceivedImage Node::decoded(const Message& message, const std::string& topic) const {
+  const auto bytes = message.bytes();
+  if (config_.is_compressed) {
+    return received_image(ros::read_message<ros::CompressedImage>(bytes, ros::Encoding::cdr, topic), topic);
+  }
+  return received_image(ros::read_message<ros::Image>(bytes, ros::Encoding::cdr, topic), topic);
+}
+
+void Node::process(const Pairs::Pair& pair) {
+  const Timestamp begin = steady_now();
+  ++frames_;
+  try {
+    ReceivedImage left = decoded(pair.left, config_.topic(config_.left));
+    std::optional<ReceivedImage> right;
+    if (pair.right) right = decoded(*pair.right, config_.topic(config_.right));
+    const auto [time, jump] = clock_.read(pair.stamp, begin);
+    if (right) right->about.time += time - left.about.time;
+    left.about.time = time;
+    CameraImages images{left.view()};
+    if (right) images.right = right->view();
+    const FrameReport report = runner_.process(images);
+    if (!std::exchange(has_told_cameras_, true)) {
+      outputs_.tell_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
+    }
+    publish(left, report);
+    const CameraFrame told{right.has_value(),
+                           config_.has_right(),
+                           report.health.doubt == Doubt::frozen,
+                           to_seconds(steady_now() - begin),
+                           report.input,
+                           jump};
+    watch_.note_frame(told, steady_now());
+  } catch (const InputError& error) {
+    watch_.note_unusable(error, begin);
+  }
+  watch_.note_passed_over(pairs_.counts().passed_over, begin);
+}
+
+void Node::publish(const ReceivedImage& left, const FrameReport& report) {
+  if (is_dropped(report.input)) return;  // it has no pose, and says nothing of where the robot is
+  map_from_body_ = report.map_from_body ? std::optional(runner_.published(*report.map_from_body)) : std::nullopt;
+  pose_frames_.note(report, map_from_body_);
+  outputs_.tell_frame(left.header, report, map_from_body_, pose_frames_);
+  last_image_time_ = ros::to_nanoseconds(left.header.stamp);
+  note_events(report);
+  last_report_ = report;
+}
+
+void Node::note_events(const FrameReport& report) {
+  for (const SessionEvent event : report.events) log_(std::string(to_string(event)));
+  if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
+  const std::string doubt =
+      report.health.doubt == Doubt::none ? "" : ": " + std::string(to_string(report.health.doubt));
+  log_(std::string(to_string(report.health.verdict)) + doubt);
+}
+
+ros::DiagnosticStatus Node::localisation() const {
+  if (last_report_) return localisation_status(*last_report_);
+  ros::DiagnosticStatus status;
+  status.level = ros::DiagnosticStatus::kWarn;
+  status.name = "byre: localisation";
+  status.message = runner_.is_running() ? "no frame was tracked yet" : "waiting for " + calibration_source_.awaited();
+  return status;
+}
+
+// Once a second, and at once where there is something new to say.
+void Node::tell_state(Timestamp now) {
+  std::vector<ros::DiagnosticStatus> statuses = {localisation(), watch_.status(now)};
+  const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
+  const bool is_news = diagnosis != last_diagnosis_ && now - last_told_ > 100ms;
+  if (is_news || now - last_told_ > 1s) {
+    manager_.status(statuses[0].message + "; " + statuses[1].message);
+    outputs_.tell_diagnostics(std::move(statuses));
+    last_told_ = now;
+    last_diagnosis_ = diagnosis;
+  }
+  if (runner_.is_running() && now - last_slow_told_ > 1s) {
+    outputs_.tell_path(runner_, last_image_time_);
+    outputs_.tell_points(runner_.map());
+    last_slow_told_ = now;
+  }
+  // That the loop turns proves little: where images come, some must have been tracked.
+  const bool is_at_work = frames_ != frames_at_last_sign_ || watch_.arrived() == arrived_at_last_sign_;
+  if (!is_at_work && runner_.is_running()) return;
+  manager_.alive();
+  frames_at_last_sign_ = frames_;
+  arrived_at_last_sign_ = watch_.arrived();
+}
+
+void Node::run(const std::function<bool()>& should_stop) {
+  log_("node " + config_.full_name() + " is ready");
+  manager_.ready();
+  while (!should_stop()) {
+    participant_.wait(20ms);
+    const Timestamp now = steady_now();
+    take_calibration(now);
+    take_requests();
+    take_images(now);
+    if (runner_.is_running()) {
+      if (const auto pair = pairs_.next(now)) process(*pair);
+    }
+    tell_state(steady_now());
+  }
+  manager_.stopping();
+  if (runner_.has_anything_to_save()) log_(runner_.save());
+}
+
+}  // namespace byre

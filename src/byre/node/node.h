@@ -1,0 +1,78 @@
+#pragma once
+
+#include "byre/dds/participant.h"
+#include "byre/dds/ros_graph.h"
+#include "byre/node/calibration_source.h"
+#include "byre/node/camera_watch.h"
+#include "byre/node/image_message.h"
+#include "byre/node/image_pairs.h"
+#include "byre/node/node_config.h"
+#include "byre/node/node_outputs.h"
+#include "byre/node/pose_frames.h"
+#include "byre/node/service_manager.h"
+#include "byre/node/slam_runner.h"
+#include "byre/node/stamp_clock.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// A node of ROS 2 that tracks what its topics bring, docs/ros2.md. One thread runs it; DDS and mapping have their own.
+class Node {
+ public:
+  // log: is told in a line what happens. Throws InputError for files that cannot be used, and std::runtime_error where
+  // DDS refuses.
+  Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings,
+       std::function<void(const std::string& line)> log);
+
+  // Until should_stop says so; then keeps what was mapped, where there is a file for it. Throws InputError when that
+  // cannot be written.
+  void run(const std::function<bool()>& should_stop);
+
+ private:
+  using Pairs = ImagePairs<Message>;
+
+  void take_images(Timestamp now);
+  void take_calibration(Timestamp now);
+  void take_requests();
+  void answer(const std::string& asked, const std::function<std::string()>& done);
+  std::string compare(const ros::PoseWithCovarianceStamped& hint);
+  ReceivedImage decoded(const Message& message, const std::string& topic) const;
+  void process(const Pairs::Pair& pair);
+  void publish(const ReceivedImage& left, const FrameReport& report);
+  void note_events(const FrameReport& report);
+  void tell_state(Timestamp now);
+  ros::DiagnosticStatus localisation() const;
+  void begin_anew();
+
+  NodeConfig config_;                                 // constant after construction
+  std::function<void(const std::string& line)> log_;  // constant after construction
+  Participant participant_;
+  GraphAnnouncement graph_;
+  CalibrationSource calibration_source_;
+  SlamRunner runner_;
+  NodeOutputs outputs_;
+  std::optional<Subscriber> left_, right_, command_, initial_pose_;
+  Pairs pairs_;
+  StampClock clock_;
+  CameraWatch watch_;
+  PoseFrames pose_frames_;
+  ServiceManager manager_;
+
+  std::optional<Calibration> calibration_;  // once it is known
+  std::string left_frame_;                  // frame of the left images; empty before the first one
+  bool has_told_cameras_ = false;
+  std::optional<FrameReport> last_report_;
+  std::optional<Pose> map_from_body_;  // as it was published last
+  Timestamp last_image_time_{};
+  std::string last_diagnosis_;
+  Timestamp last_told_{};       // when diagnostics were told
+  Timestamp last_slow_told_{};  // when path and points were told
+  int arrived_at_last_sign_ = 0;
+  int frames_ = 0;
+  int frames_at_last_sign_ = 0;
+};
+
+}  // namespace byre

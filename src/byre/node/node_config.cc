@@ -1,0 +1,310 @@
+#include "byre/node/node_config.h"
+
+#include "byre/dataset/settings_file.h"
+#include "byre/dds/ros_names.h"
+#include "byre/input/formatted.h"
+#include "byre/input/text_file.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using Table = std::vector<NodeSetting>;
+
+template <typename Place>
+NodeSetting text(const char* name, Place place, const char* meaning) {
+  return {name, "text", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
+          [=](NodeConfig& config, std::string_view value) {
+            if (value.empty()) return false;
+            place(config) = value;
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting topic(const char* name, Place place, const char* meaning) {
+  return {name, "topic or empty", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
+          [=](NodeConfig& config, std::string_view value) {
+            if (!value.empty() && !fault_in_name(resolved(value, "/")).empty()) return false;
+            place(config) = value;
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting file(const char* name, Place place, const char* meaning) {
+  return {name, "file or empty", meaning,
+          [=](const NodeConfig& config) { return place(config) ? place(config)->string() : std::string(); },
+          [=](NodeConfig& config, std::string_view value) {
+            place(config) = value.empty() ? std::nullopt : std::optional<fs::path>(value);
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting flag(const char* name, Place place, const char* meaning) {
+  return {name, "true|false", meaning,
+          [=](const NodeConfig& config) -> std::string { return place(config) ? "true" : "false"; },
+          [=](NodeConfig& config, std::string_view value) {
+            if (value != "true" && value != "false") return false;
+            place(config) = value == "true";
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting seconds(const char* name, double most, Place place, const char* meaning) {
+  return {name, formatted("from 0 to %g seconds", most), meaning,
+          [=](const NodeConfig& config) { return formatted("%g", place(config)); },
+          [=](NodeConfig& config, std::string_view value) {
+            const auto number = parse_number(value);
+            if (!number || !(*number >= 0.0 && *number <= most)) return false;
+            place(config) = *number;
+            return true;
+          }};
+}
+
+template <typename Value>
+using Names = std::vector<std::pair<std::string_view, Value>>;
+
+// The first name is that of no value where Value is optional.
+template <typename Value, typename Place>
+NodeSetting choice(const char* name, Names<Value> names, Place place, const char* meaning) {
+  std::string range;
+  for (const auto& [word, value] : names) range += (range.empty() ? "" : "|") + std::string(word);
+  const auto get = [=](const NodeConfig& config) {
+    const auto found = std::ranges::find(names, place(config), &std::pair<std::string_view, Value>::second);
+    return std::string(found->first);
+  };
+  const auto set = [=](NodeConfig& config, std::string_view value) {
+    const auto found = std::ranges::find(names, value, &std::pair<std::string_view, Value>::first);
+    if (found == names.end()) return false;
+    place(config) = found->second;
+    return true;
+  };
+  return {name, range, meaning, get, set};
+}
+
+void add_slam(Table& table) {
+  table.push_back(text(
+      "node.name", [](auto& c) -> auto& { return c.name; }, "name of the node"));
+  table.push_back(topic(
+      "node.namespace", [](auto& c) -> auto& { return c.name_space; }, "namespace of the node"));
+  table.push_back(choice<NodeTask>(
+      "slam.task", {{"mission", NodeTask::mission}, {"extend", NodeTask::extend}, {"map", NodeTask::map}},
+      [](auto& c) -> auto& { return c.task; }, "localisation in a kept map, going on with one, or making one"));
+  table.push_back(file(
+      "slam.map", [](auto& c) -> auto& { return c.map; }, "kept map"));
+  table.push_back(file(
+      "slam.save", [](auto& c) -> auto& { return c.save; },
+      "file of what is mapped, written on the command save and at the end"));
+  table.push_back(file(
+      "slam.options", [](auto& c) -> auto& { return c.options; }, "file of options, docs/options.md"));
+  table.push_back(file(
+      "slam.vocabulary", [](auto& c) -> auto& { return c.vocabulary; },
+      "visual vocabulary, instead of the one that comes with byre"));
+  table.push_back(choice<Workers>(
+      "slam.workers", {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}},
+      [](auto& c) -> auto& { return c.workers; },
+      "mapping taken over when ready, after a number of frames, or at once"));
+  table.push_back(file(
+      "slam.plan", [](auto& c) -> auto& { return c.plan; }, "floor plan that is published as an occupancy grid"));
+}
+
+void add_images(Table& table) {
+  table.push_back(topic(
+      "images.left", [](auto& c) -> auto& { return c.left; }, "images of the left or only camera"));
+  table.push_back(topic(
+      "images.right", [](auto& c) -> auto& { return c.right; }, "images of the right camera; empty with one camera"));
+  table.push_back(flag(
+      "images.compressed", [](auto& c) -> auto& { return c.is_compressed; },
+      "images as JPEG or PNG, of sensor_msgs/CompressedImage"));
+  table.push_back(flag(
+      "images.rectified", [](auto& c) -> auto& { return c.is_rectified; },
+      "images that were rectified before, as camera info's P says"));
+  table.push_back(flag(
+      "images.reliable", [](auto& c) -> auto& { return c.is_reliable; },
+      "lost images sent again, where the camera's driver does so"));
+  table.push_back(seconds(
+      "images.pair_tolerance", 0.5, [](auto& c) -> auto& { return c.pair_tolerance; },
+      "most time between the stamps of left and right image; 0: they are equal"));
+  table.push_back(seconds(
+      "images.pair_wait", 1.0, [](auto& c) -> auto& { return c.pair_wait; },
+      "time that a left image waits for its right one"));
+  table.push_back(file(
+      "calibration.file", [](auto& c) -> auto& { return c.calibration; }, "calibration file; empty: by camera info"));
+  table.push_back(topic(
+      "calibration.left_info", [](auto& c) -> auto& { return c.left_info; }, "camera info of the left or only camera"));
+  table.push_back(topic(
+      "calibration.right_info", [](auto& c) -> auto& { return c.right_info; }, "camera info of the right camera"));
+}
+
+void add_frames(Table& table) {
+  table.push_back(text(
+      "frames.map", [](auto& c) -> auto& { return c.map_frame; }, "frame of the map"));
+  table.push_back(text(
+      "frames.odom", [](auto& c) -> auto& { return c.odom_frame; }, "frame of odometry"));
+  table.push_back(text(
+      "frames.base", [](auto& c) -> auto& { return c.base_frame; }, "frame of the robot"));
+  table.push_back(choice<std::optional<Mounting>>(
+      "frames.mounting",
+      {{"auto", std::nullopt}, {"file", Mounting::file}, {"tf", Mounting::tf}, {"camera", Mounting::camera}},
+      [](auto& c) -> auto& { return c.mounting; },
+      "place of the left camera on the robot: by the calibration file, /tf_static, or in its origin"));
+  table.push_back(flag(
+      "frames.in_plan", [](auto& c) -> auto& { return c.in_plan; },
+      "map frame that is the floor plan's, where the map is registered on one"));
+  table.push_back(flag(
+      "frames.map_to_odom", [](auto& c) -> auto& { return c.publishes_map_to_odom; }, "map->odom on /tf"));
+  table.push_back(flag(
+      "frames.odom_to_base", [](auto& c) -> auto& { return c.publishes_odom_to_base; },
+      "odom->base on /tf; false where wheels or a filter give it"));
+  table.push_back(flag(
+      "frames.cameras", [](auto& c) -> auto& { return c.publishes_cameras; },
+      "base->camera on /tf_static, where frames.mounting is not tf"));
+  table.push_back(seconds(
+      "frames.future", 2.0, [](auto& c) -> auto& { return c.future; },
+      "time by which map->odom is stamped later than its image"));
+}
+
+void add_topics(Table& table) {
+  table.push_back(topic(
+      "topics.odometry", [](auto& c) -> auto& { return c.odometry; }, "smooth pose and motion"));
+  table.push_back(topic(
+      "topics.pose", [](auto& c) -> auto& { return c.pose; }, "pose in the map"));
+  table.push_back(topic(
+      "topics.path", [](auto& c) -> auto& { return c.path; }, "way so far"));
+  table.push_back(topic(
+      "topics.points", [](auto& c) -> auto& { return c.points; }, "points of the kept map"));
+  table.push_back(topic(
+      "topics.health", [](auto& c) -> auto& { return c.health; }, "health, as JSON"));
+  table.push_back(topic(
+      "topics.events", [](auto& c) -> auto& { return c.events; }, "what happens, as JSON"));
+  table.push_back(topic(
+      "topics.command", [](auto& c) -> auto& { return c.command; }, "commands, as text"));
+  table.push_back(topic(
+      "topics.grid", [](auto& c) -> auto& { return c.grid; }, "floor plan"));
+  table.push_back(topic(
+      "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "poses given by hand"));
+}
+
+Table make_table() {
+  Table table;
+  add_slam(table);
+  add_images(table);
+  add_frames(table);
+  add_topics(table);
+  return table;
+}
+
+// The known name that shares most letters at the beginning of its last part.
+std::string remedy_for_unknown(std::string_view name) {
+  const std::string_view word = name.substr(name.rfind('.') + 1);
+  for (const NodeSetting& setting : node_settings()) {
+    if (setting.name.substr(setting.name.rfind('.') + 1) == word) return "is " + setting.name + " meant?";
+  }
+  return "see byre node --print-config";
+}
+
+// Files that are named with a path from the file of settings.
+std::array<std::optional<fs::path>*, 6> paths_of(NodeConfig& config) {
+  return {&config.map, &config.save, &config.options, &config.vocabulary, &config.plan, &config.calibration};
+}
+
+// Settings that go together only in some ways; told at the line of the first one that the file has.
+class Consistency {
+ public:
+  Consistency(const fs::path& path, const std::vector<Setting>& given, std::vector<InputError>& faults)
+      : path_(path), given_(given), faults_(faults) {}
+
+  void require(bool holds, std::string_view setting, std::string_view reason, std::string_view remedy) {
+    if (holds) return;
+    const auto found = std::ranges::find(given_, setting, &Setting::name);
+    const std::string place = path_.string() + (found == given_.end() ? "" : ":" + std::to_string(found->line));
+    faults_.emplace_back(place, std::string(setting) + " " + std::string(reason), remedy);
+  }
+
+ private:
+  const fs::path& path_;
+  const std::vector<Setting>& given_;
+  std::vector<InputError>& faults_;
+};
+
+void check(const NodeConfig& config, Consistency consistency) {
+  const bool is_mission = config.task == NodeTask::mission;
+  consistency.require(config.task == NodeTask::map || config.map.has_value(), "slam.map", "is missing",
+                      "name the map that the robot is on, or set slam.task to map");
+  consistency.require(config.task != NodeTask::map || !config.map, "slam.map", "is of no use where a map is made",
+                      "leave it out, or set slam.task to extend");
+  consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so what is mapped would be lost",
+                      "name a file");
+  consistency.require(config.has_right() || config.task != NodeTask::map, "images.right",
+                      "is empty, and one camera alone knows no metres",
+                      "name the images of a right camera, or map first with byre map and byre scale");
+  consistency.require(!config.left.empty(), "images.left", "is empty", "name the topic of the left images");
+  const bool needs_info = !config.calibration;
+  consistency.require(!needs_info || !config.left_info.empty(), "calibration.left_info",
+                      "is empty, and no calibration file is named", "name one of the two");
+  consistency.require(!needs_info || !config.has_right() || !config.right_info.empty(), "calibration.right_info",
+                      "is empty, and no calibration file is named", "name one of the two");
+  consistency.require(config.calibration || config.mounting != Mounting::file, "frames.mounting",
+                      "is file, and no calibration file is named", "set it to tf, or name calibration.file");
+  consistency.require(config.name_space.empty() || config.name_space.starts_with('/'), "node.namespace",
+                      "does not begin with a slash", "write it as /barn");
+  consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
+                      "is the kept map, which a mission leaves as it is", "name another file");
+  consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is no name of a node",
+                      "use letters, digits and underscores");
+}
+
+}  // namespace
+
+std::string NodeConfig::topic(const std::string& given) const {
+  // Names of one's own are within the node's, as "/byre/odometry".
+  return given.empty() ? "" : resolved(given, full_name());
+}
+
+const std::vector<NodeSetting>& node_settings() {
+  static const Table table = make_table();
+  return table;
+}
+
+NodeConfigReading read_node_config(const fs::path& path) {
+  NodeConfigReading reading;
+  const std::vector<Setting> given = read_settings(path);
+  for (const Setting& setting : given) {
+    const std::string place = path.string() + ":" + std::to_string(setting.line);
+    const auto known = std::ranges::find(node_settings(), setting.name, &NodeSetting::name);
+    if (known == node_settings().end()) {
+      reading.faults.emplace_back(place, "there is no setting " + setting.name, remedy_for_unknown(setting.name));
+    } else if (!known->set(reading.config, setting.text)) {
+      reading.faults.emplace_back(place, setting.name + " is '" + setting.text + "'", "give " + known->range);
+    }
+  }
+  for (std::optional<fs::path>* const named : paths_of(reading.config)) {
+    if (*named) **named = path.parent_path() / **named;  // an absolute one stays
+  }
+  check(reading.config, {path, given, reading.faults});
+  return reading;
+}
+
+std::string node_config_file(const NodeConfig& config) {
+  std::string written;
+  std::string group;
+  for (const NodeSetting& setting : node_settings()) {
+    const std::size_t dot = setting.name.find('.');
+    const std::string its_group = setting.name.substr(0, dot);
+    if (its_group != group) written += its_group + ":\n";
+    group = its_group;
+    const std::string value = setting.get(config);
+    written += "  " + setting.name.substr(dot + 1) + ": " + (value.empty() ? "\"\"" : value) + "  # " +
+               setting.meaning + " (" + setting.range + ")\n";
+  }
+  return written;
+}
+
+}  // namespace byre

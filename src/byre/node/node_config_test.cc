@@ -1,0 +1,92 @@
+#include "byre/node/node_config.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class NodeConfigFile : public testing::Test {
+ protected:
+  NodeConfigFile() { fs::create_directories(folder_); }
+  ~NodeConfigFile() override { fs::remove_all(folder_); }
+
+  NodeConfigReading read(const std::string& text) const {
+    std::ofstream(folder_ / "robot.yaml") << text;
+    return read_node_config(folder_ / "robot.yaml");
+  }
+  // All faults, a line each.
+  std::string faults(const std::string& text) const {
+    std::string lines;
+    for (const InputError& fault : read(text).faults) lines += std::string(fault.what()) + "\n";
+    return lines;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("byre_node_config." + std::to_string(getpid()));
+};
+
+TEST_F(NodeConfigFile, TakesPathsFromItsFolderAndTopicsFromTheNode) {
+  const NodeConfig config =
+      read(
+          "node:\n  name: eyes\n  namespace: /barn\nslam:\n  map: barn.byre\n  save: /var/lib/byre/new.byre\n"
+          "topics:\n  pose: /amcl_pose\n")
+          .config;
+  EXPECT_EQ(config.map, folder_ / "barn.byre");
+  EXPECT_EQ(config.save, fs::path("/var/lib/byre/new.byre"));
+  EXPECT_EQ(config.topic(config.odometry), "/barn/eyes/odometry");
+  EXPECT_EQ(config.topic(config.pose), "/amcl_pose");
+  EXPECT_EQ(config.topic(""), "");
+}
+
+TEST_F(NodeConfigFile, TellsAllFaultsWithLineAndRemedy) {
+  const std::string told =
+      faults("slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n  left: two words\n");
+  EXPECT_THAT(told, AllOf(HasSubstr("robot.yaml:3: there is no setting slam.worker"),
+                          HasSubstr("robot.yaml:5: images.pair_wait is 'soon' (give from 0 to 1 seconds)"),
+                          HasSubstr("robot.yaml:6: images.left is 'two words'")));
+  EXPECT_EQ(std::ranges::count(told, '\n'), 3);
+  EXPECT_THAT(faults("left: x\nslam:\n  map: m\n"), HasSubstr("is images.left meant?"));
+}
+
+TEST_F(NodeConfigFile, RefusesWhatDoesNotGoTogether) {
+  EXPECT_THAT(faults("images:\n  left: /a\n"), HasSubstr("slam.map is missing"));
+  EXPECT_THAT(faults("slam:\n  task: map\n"), HasSubstr("robot.yaml: slam.save is missing"));
+  EXPECT_THAT(faults("slam:\n  task: map\n  save: s\n  map: m\n"), HasSubstr("robot.yaml:4: slam.map is of no use"));
+  EXPECT_THAT(faults("slam:\n  map: m\n  save: m\n"), HasSubstr("slam.save is the kept map"));
+  EXPECT_THAT(faults("slam:\n  task: map\n  save: s\nimages:\n  right: ''\n"), HasSubstr("no metres"));
+  EXPECT_THAT(faults("slam:\n  map: m\nframes:\n  mounting: file\n"),
+              HasSubstr("robot.yaml:4: frames.mounting is file"));
+  EXPECT_THAT(faults("slam:\n  map: m\nnode:\n  name: my-node\n"), HasSubstr("robot.yaml:4: node.name"));
+  EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
+}
+
+TEST_F(NodeConfigFile, IsReadAgainAsItIsPrinted) {
+  NodeConfig config =
+      read("slam:\n  map: /m\n  workers: repeatable\nimages:\n  right: ''\nframes:\n  mounting: tf\n").config;
+  const std::string printed = node_config_file(config);
+  const NodeConfigReading again = read(printed);
+  EXPECT_THAT(again.faults, IsEmpty());
+  EXPECT_EQ(node_config_file(again.config), printed);
+  EXPECT_EQ(again.config.mounting, Mounting::tf);
+  EXPECT_FALSE(again.config.has_right());
+}
+
+TEST_F(NodeConfigFile, NamesFilesThatCannotBeUsed) {
+  const NodeConfig config =
+      read("slam:\n  map: absent.byre\n  plan: absent.yaml\ncalibration:\n  file: absent.yml\n").config;
+  const std::vector<InputError> found = faults_in_files(config);
+  EXPECT_THAT(found, SizeIs(3));
+  for (const InputError& fault : found) EXPECT_THAT(fault.what(), HasSubstr("absent"));
+}
+
+}  // namespace
+}  // namespace byre

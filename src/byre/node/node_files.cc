@@ -1,0 +1,38 @@
+#include "byre/calibration_file.h"
+#include "byre/dataset/floor_plan.h"
+#include "byre/map/map_file.h"
+#include "byre/node/map_messages.h"
+#include "byre/node/node_config.h"
+#include "byre/node/slam_runner.h"
+#include "byre/system/stored_map.h"
+
+#include <functional>
+
+namespace byre {
+
+std::vector<InputError> faults_in_files(const NodeConfig& config) {
+  std::vector<InputError> faults;
+  const auto look = [&faults](const std::function<void()>& open) {
+    try {
+      open();
+    } catch (const InputError& error) {
+      faults.push_back(error);
+    }
+  };
+  look([&] { SlamRunner runner(config); });
+  if (config.plan) look([&] { grid_of(read_floor_plan(*config.plan)); });
+  look([&] {
+    const Vocabulary vocabulary = open_vocabulary(config.vocabulary);
+    if (config.map) load_for_mapping(*config.map, vocabulary);
+  });
+  if (config.calibration) look([&] { require_cameras(read_calibration(*config.calibration), config); });
+  return faults;
+}
+
+void require_cameras(const Calibration& calibration, const NodeConfig& config) {
+  if (!config.has_right() || calibration.right) return;
+  throw InputError(config.calibration->string(), "is of one camera, and images.right names a second one",
+                   "name the calibration of the pair (a chain of Kalibr), or leave images.right empty");
+}
+
+}  // namespace byre

@@ -1,0 +1,156 @@
+#include "byre/node/node_outputs.h"
+
+#include "byre/assessment/report_json.h"
+#include "byre/dataset/floor_plan.h"
+#include "byre/dds/type_hashes.h"
+#include "byre/node/health_messages.h"
+#include "byre/node/map_messages.h"
+#include "byre/node/pose_messages.h"
+
+#include <chrono>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+constexpr TopicQos kReliable{.is_reliable = true, .is_latched = false, .depth = 10};
+constexpr TopicQos kLatched{.is_reliable = true, .is_latched = true, .depth = 1};
+constexpr TopicQos kTransforms{.is_reliable = true, .is_latched = false, .depth = 100};
+constexpr TopicQos kEvents{.is_reliable = true, .is_latched = true, .depth = 50};
+
+ros::Time wall_time() {
+  return ros::to_time(std::chrono::system_clock::now().time_since_epoch());
+}
+
+}  // namespace
+
+template <ros::Message T>
+NodeOutputs::Output NodeOutputs::open(const std::string& topic, const TopicQos& qos) {
+  const std::string name = config_.topic(topic);
+  if (name.empty()) return std::nullopt;
+  Publisher publisher = participant_.publish(name, message_type<T>(), qos);
+  graph_.add(publisher);
+  return publisher;
+}
+
+NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph)
+    : config_(config), participant_(participant), graph_(graph) {
+  odometry_ = open<ros::Odometry>(config.odometry, kReliable);
+  pose_ = open<ros::PoseWithCovarianceStamped>(config.pose, kLatched);
+  if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>("/tf", kTransforms);
+  if (config.publishes_cameras && config.used_mounting() != Mounting::tf) {
+    tf_static_ = open<ros::TFMessage>("/tf_static", kLatched);
+  }
+  diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
+  path_ = open<ros::Path>(config.path, kLatched);
+  if (config.map) points_ = open<ros::PointCloud2>(config.points, kLatched);
+  if (config.plan) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
+  health_ = open<ros::String>(config.health, kLatched);
+  events_ = open<ros::String>(config.events, kEvents);
+}
+
+ros::Header NodeOutputs::in_map(const ros::Header& image) const {
+  return {image.stamp, config_.map_frame};
+}
+
+void NodeOutputs::tell_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base) {
+  ros::Odometry odometry;
+  odometry.header = header;
+  odometry.child_frame_id = config_.base_frame;
+  odometry.pose = pose_message(header, odom_from_base, report.odometry_covariance).pose;
+  if (last_ && report.time > last_->time) {
+    odometry.twist.twist = twist_between(last_->odom_from_base, odom_from_base, report.time - last_->time);
+  }
+  last_ = LastPose{report.time, odom_from_base};
+  send(odometry_, odometry);
+}
+
+void NodeOutputs::tell_transforms(const ros::Header& image, const PoseFrames& frames) {
+  ros::TFMessage message;
+  if (config_.publishes_map_to_odom && frames.map_from_odom()) {
+    const ros::Time later = ros::to_time(ros::to_nanoseconds(image.stamp) + from_seconds(config_.future));
+    message.transforms.push_back(
+        transform_message({later, config_.map_frame}, config_.odom_frame, *frames.map_from_odom()));
+  }
+  if (config_.publishes_odom_to_base && frames.odom_from_base()) {
+    message.transforms.push_back(
+        transform_message({image.stamp, config_.odom_frame}, config_.base_frame, *frames.odom_from_base()));
+  }
+  if (!message.transforms.empty()) send(tf_, message);
+}
+
+void NodeOutputs::tell_events(const FrameReport& report) {
+  MappedFrame frame;
+  frame.time = report.time;
+  frame.report = report;
+  event_log_.note(frames_, frame);
+  std::istringstream lines(std::exchange(event_lines_, {}).str());
+  for (std::string line; std::getline(lines, line);) send_text(events_, line);
+}
+
+void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report,
+                             const std::optional<Pose>& map_from_body, const PoseFrames& frames) {
+  if (frames.odom_from_base()) {
+    tell_odometry({image.stamp, config_.odom_frame}, report, *frames.odom_from_base());
+  } else {
+    last_.reset();
+  }
+  if (map_from_body && report.health.verdict != Verdict::untrusted) {
+    send(pose_, pose_message(in_map(image), *map_from_body, report.covariance));
+  }
+  tell_transforms(image, frames);
+  if (health_ && health_->has_subscribers()) send_text(health_, health_line(report, map_from_body));
+  tell_events(report);
+  ++frames_;
+}
+
+void NodeOutputs::tell_cameras(const Calibration& calibration, const std::string& left_frame,
+                               const std::string& right_frame) {
+  if (!tf_static_) return;
+  const ros::Header header{wall_time(), config_.base_frame};
+  ros::TFMessage message;
+  const auto add = [&](const std::string& frame, const Pose& base_from_camera) {
+    if (!frame.empty() && frame != config_.base_frame) {
+      message.transforms.push_back(transform_message(header, frame, base_from_camera));
+    }
+  };
+  add(left_frame, calibration.body_from_left);
+  if (calibration.right && right_frame != left_frame) {
+    add(right_frame, calibration.body_from_left * inverse(calibration.right->right_from_left));
+  }
+  if (!message.transforms.empty()) send(tf_static_, message);
+}
+
+void NodeOutputs::tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses) {
+  send(diagnostics_, ros::DiagnosticArray{{wall_time(), ""}, std::move(statuses)});
+}
+
+void NodeOutputs::tell_answer(const std::string& asked, bool is_done, const std::string& answer) {
+  const nlohmann::ordered_json line = {{"event", "command"}, {"command", asked}, {"done", is_done}, {"answer", answer}};
+  send_text(events_, dumped(line));
+}
+
+void NodeOutputs::tell_plan() {
+  if (!grid_) return;
+  ros::OccupancyGrid grid = grid_of(read_floor_plan(*config_.plan));
+  grid.header = {wall_time(), config_.map_frame};
+  grid.info.map_load_time = grid.header.stamp;
+  send(grid_, grid);
+}
+
+void NodeOutputs::tell_path(const SlamRunner& runner, Timestamp image_time) {
+  if (!path_ || !path_->has_subscribers()) return;
+  const ros::Header header{ros::to_time(image_time), config_.map_frame};
+  send(path_,
+       path_message(header, runner.trajectory(), [&runner](const Pose& pose) { return runner.published(pose); }));
+}
+
+void NodeOutputs::tell_points(const std::optional<std::filesystem::path>& map) {
+  if (has_told_points_ || !map || !points_ || !points_->has_subscribers()) return;
+  send(points_, cloud_message({wall_time(), config_.map_frame}, points_of(*map, config_.in_plan)));
+  has_told_points_ = true;
+}
+
+}  // namespace byre

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "byre/assessment/event_log.h"
+#include "byre/dds/participant.h"
+#include "byre/dds/ros_graph.h"
+#include "byre/node/node_config.h"
+#include "byre/node/pose_frames.h"
+#include "byre/node/slam_runner.h"
+#include "byre/ros/message_writer.h"
+#include "byre/ros/messages.h"
+
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// What a node tells, and how. Topics that are left out are not there.
+class NodeOutputs {
+ public:
+  NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
+
+  // Everything about a frame. image: of its left image; map_from_body: pose in the map frame that is published.
+  void tell_frame(const ros::Header& image, const FrameReport& report, const std::optional<Pose>& map_from_body,
+                  const PoseFrames& frames);
+  void tell_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
+  void tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
+  void tell_answer(const std::string& asked, bool is_done, const std::string& answer);
+  void tell_plan();
+  // Only while somebody listens.
+  void tell_path(const SlamRunner& runner, Timestamp image_time);
+  void tell_points(const std::optional<std::filesystem::path>& map);
+  void forget_points() { has_told_points_ = false; }  // another map is loaded
+
+ private:
+  using Output = std::optional<Publisher>;
+
+  template <ros::Message T>
+  Output open(const std::string& topic, const TopicQos& qos);
+  template <ros::Message T>
+  void send(Output& output, const T& message) {
+    if (output) output->publish(ros::write_message(message, ros::Encoding::cdr));
+  }
+  void send_text(Output& output, const std::string& text) { send(output, ros::String{text}); }
+  void tell_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base);
+  void tell_transforms(const ros::Header& image, const PoseFrames& frames);
+  void tell_events(const FrameReport& report);
+  ros::Header in_map(const ros::Header& image) const;
+
+  NodeConfig config_;         // constant after construction
+  Participant& participant_;  // outlives this
+  GraphAnnouncement& graph_;  // outlives this
+  Output odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
+  struct LastPose {
+    Timestamp time{};
+    Pose odom_from_base;
+  };
+  std::optional<LastPose> last_;
+  std::ostringstream event_lines_;
+  EventLog event_log_{event_lines_};
+  int frames_ = 0;
+  bool has_told_points_ = false;
+};
+
+}  // namespace byre

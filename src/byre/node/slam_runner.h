@@ -1,0 +1,56 @@
+#pragma once
+
+#include "byre/node/node_config.h"
+#include "byre/slam.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// The Slam of a node: made once the calibration is known, and anew where another map is loaded or the robot is to be
+// looked for from nothing.
+class SlamRunner {
+ public:
+  // Throws InputError for options that cannot be read, and a file to save that cannot be written.
+  explicit SlamRunner(const NodeConfig& config);
+
+  // Throws InputError as Slam does, and for a pair of cameras that knows no metres.
+  void start(const Calibration& calibration);
+
+  bool is_running() const { return slam_.has_value(); }
+  FrameReport process(const CameraImages& images);
+
+  // A pose of the body, as it is published: on the floor plan where that is wanted.
+  Pose published(const Pose& map_from_body) const;
+  Trajectory trajectory() const { return slam_->trajectory(); }
+
+  // The map that poses are in; empty where one is made.
+  const std::optional<std::filesystem::path>& map() const { return map_; }
+
+  // Each throws InputError for what cannot be done, and leaves everything as it was then.
+  std::string save() const;                   // what was done
+  std::string load(const std::string& name);  // a map beside the one that is loaded, by its file's name alone
+  std::string relocalise();                   // looks for the robot from nothing, in the same map
+  bool has_anything_to_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
+
+ private:
+  Slam make(const std::filesystem::path* map) const;
+  void replace(Slam slam);
+  void require_running() const;
+
+  NodeConfig config_;    // constant after construction
+  SlamOptions options_;  // constant after construction
+  std::optional<std::filesystem::path> map_;
+  std::optional<Calibration> calibration_;
+  std::optional<Slam> slam_;
+  bool had_pose_ = false;  // whether any frame of slam_ had a pose
+};
+
+// What a line of the command topic asks for, done; the answer. Throws InputError for what is no command, or cannot be
+// done now.
+std::string obey(SlamRunner& runner, const std::string& line);
+
+}  // namespace byre
