@@ -1,0 +1,130 @@
+#include "node_scene.h"
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace byre::testing_ros2 {
+
+namespace fs = std::filesystem;
+using eprosima::fastdds::dds::TypeSupport;
+
+NodeProcess::NodeProcess(const fs::path& folder, const std::string& config, int domain) : folder_(folder) {
+  std::ofstream(folder / "robot.yaml") << config;
+  const std::string path = (folder / "robot.yaml").string();
+  std::vector<std::string> variables = {"ROS_LOCALHOST_ONLY=1", "ROS_DOMAIN_ID=" + std::to_string(domain)};
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  for (char** other = environ; *other != nullptr; ++other) {
+    const std::string_view text(*other);
+    if (!text.starts_with("ROS_")) environment.push_back(*other);
+  }
+  environment.push_back(nullptr);
+  const char* const arguments[] = {BYRE_PROGRAM, "node", "--config", path.c_str(), nullptr};
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, 2, (folder / "said.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int error =
+      posix_spawn(&process_, BYRE_PROGRAM, &files, nullptr, const_cast<char* const*>(arguments), environment.data());
+  posix_spawn_file_actions_destroy(&files);
+  if (error != 0) throw std::runtime_error("byre node cannot be started");
+}
+
+NodeProcess::~NodeProcess() {
+  if (process_ < 0) return;
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+int NodeProcess::stop() {
+  kill(process_, SIGTERM);
+  int status = 0;
+  waitpid(process_, &status, 0);
+  process_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+bool NodeProcess::is_running() const {
+  return process_ > 0 && kill(process_, 0) == 0 && waitpid(process_, nullptr, WNOHANG) == 0;
+}
+
+std::string NodeProcess::said() const {
+  std::ostringstream text;
+  text << std::ifstream(folder_ / "said.txt").rdbuf();
+  return text.str();
+}
+
+int some_domain() {
+  static int asked = 0;
+  return 20 + (static_cast<int>(getpid()) + 7 * asked++) % 80;
+}
+
+builtin_interfaces::msg::Time ros_time(Timestamp time) {
+  builtin_interfaces::msg::Time stamp;
+  stamp.sec(static_cast<std::int32_t>(time.count() / 1'000'000'000));
+  stamp.nanosec(static_cast<std::uint32_t>(time.count() % 1'000'000'000));
+  return stamp;
+}
+
+Timestamp time_of(const builtin_interfaces::msg::Time& time) {
+  return std::chrono::seconds(time.sec()) + std::chrono::nanoseconds(time.nanosec());
+}
+
+Eigen::Vector3d vector_of(const geometry_msgs::msg::Point& point) {
+  return {point.x(), point.y(), point.z()};
+}
+
+sensor_msgs::msg::Image image_message(const Image& image, Timestamp time, const std::string& frame) {
+  sensor_msgs::msg::Image message;
+  message.header().stamp(ros_time(time));
+  message.header().frame_id(frame);
+  message.width(static_cast<std::uint32_t>(image.width));
+  message.height(static_cast<std::uint32_t>(image.height));
+  message.step(static_cast<std::uint32_t>(image.width));
+  message.encoding("mono8");
+  message.data(image.pixels);
+  return message;
+}
+
+CameraFeed::CameraFeed(FastPeer& peer, bool is_reliable) {
+  const PeerQos qos{is_reliable, false, 5};
+  const auto type = [] { return TypeSupport(new sensor_msgs::msg::ImagePubSubType); };
+  left_ = peer.writer("rt/left/image_raw", type(), qos);
+  right_ = peer.writer("rt/right/image_raw", type(), qos);
+}
+
+bool CameraFeed::is_heard() const {
+  return FastPeer::is_heard(left_) && FastPeer::is_heard(right_);
+}
+
+bool CameraFeed::settle() {
+  sensor_msgs::msg::Image image = image_message({1, 1, {0}}, {}, "left_optical");
+  image.encoding("none");
+  left_->write(&image);
+  right_->write(&image);
+  const eprosima::fastrtps::Duration_t patience(20, 0);
+  return left_->wait_for_acknowledgments(patience) == ReturnCode_t::RETCODE_OK &&
+         right_->wait_for_acknowledgments(patience) == ReturnCode_t::RETCODE_OK;
+}
+
+void CameraFeed::send_left(const ImageFrame& frame, Timestamp later) {
+  send_left(image_message(frame.left, frame.time + later, "left_optical"));
+}
+
+void CameraFeed::send_left(sensor_msgs::msg::Image message) {
+  left_->write(&message);
+}
+
+void CameraFeed::send_right(const ImageFrame& frame, Timestamp later) {
+  sensor_msgs::msg::Image message = image_message(*frame.right, frame.time + later, "right_optical");
+  right_->write(&message);
+}
+
+}  // namespace byre::testing_ros2
