@@ -93,8 +93,9 @@ class Slam {
   // mission is on.
   int keyframes() const;
   int points() const;
-  int frames() const;                  // all frames handed over
-  int frames(InputFault fault) const;  // frames handed over with that fault
+  std::vector<Eigen::Vector3d> point_positions() const;  // places of these points, in the frame of map_from_body
+  int frames() const;                                    // all frames handed over
+  int frames(InputFault fault) const;                    // frames handed over with that fault
 
  private:
   struct Parts;

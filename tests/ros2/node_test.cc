@@ -1,6 +1,7 @@
 // `byre node` as another vendor's programs of ROS 2 meet it.
 
 #include "byre/calibration_file.h"
+#include "byre/map/map_file.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/slam.h"
 #include "mapped_recording.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <thread>
 
@@ -54,6 +56,11 @@ class Room {
   fs::path calibration() const { return folder_ / "camchain.yaml"; }
   fs::path map() const { return folder_ / "room.byre"; }
   const std::vector<ImageFrame>& frames() const { return frames_; }
+  // The PNG file of an image.
+  std::vector<std::uint8_t> file(const std::string& camera, std::size_t frame) const {
+    std::ifstream stream(rendered_.image(camera, frame), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
   // What a Slam of one's own makes of the frames.
   std::vector<FrameReport> tracked(Slam slam) const {
     std::vector<FrameReport> reports;
@@ -152,6 +159,7 @@ TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =
       room.tracked(Slam::mapping(read_calibration(room.calibration()), Room::options()));
+  Clouds points(peer_, "rt/byre/points", kLatched);
   NodeProcess node(folder_, mapping(), domain_);
   ASSERT_TRUE(is_connected()) << node.said();
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -163,6 +171,7 @@ TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
     EXPECT_EQ(odometry->header().frame_id(), "odom");
     EXPECT_EQ(odometry->child_frame_id(), "base_link");
   }
+  EXPECT_TRUE(points.find([](const auto& cloud) { return cloud.width() > 100; })) << "of the map that grows";
   EXPECT_EQ(node.stop(), 0);
   EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "what was mapped is kept at the end";
 }
@@ -218,7 +227,10 @@ TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
   const Room& room = Room::shared();
   std::ofstream(folder_ / "plan.pgm") << "P5\n3 2\n255\n" << std::string("\xff\x00\xff\x80\xff\x00", 6);
   std::ofstream(folder_ / "plan.yaml") << "image: plan.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\n";
-  NodeProcess node(folder_, config("  map: " + room.map().string() + "\n  plan: plan.yaml\n"), domain_);
+  StoredMap stored = load_map(room.map());
+  stored.plan = PlanRegistration{"plan.yaml", {1.0, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 10.0}}}};
+  save_map(stored, folder_ / "on_plan.byre");
+  NodeProcess node(folder_, config("  map: on_plan.byre\n  plan: plan.yaml\n"), domain_);
   ASSERT_TRUE(is_connected()) << node.said();
   for (const ImageFrame& frame : room.frames()) {
     feed_.send(frame);
@@ -240,6 +252,7 @@ TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
   const auto pose = poses.first();
   ASSERT_TRUE(pose.has_value());
   EXPECT_EQ(pose->header().frame_id(), "map");
+  EXPECT_GT(pose->pose().pose().position().z(), 5.0) << "on the plan";
   const auto transforms = fixed.first();
   ASSERT_TRUE(transforms.has_value());
   ASSERT_EQ(transforms->transforms().size(), 2u);
@@ -247,7 +260,10 @@ TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
   const auto cloud = points.first();
   ASSERT_TRUE(cloud.has_value());
   EXPECT_GT(cloud->width(), 100u);
-  EXPECT_EQ(cloud->data().size(), 12u * cloud->width());
+  ASSERT_EQ(cloud->data().size(), 12u * cloud->width());
+  float z = 0.0f;
+  std::memcpy(&z, cloud->data().data() + 8, 4);
+  EXPECT_GT(z, 5.0f) << "on the plan";
   const auto grid = grids.first();
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->info().width(), 3u);
@@ -420,6 +436,69 @@ TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) 
     EXPECT_LT((vector_of(odometry->pose().pose().position()) - expected[i].odometry_from_body->translation).norm(),
               1e-6);
   }
+  EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
+  const Room& room = Room::shared();
+  Calibration calibration = read_calibration(room.calibration());
+  calibration.right.reset();
+  Slam slam = Slam::on_map(calibration, room.map(), Room::options());
+  auto* const left =
+      peer_.writer("rt/left/compressed", TypeSupport(new sensor_msgs::msg::CompressedImagePubSubType), kVolatile);
+  NodeProcess node(folder_,
+                   "slam:\n  workers: repeatable\n  map: " + room.map().string() +
+                       "\nimages:\n  left: /left/compressed\n  right: ''\n  compressed: true\n  reliable: true\n" +
+                       "calibration:\n  file: " + room.calibration().string() + "\n",
+                   domain_);
+  ASSERT_TRUE(FastPeer::is_heard(left) && diagnostics_.first()) << node.said();
+  std::vector<nav_msgs::msg::Odometry> answers;
+  for (std::size_t i = 0; i < 20; ++i) {
+    sensor_msgs::msg::CompressedImage message;
+    message.header().stamp(ros_time(room.frames()[i].time));
+    message.format("mono8; png compressed ");
+    message.data(room.file("cam0", i));
+    left->write(&message);
+    const FrameReport expected = slam.process({view_of(room.frames()[i]).left});
+    if (!expected.odometry_from_body) continue;
+    const auto odometry =
+        odometry_.find([&](const auto& answer) { return time_of(answer.header().stamp()) == room.frames()[i].time; });
+    ASSERT_TRUE(odometry.has_value()) << i << "\n" << node.said();
+    const Eigen::Vector3d position = vector_of(odometry->pose().pose().position());
+    EXPECT_LT((position - expected.odometry_from_body->translation).norm(), 1e-6) << i;
+    answers.push_back(*odometry);
+  }
+  EXPECT_GT(answers.size(), 10u);
+  EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
+  const Room& room = Room::shared();
+  Poses poses(peer_, "rt/byre/pose", kLatched);
+  auto* const hint = peer_.writer("rt/initialpose",
+                                  TypeSupport(new geometry_msgs::msg::PoseWithCovarianceStampedPubSubType), kVolatile);
+  NodeProcess node(folder_, mission(), domain_);
+  ASSERT_TRUE(is_connected() && FastPeer::is_heard(hint)) << node.said();
+  const auto answer_to_hint = [&](double x) {
+    events_.forget();
+    geometry_msgs::msg::PoseWithCovarianceStamped message;
+    message.header().frame_id("map");
+    message.pose().pose().position().x(x);
+    hint->write(&message);
+    const auto told = events_.find(
+        [](const auto& event) { return event.data().find("\"command\":\"initial pose\"") != std::string::npos; });
+    return told ? told->data() : "";
+  };
+  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("is being looked for in the whole map"));
+  for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
+  ASSERT_TRUE(poses.first()) << node.said();
+  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("agrees with the present pose"));
+  const auto before = odometry_.all().back();
+  EXPECT_THAT(answer_to_hint(50.0), HasSubstr("looking for the robot"));
+  const auto after = answer_to(feed_, odometry_, room.frames()[20]);
+  ASSERT_TRUE(after.has_value()) << node.said();
+  EXPECT_LT((vector_of(after->pose().pose().position()) - vector_of(before.pose().pose().position())).norm(), 0.1)
+      << "odometry does not jump";
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -55,6 +55,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), {});
   calibration_ = calibration_source_.take("");
   if (calibration_) runner_.start(*calibration_);
+  require_plan_of_map(config_);
   outputs_.tell_plan();
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
@@ -218,7 +219,7 @@ void Node::tell_state(Timestamp now) {
   }
   if (runner_.is_running() && now - last_slow_told_ > 1s) {
     outputs_.tell_path(runner_, last_image_time_);
-    outputs_.tell_points(runner_.map());
+    outputs_.tell_points(runner_);
     last_slow_told_ = now;
   }
   // That the loop turns proves little: where images come, some must have been tracked.

@@ -255,6 +255,8 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "is file, and no calibration file is named", "set it to tf, or name calibration.file");
   consistency.require(config.name_space.empty() || config.name_space.starts_with('/'), "node.namespace",
                       "does not begin with a slash", "write it as /barn");
+  consistency.require(!config.plan || (config.map && config.in_plan), "slam.plan",
+                      "needs a map that lies on it, and frames.in_plan", "set both, or leave slam.plan empty");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the kept map, which a mission leaves as it is", "name another file");
   consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is no name of a node",

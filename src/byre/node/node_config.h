@@ -102,6 +102,10 @@ std::vector<InputError> faults_in_files(const NodeConfig& config);
 // Throws InputError where the calibration file lacks a camera whose images are named.
 void require_cameras(const Calibration& calibration, const NodeConfig& config);
 
+// Throws InputError where a floor plan is named that the kept map does not lie on: it would be published in a wrong
+// place.
+void require_plan_of_map(const NodeConfig& config);
+
 // All settings as such a file, each with its meaning and range.
 std::string node_config_file(const NodeConfig& config);
 

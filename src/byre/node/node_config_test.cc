@@ -66,6 +66,8 @@ TEST_F(NodeConfigFile, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(faults("slam:\n  map: m\nframes:\n  mounting: file\n"),
               HasSubstr("robot.yaml:4: frames.mounting is file"));
   EXPECT_THAT(faults("slam:\n  map: m\nnode:\n  name: my-node\n"), HasSubstr("robot.yaml:4: node.name"));
+  EXPECT_THAT(faults("slam:\n  map: m\n  plan: p\nframes:\n  in_plan: false\n"),
+              HasSubstr("robot.yaml:3: slam.plan needs"));
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 

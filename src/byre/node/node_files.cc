@@ -24,9 +24,24 @@ std::vector<InputError> faults_in_files(const NodeConfig& config) {
   look([&] {
     const Vocabulary vocabulary = open_vocabulary(config.vocabulary);
     if (config.map) load_for_mapping(*config.map, vocabulary);
+    require_plan_of_map(config);
   });
   if (config.calibration) look([&] { require_cameras(read_calibration(*config.calibration), config); });
   return faults;
+}
+
+void require_plan_of_map(const NodeConfig& config) {
+  if (!config.plan) return;
+  const auto registration = load_plan_registration(*config.map);
+  const std::string name = config.plan->filename().string();
+  if (!registration) {
+    throw InputError(config.map->string(), "lies on no floor plan, and slam.plan names one",
+                     "find it on the plan with byre register or byre view, or leave slam.plan empty");
+  }
+  if (registration->plan != name) {
+    throw InputError(config.plan->string(), "is not the floor plan that the map lies on, " + registration->plan,
+                     "name that one, or register the map on this one");
+  }
 }
 
 void require_cameras(const Calibration& calibration, const NodeConfig& config) {

@@ -45,7 +45,7 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, Gra
   }
   diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
   path_ = open<ros::Path>(config.path, kLatched);
-  if (config.map) points_ = open<ros::PointCloud2>(config.points, kLatched);
+  points_ = open<ros::PointCloud2>(config.points, kLatched);
   if (config.plan) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
   health_ = open<ros::String>(config.health, kLatched);
   events_ = open<ros::String>(config.events, kEvents);
@@ -147,10 +147,10 @@ void NodeOutputs::tell_path(const SlamRunner& runner, Timestamp image_time) {
        path_message(header, runner.trajectory(), [&runner](const Pose& pose) { return runner.published(pose); }));
 }
 
-void NodeOutputs::tell_points(const std::optional<std::filesystem::path>& map) {
-  if (has_told_points_ || !map || !points_ || !points_->has_subscribers()) return;
-  send(points_, cloud_message({wall_time(), config_.map_frame}, points_of(*map, config_.in_plan)));
-  has_told_points_ = true;
+void NodeOutputs::tell_points(const SlamRunner& runner) {
+  if (!points_ || !points_->has_subscribers()) return;
+  if (std::exchange(has_told_points_, true) && !runner.makes_a_map()) return;
+  send(points_, cloud_message({wall_time(), config_.map_frame}, runner.points()));
 }
 
 }  // namespace byre

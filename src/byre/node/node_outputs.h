@@ -9,7 +9,6 @@
 #include "byre/ros/message_writer.h"
 #include "byre/ros/messages.h"
 
-#include <filesystem>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -31,7 +30,7 @@ class NodeOutputs {
   void tell_plan();
   // Only while somebody listens.
   void tell_path(const SlamRunner& runner, Timestamp image_time);
-  void tell_points(const std::optional<std::filesystem::path>& map);
+  void tell_points(const SlamRunner& runner);
   void forget_points() { has_told_points_ = false; }  // another map is loaded
 
  private:
@@ -61,7 +60,7 @@ class NodeOutputs {
   std::ostringstream event_lines_;
   EventLog event_log_{event_lines_};
   int frames_ = 0;
-  bool has_told_points_ = false;
+  bool has_told_points_ = false;  // whether the points of a map that does not change are out
 };
 
 }  // namespace byre

@@ -2,6 +2,7 @@
 
 #include "byre/dataset/settings_file.h"
 #include "byre/input/output_file.h"
+#include "byre/node/map_messages.h"
 #include "byre/playback/options_file.h"
 
 #include <algorithm>
@@ -75,6 +76,15 @@ void SlamRunner::start(const Calibration& calibration) {
 Pose SlamRunner::published(const Pose& map_from_body) const {
   const auto on_plan = config_.in_plan ? slam_->plan_from_body(map_from_body) : std::nullopt;
   return on_plan.value_or(map_from_body);
+}
+
+std::vector<Eigen::Vector3f> SlamRunner::points() const {
+  if (!makes_a_map()) return points_of(*map_, config_.in_plan);
+  const Pose published_from_map = published(Pose{});
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& point : slam_->point_positions())
+    points.push_back((published_from_map * point).cast<float>());
+  return points;
 }
 
 void SlamRunner::require_running() const {

@@ -26,9 +26,10 @@ class SlamRunner {
   // A pose of the body, as it is published: on the floor plan where that is wanted.
   Pose published(const Pose& map_from_body) const;
   Trajectory trajectory() const { return slam_->trajectory(); }
-
-  // The map that poses are in; empty where one is made.
-  const std::optional<std::filesystem::path>& map() const { return map_; }
+  // Points of the map that is made, or of the kept map that a mission is on, as they are published. Of a mission the
+  // file is read once more, which takes as long as loading it.
+  std::vector<Eigen::Vector3f> points() const;
+  bool makes_a_map() const { return config_.task != NodeTask::mission; }
 
   // Each throws InputError for what cannot be done, and leaves everything as it was then.
   std::string save() const;                   // what was done

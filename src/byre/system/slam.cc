@@ -271,6 +271,13 @@ int Slam::points() const {
   return parts_->engine.online().point_count();
 }
 
+std::vector<Eigen::Vector3d> Slam::point_positions() const {
+  const Map& map = parts_->engine.online();
+  std::vector<Eigen::Vector3d> positions;
+  for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
+  return positions;
+}
+
 int Slam::frames() const {
   return parts_->input.frames();
 }

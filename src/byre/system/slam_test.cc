@@ -138,6 +138,7 @@ TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
   EXPECT_LT((on_floor - in_map - Eigen::Vector3d(10.0, 20.0, 0.0)).norm(), 1e-9);
   slam.finish();
   ASSERT_GT(slam.keyframes(), 0);
+  EXPECT_EQ(slam.point_positions().size(), static_cast<std::size_t>(slam.points()));
   slam.save(map_);
   const StoredMap kept = load_map(map_);
   EXPECT_THAT(kept.recordings, SizeIs(1));
