@@ -5,6 +5,7 @@
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 
 namespace byre::testing_ros2 {
 
@@ -33,6 +34,10 @@ FastPeer::FastPeer(int domain) {
   transport->sendBufferSize = transport->receiveBufferSize = 4 << 20;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports = {transport};
+  // Others on this computer are asked one by one, as ROS has it asked where discovery is confined to localhost.
+  eprosima::fastrtps::rtps::Locator_t localhost;
+  eprosima::fastrtps::rtps::IPLocator::setIPv4(localhost, "127.0.0.1");
+  qos.wire_protocol().builtin.initialPeersList.push_back(localhost);
   participant_ = DomainParticipantFactory::get_instance()->create_participant(static_cast<DomainId_t>(domain), qos);
   if (participant_ == nullptr) throw std::runtime_error("Fast DDS cannot join the domain");
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);

@@ -34,7 +34,7 @@ void CameraWatch::note_unusable(const InputError& fault, Timestamp now) {
 }
 
 void CameraWatch::note_frame(const CameraFrame& frame, Timestamp now) {
-  frames_.push_back({now, frame.wants_right && !frame.has_right, frame.seconds});
+  frames_.push_back({now, frame.wants_right && !frame.has_right, frame.seconds, frame.nearest_right});
   if (frame.is_frozen) frozen_ = Note{now, "the camera repeats its image; restart its driver"};
   if (frame.jump) {
     jump_ = Note{now, formatted("stamps jumped by %.3f s; keep the clocks of camera and computer together (chrony)",
@@ -74,9 +74,14 @@ std::optional<CameraWatch::Finding> CameraWatch::silence(Timestamp now) const {
 std::optional<CameraWatch::Finding> CameraWatch::lost_right_images() const {
   const auto lacking = std::ranges::count_if(frames_, &Recent::lacks_right);
   if (lacking == 0) return std::nullopt;
-  return Finding{lacking == std::ssize(frames_) ? kError : kWarn,
-                 formatted("right images are missing: %d of the last %d", static_cast<int>(lacking),
-                           static_cast<int>(frames_.size()))};
+  std::string text = formatted("right images are missing: %d of the last %d", static_cast<int>(lacking),
+                               static_cast<int>(frames_.size()));
+  // Cameras that are not triggered together have stamps of their own.
+  constexpr Timestamp kLikelyItsOwn = 50ms;
+  if (const auto nearest = frames_.back().nearest_right; nearest && *nearest < kLikelyItsOwn) {
+    text += formatted(", the nearest stamp is %.1f ms off, see images.pair_tolerance", 1e3 * to_seconds(*nearest));
+  }
+  return Finding{lacking == std::ssize(frames_) ? kError : kWarn, text};
 }
 
 std::vector<CameraWatch::Finding> CameraWatch::findings(Timestamp now) const {

@@ -20,7 +20,8 @@ struct CameraFrame {
   bool is_frozen = false;  // whether the image is the one before, bit by bit
   double seconds = 0.0;    // from the image's arrival to the poses
   InputFault fault = InputFault::none;
-  std::optional<Timestamp> jump;  // how far the stamps jumped before it
+  std::optional<Timestamp> nearest_right;  // where there is no right image: distance to the stamp of the nearest one
+  std::optional<Timestamp> jump;           // how far the stamps jumped before it
 };
 
 // Looks at what comes from the cameras, and says what is wrong with it within a second. Times are of one clock that
@@ -44,6 +45,7 @@ class CameraWatch {
     Timestamp time{};
     bool lacks_right = false;
     double seconds = 0.0;
+    std::optional<Timestamp> nearest_right{};
   };
   struct Finding {
     std::byte level{};  // as diagnostics have it

@@ -30,6 +30,8 @@ class ImagePairs {
     Timestamp stamp{};
     Image left;
     std::optional<Image> right;
+    std::optional<Timestamp>
+        nearest{};  // where there is no right image: distance to the stamp of the nearest right one
   };
 
   explicit ImagePairs(const PairingOptions& options) : options_(options) {}
@@ -46,7 +48,11 @@ class ImagePairs {
     for (std::size_t i = lefts_.size(); i-- > 0;) {
       if (now - lefts_[i].arrival < options_.wait) continue;
       ++counts_.without_right;
-      return take(i, std::nullopt);
+      const std::optional<std::size_t> nearest = nearest_to(lefts_[i].stamp);
+      const Timestamp stamp = lefts_[i].stamp;
+      Pair pair = take(i, std::nullopt);
+      if (nearest) pair.nearest = std::chrono::abs(rights_[*nearest].stamp - stamp);
+      return pair;
     }
     return std::nullopt;
   }
@@ -69,13 +75,19 @@ class ImagePairs {
     if (&queue == &lefts_) ++counts_.passed_over;
   }
 
-  std::optional<std::size_t> partner_of(Timestamp stamp) const {
+  std::optional<std::size_t> nearest_to(Timestamp stamp) const {
     std::optional<std::size_t> best;
     const auto distance = [&](std::size_t i) { return std::chrono::abs(rights_[i].stamp - stamp); };
     for (std::size_t i = 0; i < rights_.size(); ++i) {
-      if (distance(i) <= options_.tolerance && (!best || distance(i) < distance(*best))) best = i;
+      if (!best || distance(i) < distance(*best)) best = i;
     }
     return best;
+  }
+
+  std::optional<std::size_t> partner_of(Timestamp stamp) const {
+    const auto nearest = nearest_to(stamp);
+    const bool is_near = nearest && std::chrono::abs(rights_[*nearest].stamp - stamp) <= options_.tolerance;
+    return is_near ? nearest : std::nullopt;
   }
 
   Pair take(std::size_t left, std::optional<std::size_t> right) {

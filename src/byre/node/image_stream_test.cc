@@ -41,6 +41,7 @@ TEST(ImagePairs, GivesALeftImageAloneOnceItHasWaited) {
   const auto pair = pairs.next(50ms);
   ASSERT_TRUE(pair.has_value());
   EXPECT_FALSE(pair->right.has_value());
+  EXPECT_EQ(pair->nearest, Timestamp(1ms));
   EXPECT_EQ(pairs.counts().without_right, 1);
 }
 
@@ -131,6 +132,9 @@ TEST_F(Watch, NamesLostRightImages) {
   frames(2200ms, 20, left_alone_);
   EXPECT_EQ(level(3200ms), ros::DiagnosticStatus::kError);
   EXPECT_THAT(said(3200ms), HasSubstr("right images are missing"));
+  left_alone_.nearest_right = 3ms;
+  frames(3200ms, 1, left_alone_);
+  EXPECT_THAT(said(3200ms), HasSubstr("the nearest stamp is 3.0 ms off, see images.pair_tolerance"));
   frames(3200ms, 25, good_);
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
 }

@@ -88,7 +88,9 @@ void Node::take_calibration(Timestamp now) {
   } catch (const InputError& error) {
     calibration_.reset();
     watch_.note_unusable(error, now);
-    log_(error.what());
+    if (last_fault_ == error.what()) return;
+    last_fault_ = error.what();
+    log_(last_fault_);
   }
 }
 
@@ -171,6 +173,7 @@ void Node::process(const Pairs::Pair& pair) {
                            report.health.doubt == Doubt::frozen,
                            to_seconds(steady_now() - begin),
                            report.input,
+                           pair.nearest,
                            jump};
     watch_.note_frame(told, steady_now());
   } catch (const InputError& error) {

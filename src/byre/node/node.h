@@ -68,6 +68,7 @@ class Node {
   std::optional<Pose> map_from_body_;  // as it was published last
   Timestamp last_image_time_{};
   std::string last_diagnosis_;
+  std::string last_fault_;      // fault of the calibration that was told last
   Timestamp last_told_{};       // when diagnostics were told
   Timestamp last_slow_told_{};  // when path and points were told
   int arrived_at_last_sign_ = 0;
