@@ -12,8 +12,8 @@ namespace byre {
 
 // Blocks row by row. The matrix that CHOLMOD gets has the same pattern each time, so that it is analysed once.
 struct ReducedSystem::Sparse {
-  std::vector<std::vector<int>> columns;  // of each row's blocks, ascending, its own last
-  std::vector<std::size_t> begin;         // of each row's blocks
+  std::vector<std::vector<int>> columns;  // columns that each row has blocks in, ascending, its own last
+  std::vector<std::size_t> begin;         // index of each row's first block
   std::vector<Matrix6> blocks;
   Eigen::SparseMatrix<double> lower;
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor;
