@@ -46,7 +46,7 @@ struct Eliminated {
 struct Estimate {
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Matrix3d> rotations;  // of the poses
+  std::vector<Eigen::Matrix3d> rotations;  // turns of the poses
 
   void update_rotations() {
     rotations.resize(poses.size());
@@ -103,7 +103,7 @@ class SchurBundle {
   Estimate moved(const Step& step) const;
   double cost_of(const Estimate& estimate) const;
   void take_over(Estimate estimate) { estimate_ = std::move(estimate); }
-  double squared_length() const;  // of all that moves
+  double squared_length() const;  // all that moves
 
  private:
   void give_slots(const BundleRoles& roles);
