@@ -73,6 +73,9 @@ class BagFile final : public Bag {
   std::vector<std::byte> read(const BagMessage& message) override;
 
  private:
+  // The first bytes of a message that is compressed; false when it is damaged.
+  bool unpack_head(BagMessage& message);
+
   std::string place_;                            // constant after construction
   std::unique_ptr<TemporaryFile> decompressed_;  // outlives the bag that reads it
   std::unique_ptr<Bag> bag_;
@@ -82,7 +85,7 @@ class BagFile final : public Bag {
 std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, const TypeFilter& wanted) {
   auto source = std::make_unique<FileSource>(path);
   const std::vector<std::byte> head = read_piece(*source, 0, 16);
-  if (begins_with(head, kSqliteBegin)) return std::make_unique<SqliteBag>(path, wanted);
+  if (begins_with(head, kSqliteBegin)) return std::make_unique<SqliteBag>(path, place, wanted);
   if (begins_with(head, kRos1Begin)) return std::make_unique<Ros1Bag>(std::move(source), place, wanted);
   if (std::ranges::equal(head.size() < kMcapMagic.size() ? head : std::vector(head.begin(), head.begin() + 8),
                          kMcapMagic)) {
@@ -100,16 +103,25 @@ BagFile::BagFile(const fs::path& path, const TypeFilter& wanted) : place_(path.s
   }
   bag_ = open_file(decompressed_ ? decompressed_->path() : path, path.string(), wanted);
   content_ = bag_->take_content();
-  if (decompressed_) content_.compression.push_back("zstd");
-  if (is_cut) content_.damage.push_back(path.string() + ": is cut or damaged: what comes before was read");
-  for (BagMessage& message : content_.messages) {
-    if (!is_zstd(message.head)) continue;
+  if (is_cut) content_.damage.push_back(place_ + ": is cut or damaged: what comes before was read");
+  std::size_t packed = 0;
+  const std::size_t broken = std::erase_if(content_.messages, [&](BagMessage& message) {
+    if (!is_zstd(message.head)) return false;
+    ++packed;
+    return !unpack_head(message);
+  });
+  if (decompressed_ || packed > 0) content_.compression.emplace_back("zstd");
+  if (broken > 0) content_.damage.push_back(place_ + ": " + std::to_string(broken) + " messages are damaged");
+}
+
+bool BagFile::unpack_head(BagMessage& message) {
+  try {
     const Decompressed head = decompress(Compression::zstd, bag_->read(message), message.head.size());
     message.head = {};
     std::ranges::copy(head.bytes, message.head.begin());
-    if (std::ranges::find(content_.compression, "zstd") == content_.compression.end()) {
-      content_.compression.push_back("zstd");
-    }
+    return !head.bytes.empty();
+  } catch (const InputError&) {
+    return false;
   }
 }
 

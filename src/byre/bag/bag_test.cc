@@ -111,6 +111,18 @@ TEST_F(BagFiles, MayBeCompressedMessageByMessage) {
   EXPECT_TRUE(std::equal(first.begin(), first.begin() + 16, bag->content().messages[0].head.begin()));
 }
 
+TEST_F(BagFiles, LeaveOutMessagesThatCannotBeDecompressed) {
+  int count = 0;
+  write_db3(folder_ / "scene.db3", scene_messages(), [&count](const BagBytes& bytes) {
+    BagBytes packed = compress_zstd(bytes);
+    if (++count == 2) packed.resize(5);
+    return packed;
+  });
+  const auto bag = open_bag(folder_ / "scene.db3", every_type);
+  EXPECT_EQ(readable_messages(*bag).size(), 17u);
+  EXPECT_THAT(bag->content().damage, ElementsAre(HasSubstr("scene.db3: 1 messages are damaged")));
+}
+
 TEST_F(BagFiles, MayBeCompressedAsAWhole) {
   const fs::path whole = write("scene.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
   expect_scene(whole, ros::Encoding::cdr, "mcap");
@@ -119,6 +131,11 @@ TEST_F(BagFiles, MayBeCompressedAsAWhole) {
   const std::string database((std::istreambuf_iterator<char>(file)), {});
   expect_scene(write("packed.db3.zstd", compress_zstd(std::as_bytes(std::span(database)))), ros::Encoding::cdr,
                "sqlite3");
+  const BagBytes bytes = mcap_bytes(scene_messages(), "-");
+  BagBytes cut = compress_zstd(std::span(bytes).first(bytes.size() / 2));
+  const BagBytes rest = compress_zstd(std::span(bytes).subspan(bytes.size() / 2));
+  cut.insert(cut.end(), rest.begin(), rest.end() - 9);
+  EXPECT_THAT(damage_of(write("cut.mcap.zstd", cut)), testing::Contains(HasSubstr("cut.mcap.zstd: is cut or damaged")));
 }
 
 TEST_F(BagFiles, OfRosbag2FormOneBag) {

@@ -4,7 +4,7 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
-#include <cstring>
+#include <span>
 #include <system_error>
 
 #include <sqlite3.h>
@@ -51,8 +51,8 @@ SqliteBag::Database::~Database() {
 
 SqliteBag::~SqliteBag() = default;
 
-SqliteBag::SqliteBag(const fs::path& path, const TypeFilter& wanted)
-    : path_(path), message_(nullptr, sqlite3_finalize) {
+SqliteBag::SqliteBag(const fs::path& path, std::string place, const TypeFilter& wanted)
+    : place_(std::move(place)), message_(nullptr, sqlite3_finalize) {
   refuse_pipe(path);
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
   if (sqlite3_open_v2(address_of(path).c_str(), &database_.handle, flags, nullptr) != SQLITE_OK) fail();
@@ -70,7 +70,7 @@ SqliteBag::SqliteBag(const fs::path& path, const TypeFilter& wanted)
 
 void SqliteBag::fail() const {
   const std::string why = database_.handle == nullptr ? "out of memory" : sqlite3_errmsg(database_.handle);
-  throw InputError(path_.string(), "cannot be read as a database of rosbag2: " + why,
+  throw InputError(place_, "cannot be read as a database of rosbag2: " + why,
                    "use a copy, or see what \"sqlite3 FILE .recover\" saves");
 }
 
@@ -117,10 +117,10 @@ void SqliteBag::read_messages() {
   }
   if (result != SQLITE_DONE) {
     content_.damage.push_back(
-        path_.string() + ": is damaged, so that only what comes before was read: " + sqlite3_errmsg(database_.handle));
+        place_ + ": is damaged, so that only what comes before was read: " + sqlite3_errmsg(database_.handle));
   }
   if (unknown > 0) {
-    content_.damage.push_back(path_.string() + ": " + std::to_string(unknown) +
+    content_.damage.push_back(place_ + ": " + std::to_string(unknown) +
                               " messages are of topics that are not described");
   }
   std::ranges::stable_sort(content_.messages, {}, &BagMessage::log_time);

@@ -2,10 +2,12 @@
 
 #include "byre/bag/bag.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -16,7 +18,8 @@ namespace byre {
 class SqliteBag final : public Bag {
  public:
   // Throws InputError when it cannot be opened or lacks those tables.
-  SqliteBag(const std::filesystem::path& path, const TypeFilter& wanted);
+  // place: how errors name the file.
+  SqliteBag(const std::filesystem::path& path, std::string place, const TypeFilter& wanted);
   ~SqliteBag() override;
 
   const BagContent& content() const override { return content_; }
@@ -35,7 +38,7 @@ class SqliteBag final : public Bag {
   void read_topics(const TypeFilter& wanted);
   void read_messages();
 
-  std::filesystem::path path_;  // constant after construction
+  std::string place_;  // constant after construction
   Database database_;
   Statement message_;  // gives the bytes of a row
   BagContent content_;
