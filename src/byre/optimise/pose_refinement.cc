@@ -147,7 +147,7 @@ double variance_factor(const std::vector<Sighting>& sightings) {
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
-void choose_inliers(std::vector<Sighting>& sightings, const PoseRefinementOptions& options, double factor) {
+void choose_inliers(std::vector<Sighting>& sightings, double factor) {
   for (Sighting& sighting : sightings) {
     const double gate = sighting.stereo ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
     sighting.inlier = sighting.squared_error <= gate * factor || sighting.tolerant_error <= gate;
@@ -323,14 +323,14 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   // happens to fit captures the pose.
   for (int round = 0; round < options.rounds; ++round) {
     const double factor = variance_factor(sightings);
-    choose_inliers(sightings, options, factor);
+    choose_inliers(sightings, factor);
     if (count_inliers(sightings) < kMinInliers) return std::nullopt;
     result.camera_from_world =
         descend(sightings, known, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
     sightings = sight_from(result.camera_from_world);
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
-  choose_inliers(sightings, options, result.variance_factor);
+  choose_inliers(sightings, result.variance_factor);
   result.inlier_count = count_inliers(sightings);
   if (result.inlier_count < kMinInliers) return std::nullopt;
   for (const Sighting& sighting : sightings) result.inliers.push_back(sighting.inlier);
