@@ -4,7 +4,9 @@
 #include "byre/input/formatted.h"
 #include "byre/node/health_messages.h"
 #include "byre/node/message_parsing.h"
+#include "byre/node/metrics.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -60,6 +62,11 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
   graph_.tell();
+  if (config.http_port) {
+    web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
+                        std::make_unique<StatusSite>(board_));
+    for (const std::string& url : web_server_->urls()) log_("healthz and metrics are served at " + url);
+  }
 }
 
 void Node::take_images(Timestamp now) {
@@ -209,13 +216,20 @@ ros::DiagnosticStatus Node::localisation() const {
   return status;
 }
 
+void Node::tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras) {
+  const std::string summary = localisation.message + "; " + cameras.message;
+  manager_.status(summary);
+  const bool is_well = last_report_ && std::max(localisation.level, cameras.level) <= ros::DiagnosticStatus::kWarn;
+  board_->put({is_well, summary, metrics_text({watch_.arrived(), pairs_.counts().passed_over, frames_, last_report_})});
+}
+
 // Once a second, and at once where there is something new to say.
 void Node::tell_state(Timestamp now) {
   std::vector<ros::DiagnosticStatus> statuses = {localisation(), watch_.status(now)};
   const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
   const bool is_news = diagnosis != last_diagnosis_ && now - last_told_ > 100ms;
   if (is_news || now - last_told_ > 1s) {
-    manager_.status(statuses[0].message + "; " + statuses[1].message);
+    tell_status(statuses[0], statuses[1]);
     outputs_.tell_diagnostics(std::move(statuses));
     last_told_ = now;
     last_diagnosis_ = diagnosis;

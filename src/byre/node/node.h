@@ -12,8 +12,11 @@
 #include "byre/node/service_manager.h"
 #include "byre/node/slam_runner.h"
 #include "byre/node/stamp_clock.h"
+#include "byre/viewer/status_site.h"
+#include "byre/viewer/web_server.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -44,6 +47,7 @@ class Node {
   void publish(const ReceivedImage& left, const FrameReport& report);
   void note_events(const FrameReport& report);
   void tell_state(Timestamp now);
+  void tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
   ros::DiagnosticStatus localisation() const;
   void begin_anew();
 
@@ -60,6 +64,8 @@ class Node {
   CameraWatch watch_;
   PoseFrames pose_frames_;
   ServiceManager manager_;
+  std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
+  std::optional<WebServer> web_server_;  // reads the board
 
   std::optional<Calibration> calibration_;  // once it is known
   std::string left_frame_;                  // frame of the left images; empty before the first one

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -192,12 +193,27 @@ void add_topics(Table& table) {
       "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "poses given by hand"));
 }
 
+void add_http(Table& table) {
+  table.push_back(text(
+      "http.address", [](auto& c) -> auto& { return c.http_address; }, "address of /healthz and /metrics"));
+  const auto get = [](const NodeConfig& config) { return config.http_port ? std::to_string(*config.http_port) : ""; };
+  const auto set = [](NodeConfig& config, std::string_view value) {
+    const auto number = parse_number(value);
+    const bool is_port = number && *number >= 1.0 && *number <= 65535.0 && *number == std::floor(*number);
+    if (!is_port && !value.empty()) return false;
+    config.http_port = is_port ? std::optional(static_cast<int>(*number)) : std::nullopt;
+    return true;
+  };
+  table.push_back({"http.port", "1 to 65535 or empty", "port of /healthz and /metrics; empty: none", get, set});
+}
+
 Table make_table() {
   Table table;
   add_slam(table);
   add_images(table);
   add_frames(table);
   add_topics(table);
+  add_http(table);
   return table;
 }
 

@@ -70,6 +70,9 @@ struct NodeConfig {
   std::string grid = "/map";
   std::string initial_pose = "/initialpose";
 
+  std::string http_address = "127.0.0.1";  // address of this computer that /healthz and /metrics are served at
+  std::optional<int> http_port;            // empty: they are not served
+
   Mounting used_mounting() const { return mounting.value_or(calibration ? Mounting::file : Mounting::tf); }
   bool has_right() const { return !right.empty(); }
   std::string full_name() const { return name_space + (name_space == "/" ? "" : "/") + name; }
