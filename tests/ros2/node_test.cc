@@ -1,17 +1,11 @@
-// `byre node` as another vendor's programs of ROS 2 meet it.
+// What `byre node` tells another vendor's programs of ROS 2, and how it obeys them.
 
-#include "byre/calibration_file.h"
 #include "byre/map/map_file.h"
-#include "byre/simulation/rendered_fixture.h"
-#include "byre/slam.h"
 #include "mapped_recording.h"
-#include "node_scene.h"
+#include "node_fixture.h"
 
 #include <algorithm>
-#include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -20,140 +14,8 @@
 namespace byre::testing_ros2 {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::AnyOf;
-using testing::Eq;
 using testing::HasSubstr;
-using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
-using std::chrono_literals::operator""s;
-
-using Odometry = Inbox<nav_msgs::msg::Odometry, nav_msgs::msg::OdometryPubSubType>;
-using Poses =
-    Inbox<geometry_msgs::msg::PoseWithCovarianceStamped, geometry_msgs::msg::PoseWithCovarianceStampedPubSubType>;
-using Transforms = Inbox<tf2_msgs::msg::TFMessage, tf2_msgs::msg::TFMessagePubSubType>;
-using Diagnostics = Inbox<diagnostic_msgs::msg::DiagnosticArray, diagnostic_msgs::msg::DiagnosticArrayPubSubType>;
-using Texts = Inbox<std_msgs::msg::String, std_msgs::msg::StringPubSubType>;
-using Clouds = Inbox<sensor_msgs::msg::PointCloud2, sensor_msgs::msg::PointCloud2PubSubType>;
-using Grids = Inbox<nav_msgs::msg::OccupancyGrid, nav_msgs::msg::OccupancyGridPubSubType>;
-using Paths = Inbox<nav_msgs::msg::Path, nav_msgs::msg::PathPubSubType>;
-using Graph =
-    Inbox<rmw_dds_common::msg::ParticipantEntitiesInfo, rmw_dds_common::msg::ParticipantEntitiesInfoPubSubType>;
-using eprosima::fastdds::dds::TypeSupport;
-
-constexpr PeerQos kVolatile{true, false, 100};
-constexpr PeerQos kLatched{true, true, 100};
-
-// A room of made-up walls, with the calibration that the node is given, and what is mapped of it.
-class Room {
- public:
-  static const Room& shared() {
-    static const Room room;
-    return room;
-  }
-
-  fs::path calibration() const { return folder_ / "camchain.yaml"; }
-  fs::path map() const { return folder_ / "room.byre"; }
-  const std::vector<ImageFrame>& frames() const { return frames_; }
-  // The PNG file of an image.
-  std::vector<std::uint8_t> file(const std::string& camera, std::size_t frame) const {
-    std::ifstream stream(rendered_.image(camera, frame), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  // What a Slam of one's own makes of the frames.
-  std::vector<FrameReport> tracked(Slam slam) const {
-    std::vector<FrameReport> reports;
-    for (const ImageFrame& frame : frames_) reports.push_back(slam.process(view_of(frame)));
-    return reports;
-  }
-  static SlamOptions options() {
-    SlamOptions options;
-    options.workers = Workers::repeatable;
-    return options;
-  }
-
- private:
-  Room() {
-    const auto recording = open_recording(rendered_.folder(), {});
-    for (int i = 0; i < recording->size(); ++i) frames_.push_back(*recording->read(i));
-    std::ofstream(calibration()) << write_calibration(recording->calibration());
-    Slam slam = Slam::mapping(read_calibration(calibration()), options());
-    for (const ImageFrame& frame : frames_) slam.process(view_of(frame));
-    slam.finish();
-    slam.save(map());
-  }
-
-  RenderedFixture rendered_{"byre_ros2_room", 40, 20.0};
-  fs::path folder_ = rendered_.folder();
-  std::vector<ImageFrame> frames_;
-};
-
-class ByreNode : public testing::Test {
- protected:
-  ByreNode() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~ByreNode() override { fs::remove_all(folder_); }
-
-  static std::string config(const std::string& slam, const std::string& more = {}) {
-    return "slam:\n  workers: repeatable\n" + slam + "images:\n  reliable: true\n  pair_wait: 0.2\n" +
-           "calibration:\n  file: " + Room::shared().calibration().string() + "\n" + more;
-  }
-  std::string mapping() const { return config("  task: map\n  save: " + (folder_ / "made.byre").string() + "\n"); }
-  static std::string mission(const std::string& more = {}) {
-    return config("  map: " + Room::shared().map().string() + "\n", more);
-  }
-
-  // Whether all have found one another. Endpoints are told in the order in which they were made: where the node answers
-  // a command, it knows the cameras' writers too, and where the answer arrives, so do its other messages.
-  bool is_connected() {
-    if (!feed_.is_heard() || !diagnostics_.first()) return false;
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      command("hello");
-      if (events_.find([](const auto& event) { return event.data().find("hello") != std::string::npos; }, 1s))
-        return feed_.settle();
-    }
-    return false;
-  }
-
-  void command(const std::string& text) {
-    std_msgs::msg::String message;
-    message.data(text);
-    command_->write(&message);
-  }
-
-  // Sends a frame and waits for what the node makes of it.
-  std::optional<nav_msgs::msg::Odometry> answer_to(CameraFeed& feed, Odometry& odometry, const ImageFrame& frame,
-                                                   Timestamp later = {}) const {
-    feed.send(frame, later);
-    return odometry.find([&](const auto& message) { return time_of(message.header().stamp()) == frame.time + later; });
-  }
-
-  // What a status of the diagnostics says, once it says such a thing.
-  static std::optional<std::string> diagnosis(Diagnostics& diagnostics, const std::string& name,
-                                              const std::string& part) {
-    std::optional<std::string> text;
-    diagnostics.find([&](const diagnostic_msgs::msg::DiagnosticArray& message) {
-      for (const auto& status : message.status()) {
-        if (status.name() == name && status.message().find(part) != std::string::npos) text = status.message();
-      }
-      return text.has_value();
-    });
-    return text;
-  }
-
-  fs::path folder_ = fs::path(testing::TempDir()) / ("byre_node." + std::to_string(getpid()));
-  int domain_ = some_domain();
-  FastPeer peer_{domain_};
-  Odometry odometry_{peer_, "rt/byre/odometry", kVolatile};
-  Diagnostics diagnostics_{peer_, "rt/diagnostics", kVolatile};
-  Texts events_{peer_, "rt/byre/events", kVolatile};
-  CameraFeed feed_{peer_};
-  eprosima::fastdds::dds::DataWriter* command_ =
-      peer_.writer("rt/byre/command", TypeSupport(new std_msgs::msg::StringPubSubType), kVolatile);
-};
 
 TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
   const Room& room = Room::shared();
@@ -280,79 +142,6 @@ TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-// A feeder that is killed in the middle of it all: this test in a process of its own, see below.
-TEST(KilledFeeder, DISABLED_Feeds) {
-  FastPeer peer(std::atoi(std::getenv("BYRE_TEST_DOMAIN")));
-  CameraFeed feed(peer);
-  ASSERT_TRUE(feed.is_heard());
-  for (const ImageFrame& frame : Room::shared().frames()) {
-    feed.send(frame);
-    std::this_thread::sleep_for(50ms);
-  }
-}
-
-TEST_F(ByreNode, GoesOnWithAFeederThatWasKilledAndBeganAgain) {
-  NodeProcess node(folder_, mission(), domain_);
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    odometry_.forget();
-    setenv("BYRE_TEST_DOMAIN", std::to_string(domain_).c_str(), 1);
-    const pid_t feeder = fork();
-    if (feeder == 0) {
-      execl(program.c_str(), program.c_str(), "--gtest_also_run_disabled_tests", "--gtest_filter=KilledFeeder.*",
-            "--gtest_brief=1", nullptr);
-      _exit(127);
-    }
-    EXPECT_TRUE(odometry_.first()) << node.said();
-    kill(feeder, SIGKILL);
-    waitpid(feeder, nullptr, 0);
-    EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "no image for"));
-    diagnostics_.forget();
-  }
-  EXPECT_EQ(node.stop(), 0);
-}
-
-TEST_F(ByreNode, NamesWhatIsWrongWithTheCameras) {
-  const std::vector<ImageFrame>& frames = Room::shared().frames();
-  NodeProcess node(folder_, mission(), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
-  ASSERT_TRUE(answer_to(feed_, odometry_, frames[0]));
-
-  for (std::size_t i = 1; i < 8; ++i) {
-    feed_.send_left(frames[i]);
-    std::this_thread::sleep_for(50ms);
-  }
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "right images are missing"));
-
-  diagnostics_.forget();
-  for (std::size_t i = 8; i < 12; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i], 1h)) << "stamps went on";
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by 3"));
-  for (std::size_t i = 12; i < 16; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << "stamps went back";
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by -3"));
-
-  diagnostics_.forget();
-  for (int i = 0; i < 12; ++i) {
-    ImageFrame frozen = frames[15];
-    frozen.time += (i + 1) * 50ms;
-    feed_.send(frozen);
-    std::this_thread::sleep_for(50ms);
-  }
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "repeats its image"));
-
-  diagnostics_.forget();
-  sensor_msgs::msg::Image broken = image_message(frames[12].left, frames[12].time, "left_optical");
-  broken.height(100'000);
-  feed_.send_left(broken);
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "rows are not all there"));
-  diagnostics_.forget();
-  broken.height(1);
-  broken.encoding("thermal");
-  feed_.send_left(broken);
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "'thermal'"));
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "no image for"));
-  EXPECT_EQ(node.stop(), 0);
-}
-
 TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, mission(), domain_);
@@ -371,104 +160,6 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
   EXPECT_EQ(answer("load room.byre").at("done"), true);
   EXPECT_EQ(answer("relocalise").at("done"), true);
   for (std::size_t i = 1; i < 6; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << i;
-  EXPECT_EQ(node.stop(), 0);
-}
-
-TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) {
-  const Room& room = Room::shared();
-  Calibration calibration = read_calibration(room.calibration());
-  NodeProcess node(
-      folder_,
-      "slam:\n  task: map\n  workers: repeatable\n  save: made.byre\nimages:\n  reliable: true\n  pair_wait: 0.2\n",
-      domain_);
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: localisation", "waiting for camera info on /left/camera_info"));
-  // Rectified axes: x along the baseline, as calibration of a pair chooses them.
-  const Pose left_from_right = inverse(calibration.right->right_from_left);
-  const Eigen::Vector3d x = left_from_right.translation.normalized();
-  const Eigen::Vector3d y = Eigen::Vector3d::UnitZ().cross(x).normalized();
-  Eigen::Matrix3d left_turn;
-  left_turn << x.transpose(), y.transpose(), x.cross(y).transpose();
-  const Eigen::Matrix3d right_turn = left_turn * left_from_right.rotation.toRotationMatrix();
-  const double fx = 100.0, baseline = left_from_right.translation.norm();
-  const auto info = [&](const Camera& camera, const Eigen::Matrix3d& turn, double p3) {
-    sensor_msgs::msg::CameraInfo message;
-    message.header().frame_id("left_optical");
-    message.width(static_cast<std::uint32_t>(camera.width));
-    message.height(static_cast<std::uint32_t>(camera.height));
-    message.distortion_model("plumb_bob");
-    message.d({camera.distortion.begin(), camera.distortion.end()});
-    message.k({camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1});
-    for (int i = 0; i < 9; ++i) message.r()[static_cast<std::size_t>(i)] = turn(i / 3, i % 3);
-    message.p({fx, 0, 50, p3, 0, fx, 50, 0, 0, 0, 1, 0});
-    return message;
-  };
-  const auto info_type = [] { return TypeSupport(new sensor_msgs::msg::CameraInfoPubSubType); };
-  auto* const left_info = peer_.writer("rt/left/camera_info", info_type(), kVolatile);
-  auto* const right_info = peer_.writer("rt/right/camera_info", info_type(), kVolatile);
-  auto* const fixed =
-      peer_.writer("rt/tf_static", TypeSupport(new tf2_msgs::msg::TFMessagePubSubType), {true, true, 1});
-  ASSERT_TRUE(FastPeer::is_heard(left_info) && FastPeer::is_heard(right_info) && is_connected());
-  tf2_msgs::msg::TFMessage mounting;
-  geometry_msgs::msg::TransformStamped transform;
-  transform.header().frame_id("base_link");
-  transform.child_frame_id("left_optical");
-  transform.transform().translation().x(0.3);
-  transform.transform().rotation().w(1.0);
-  mounting.transforms({transform});
-  fixed->write(&mounting);
-  sensor_msgs::msg::CameraInfo left = info(calibration.left, left_turn, 0.0);
-  sensor_msgs::msg::CameraInfo right = info(calibration.right->camera, right_turn, -fx * baseline);
-
-  calibration.body_from_left = {Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};
-  const auto expected = room.tracked(Slam::mapping(calibration, Room::options()));
-  // Images that come before the calibration are lost, and the one that tells the frame is.
-  bool is_first_tracked = false;
-  for (int i = 0; i < 20 && !is_first_tracked; ++i) {
-    left_info->write(&left);
-    right_info->write(&right);
-    feed_.send(room.frames()[0]);
-    is_first_tracked = odometry_.find([](const auto&) { return true; }, 1s).has_value();
-  }
-  ASSERT_TRUE(is_first_tracked) << node.said();
-  for (std::size_t i = 1; i < 10; ++i) {
-    const auto odometry = answer_to(feed_, odometry_, room.frames()[i]);
-    ASSERT_TRUE(odometry.has_value()) << i;
-    EXPECT_LT((vector_of(odometry->pose().pose().position()) - expected[i].odometry_from_body->translation).norm(),
-              1e-6);
-  }
-  EXPECT_EQ(node.stop(), 0);
-}
-
-TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
-  const Room& room = Room::shared();
-  Calibration calibration = read_calibration(room.calibration());
-  calibration.right.reset();
-  Slam slam = Slam::on_map(calibration, room.map(), Room::options());
-  auto* const left =
-      peer_.writer("rt/left/compressed", TypeSupport(new sensor_msgs::msg::CompressedImagePubSubType), kVolatile);
-  NodeProcess node(folder_,
-                   "slam:\n  workers: repeatable\n  map: " + room.map().string() +
-                       "\nimages:\n  left: /left/compressed\n  right: ''\n  compressed: true\n  reliable: true\n" +
-                       "calibration:\n  file: " + room.calibration().string() + "\n",
-                   domain_);
-  ASSERT_TRUE(FastPeer::is_heard(left) && diagnostics_.first()) << node.said();
-  std::vector<nav_msgs::msg::Odometry> answers;
-  for (std::size_t i = 0; i < 20; ++i) {
-    sensor_msgs::msg::CompressedImage message;
-    message.header().stamp(ros_time(room.frames()[i].time));
-    message.format("mono8; png compressed ");
-    message.data(room.file("cam0", i));
-    left->write(&message);
-    const FrameReport expected = slam.process({view_of(room.frames()[i]).left});
-    if (!expected.odometry_from_body) continue;
-    const auto odometry =
-        odometry_.find([&](const auto& answer) { return time_of(answer.header().stamp()) == room.frames()[i].time; });
-    ASSERT_TRUE(odometry.has_value()) << i << "\n" << node.said();
-    const Eigen::Vector3d position = vector_of(odometry->pose().pose().position());
-    EXPECT_LT((position - expected.odometry_from_body->translation).norm(), 1e-6) << i;
-    answers.push_back(*odometry);
-  }
-  EXPECT_GT(answers.size(), 10u);
   EXPECT_EQ(node.stop(), 0);
 }
 
@@ -541,24 +232,6 @@ TEST_F(ByreNode, AnswersARecordingAsFastAsItCan) {
   RecordProperty("median_ms", std::to_string(milliseconds[milliseconds.size() / 2]));
   RecordProperty("slowest_ms", std::to_string(milliseconds.back()));
   RecordProperty("processor_ms_a_frame", std::to_string(1e3 * processor_seconds(node.process()) / kFrames));
-  EXPECT_EQ(node.stop(), 0);
-}
-
-TEST_F(ByreNode, SurvivesAFloodOfImages) {
-  FastPeer flooding(domain_);
-  CameraFeed flood(flooding, false);
-  std::string unreliable = mission();
-  unreliable.replace(unreliable.find("reliable: true"), 14, "reliable: false");
-  NodeProcess node(folder_, unreliable, domain_);
-  ASSERT_TRUE(is_connected() && flood.is_heard()) << node.said();
-  for (int i = 0; i < 2000; ++i) {  // a thousand a second
-    ImageFrame frame = Room::shared().frames()[static_cast<std::size_t>(i) % 40];
-    frame.time = std::chrono::milliseconds(i);
-    flood.send(frame);
-    std::this_thread::sleep_for(1ms);
-  }
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "were left out"));
-  EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[0], 1h)) << "it goes on as before";
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -1,0 +1,224 @@
+#include "byre/dds/ros_names.h"
+#include "byre/input/formatted.h"
+#include "byre/input/text_file.h"
+#include "byre/node/node_config.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using Table = std::vector<NodeSetting>;
+
+template <typename Place>
+NodeSetting text(const char* name, Place place, const char* meaning) {
+  return {name, "text", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
+          [=](NodeConfig& config, std::string_view value) {
+            if (value.empty()) return false;
+            place(config) = value;
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting topic(const char* name, Place place, const char* meaning) {
+  return {name, "topic or empty", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
+          [=](NodeConfig& config, std::string_view value) {
+            if (!value.empty() && !fault_in_name(resolved(value, "/")).empty()) return false;
+            place(config) = value;
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting file(const char* name, Place place, const char* meaning) {
+  return {name, "file or empty", meaning,
+          [=](const NodeConfig& config) { return place(config) ? place(config)->string() : std::string(); },
+          [=](NodeConfig& config, std::string_view value) {
+            place(config) = value.empty() ? std::nullopt : std::optional<fs::path>(value);
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting flag(const char* name, Place place, const char* meaning) {
+  return {name, "true|false", meaning,
+          [=](const NodeConfig& config) -> std::string { return place(config) ? "true" : "false"; },
+          [=](NodeConfig& config, std::string_view value) {
+            if (value != "true" && value != "false") return false;
+            place(config) = value == "true";
+            return true;
+          }};
+}
+
+template <typename Place>
+NodeSetting seconds(const char* name, double most, Place place, const char* meaning) {
+  return {name, formatted("from 0 to %g seconds", most), meaning,
+          [=](const NodeConfig& config) { return formatted("%g", place(config)); },
+          [=](NodeConfig& config, std::string_view value) {
+            const auto number = parse_number(value);
+            if (!number || !(*number >= 0.0 && *number <= most)) return false;
+            place(config) = *number;
+            return true;
+          }};
+}
+
+template <typename Value>
+using Names = std::vector<std::pair<std::string_view, Value>>;
+
+// The first name is that of no value where Value is optional.
+template <typename Value, typename Place>
+NodeSetting choice(const char* name, Names<Value> names, Place place, const char* meaning) {
+  std::string range;
+  for (const auto& [word, value] : names) range.append(range.empty() ? "" : "|").append(word);
+  const auto get = [=](const NodeConfig& config) {
+    const auto found = std::ranges::find(names, place(config), &std::pair<std::string_view, Value>::second);
+    return std::string(found->first);
+  };
+  const auto set = [=](NodeConfig& config, std::string_view value) {
+    const auto found = std::ranges::find(names, value, &std::pair<std::string_view, Value>::first);
+    if (found == names.end()) return false;
+    place(config) = found->second;
+    return true;
+  };
+  return {name, range, meaning, get, set};
+}
+
+void add_slam(Table& table) {
+  table.push_back(text(
+      "node.name", [](auto& c) -> auto& { return c.name; }, "name of the node"));
+  table.push_back(topic(
+      "node.namespace", [](auto& c) -> auto& { return c.name_space; }, "namespace of the node"));
+  table.push_back(choice<NodeTask>(
+      "slam.task", {{"mission", NodeTask::mission}, {"extend", NodeTask::extend}, {"map", NodeTask::map}},
+      [](auto& c) -> auto& { return c.task; }, "localisation in a kept map, going on with one, or making one"));
+  table.push_back(file(
+      "slam.map", [](auto& c) -> auto& { return c.map; }, "kept map"));
+  table.push_back(file(
+      "slam.save", [](auto& c) -> auto& { return c.save; },
+      "file of what is mapped, written on the command save and at the end"));
+  table.push_back(file(
+      "slam.options", [](auto& c) -> auto& { return c.options; }, "file of options, docs/options.md"));
+  table.push_back(file(
+      "slam.vocabulary", [](auto& c) -> auto& { return c.vocabulary; },
+      "visual vocabulary, instead of the one that comes with byre"));
+  table.push_back(choice<Workers>(
+      "slam.workers", {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}},
+      [](auto& c) -> auto& { return c.workers; },
+      "mapping taken over when ready, after a number of frames, or at once"));
+  table.push_back(file(
+      "slam.plan", [](auto& c) -> auto& { return c.plan; }, "floor plan that is published as an occupancy grid"));
+}
+
+void add_images(Table& table) {
+  table.push_back(topic(
+      "images.left", [](auto& c) -> auto& { return c.left; }, "images of the left or only camera"));
+  table.push_back(topic(
+      "images.right", [](auto& c) -> auto& { return c.right; }, "images of the right camera; empty with one camera"));
+  table.push_back(flag(
+      "images.compressed", [](auto& c) -> auto& { return c.is_compressed; },
+      "images as JPEG or PNG, of sensor_msgs/CompressedImage"));
+  table.push_back(flag(
+      "images.rectified", [](auto& c) -> auto& { return c.is_rectified; },
+      "images that were rectified before, as camera info's P says"));
+  table.push_back(flag(
+      "images.reliable", [](auto& c) -> auto& { return c.is_reliable; },
+      "lost images sent again, where the camera's driver does so"));
+  table.push_back(seconds(
+      "images.pair_tolerance", 0.5, [](auto& c) -> auto& { return c.pair_tolerance; },
+      "most time between the stamps of left and right image; 0: they are equal"));
+  table.push_back(seconds(
+      "images.pair_wait", 1.0, [](auto& c) -> auto& { return c.pair_wait; },
+      "time that a left image waits for its right one"));
+  table.push_back(file(
+      "calibration.file", [](auto& c) -> auto& { return c.calibration; }, "calibration file; empty: by camera info"));
+  table.push_back(topic(
+      "calibration.left_info", [](auto& c) -> auto& { return c.left_info; }, "camera info of the left or only camera"));
+  table.push_back(topic(
+      "calibration.right_info", [](auto& c) -> auto& { return c.right_info; }, "camera info of the right camera"));
+}
+
+void add_frames(Table& table) {
+  table.push_back(text(
+      "frames.map", [](auto& c) -> auto& { return c.map_frame; }, "frame of the map"));
+  table.push_back(text(
+      "frames.odom", [](auto& c) -> auto& { return c.odom_frame; }, "frame of odometry"));
+  table.push_back(text(
+      "frames.base", [](auto& c) -> auto& { return c.base_frame; }, "frame of the robot"));
+  table.push_back(choice<std::optional<Mounting>>(
+      "frames.mounting",
+      {{"auto", std::nullopt}, {"file", Mounting::file}, {"tf", Mounting::tf}, {"camera", Mounting::camera}},
+      [](auto& c) -> auto& { return c.mounting; },
+      "place of the left camera on the robot: by the calibration file, /tf_static, or in its origin"));
+  table.push_back(flag(
+      "frames.in_plan", [](auto& c) -> auto& { return c.in_plan; },
+      "map frame that is the floor plan's, where the map is registered on one"));
+  table.push_back(flag(
+      "frames.map_to_odom", [](auto& c) -> auto& { return c.publishes_map_to_odom; }, "map->odom on /tf"));
+  table.push_back(flag(
+      "frames.odom_to_base", [](auto& c) -> auto& { return c.publishes_odom_to_base; },
+      "odom->base on /tf; false where wheels or a filter give it"));
+  table.push_back(flag(
+      "frames.cameras", [](auto& c) -> auto& { return c.publishes_cameras; },
+      "base->camera on /tf_static, where frames.mounting is not tf"));
+  table.push_back(seconds(
+      "frames.future", 2.0, [](auto& c) -> auto& { return c.future; },
+      "time by which map->odom is stamped later than its image"));
+}
+
+void add_topics(Table& table) {
+  table.push_back(topic(
+      "topics.odometry", [](auto& c) -> auto& { return c.odometry; }, "smooth pose and motion"));
+  table.push_back(topic(
+      "topics.pose", [](auto& c) -> auto& { return c.pose; }, "pose in the map"));
+  table.push_back(topic(
+      "topics.path", [](auto& c) -> auto& { return c.path; }, "way so far"));
+  table.push_back(topic(
+      "topics.points", [](auto& c) -> auto& { return c.points; }, "points of the kept map"));
+  table.push_back(topic(
+      "topics.health", [](auto& c) -> auto& { return c.health; }, "health, as JSON"));
+  table.push_back(topic(
+      "topics.events", [](auto& c) -> auto& { return c.events; }, "what happens, as JSON"));
+  table.push_back(topic(
+      "topics.command", [](auto& c) -> auto& { return c.command; }, "commands, as text"));
+  table.push_back(topic(
+      "topics.grid", [](auto& c) -> auto& { return c.grid; }, "floor plan"));
+  table.push_back(topic(
+      "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "poses given by hand"));
+}
+
+void add_http(Table& table) {
+  table.push_back(text(
+      "http.address", [](auto& c) -> auto& { return c.http_address; }, "address of /healthz and /metrics"));
+  const auto get = [](const NodeConfig& config) { return config.http_port ? std::to_string(*config.http_port) : ""; };
+  const auto set = [](NodeConfig& config, std::string_view value) {
+    const auto number = parse_number(value);
+    const bool is_port = number && *number >= 1.0 && *number <= 65535.0 && *number == std::floor(*number);
+    if (!is_port && !value.empty()) return false;
+    config.http_port = is_port ? std::optional(static_cast<int>(*number)) : std::nullopt;
+    return true;
+  };
+  table.push_back({"http.port", "1 to 65535 or empty", "port of /healthz and /metrics; empty: none", get, set});
+}
+
+Table make_table() {
+  Table table;
+  add_slam(table);
+  add_images(table);
+  add_frames(table);
+  add_topics(table);
+  add_http(table);
+  return table;
+}
+
+}  // namespace
+
+const std::vector<NodeSetting>& node_settings() {
+  static const Table table = make_table();
+  return table;
+}
+
+}  // namespace byre
