@@ -2,10 +2,10 @@
 
 #include "byre/bag/bag.h"
 #include "byre/calibration_file.h"
-#include "byre/dataset/bag_calibration.h"
 #include "byre/dataset/bag_frames.h"
 #include "byre/dataset/bag_image.h"
 #include "byre/dataset/bag_topics.h"
+#include "byre/dataset/camera_info.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
@@ -100,7 +100,7 @@ class BagCalibration {
   std::optional<PlacedCalibration> read(const ImageTopics& topics) const {
     const std::optional<PlacedCameraInfo> left = info_of(topics.left);
     if (!left) return std::nullopt;
-    const FrameTree frames = tree();
+    const StaticFrames frames = tree();
     PlacedCalibration calibration{
         {camera_of(*left), std::nullopt, body_from_camera(left->info.header.frame_id, frames)}, left->place, ""};
     if (!topics.right) return calibration;
@@ -140,13 +140,13 @@ class BagCalibration {
     return std::nullopt;
   }
 
-  FrameTree tree() const {
-    FrameTree frames;
+  StaticFrames tree() const {
+    StaticFrames frames;
     const BagContent& content = bag_.content();
     for (const BagMessage& each : content.messages) {
       const BagTopic& topic = content.topics[each.topic];
       if (!topic.name.ends_with("tf_static") || !is_of_transforms(topic) || !encoding_of(topic)) continue;
-      if (const auto transforms = message<ros::TFMessage>(each)) frames.add(*transforms);
+      if (const auto transforms = message<ros::TFMessage>(each)) frames.take(*transforms);
     }
     return frames;
   }

@@ -1,8 +1,8 @@
 #include "byre/node/calibration_source.h"
 
 #include "byre/calibration_file.h"
+#include "byre/dataset/camera_info.h"
 #include "byre/dds/type_hashes.h"
-#include "byre/node/camera_info.h"
 #include "byre/node/message_parsing.h"
 
 #include <utility>
@@ -50,10 +50,14 @@ std::optional<Calibration> CalibrationSource::cameras() {
   if (!left_) awaited_ = "camera info on " + config_.topic(config_.left_info);
   if (left_ && config_.has_right() && !right_) awaited_ = "camera info on " + config_.topic(config_.right_info);
   if (!left_ || (config_.has_right() && !right_)) return std::nullopt;
-  const CameraInfoTopics topics{config_.topic(config_.left_info), config_.topic(config_.right_info)};
   // Each is looked at once: drivers send the same again and again.
-  const auto left = std::exchange(left_, std::nullopt), right = std::exchange(right_, std::nullopt);
-  cameras_ = calibration_of(*left, right, config_.is_rectified, topics);
+  const auto placed = [&](std::optional<ros::CameraInfo>& info, const std::string& topic) {
+    return PlacedCameraInfo{*std::exchange(info, std::nullopt), config_.topic(topic), config_.is_rectified};
+  };
+  const PlacedCameraInfo left = placed(left_, config_.left_info);
+  Calibration calibration{camera_of(left), std::nullopt, {}};
+  if (config_.has_right()) calibration.right = partner_of(left, placed(right_, config_.right_info), frames_);
+  cameras_ = calibration;
   return cameras_;
 }
 

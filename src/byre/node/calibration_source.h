@@ -1,9 +1,9 @@
 #pragma once
 
+#include "byre/dataset/static_frames.h"
 #include "byre/dds/participant.h"
 #include "byre/dds/ros_graph.h"
 #include "byre/node/node_config.h"
-#include "byre/node/static_frames.h"
 
 #include <optional>
 #include <string>

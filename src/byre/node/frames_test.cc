@@ -1,11 +1,9 @@
-// Frames of a robot: what is fixed to what, and map -> odom -> base.
+// Frames of a robot: map -> odom -> base.
 
 #include "byre/node/pose_frames.h"
 #include "byre/node/pose_messages.h"
-#include "byre/node/static_frames.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -19,37 +17,6 @@ Pose some_pose(double seed) {
 
 double distance(const Pose& a, const Pose& b) {
   return (a.translation - b.translation).norm() + angle_between(a.rotation, b.rotation);
-}
-
-ros::TFMessage fixed(const std::string& parent, const std::string& child, const Pose& parent_from_child) {
-  return {{transform_message({{}, parent}, child, parent_from_child)}};
-}
-
-TEST(StaticFrames, LeadUpAndDownTheTree) {
-  StaticFrames frames;
-  frames.take(fixed("base_link", "mast", some_pose(1)));
-  frames.take(fixed("/mast", "camera", some_pose(2)));
-  frames.take(fixed("base_link", "laser", some_pose(3)));
-  EXPECT_LT(distance(*frames.between("base_link", "camera"), some_pose(1) * some_pose(2)), 1e-9);
-  EXPECT_LT(distance(*frames.between("laser", "camera"), inverse(some_pose(3)) * some_pose(1) * some_pose(2)), 1e-9);
-  EXPECT_LT(distance(*frames.between("mast", "mast"), Pose{}), 1e-12);
-  EXPECT_FALSE(frames.between("base_link", "wheel"));
-}
-
-TEST(StaticFrames, SurviveWhatMakesNoSense) {
-  StaticFrames frames;
-  frames.take(fixed("a", "b", some_pose(1)));
-  frames.take(fixed("b", "a", some_pose(2)));  // round in a circle
-  ros::TFMessage broken = fixed("a", "c", {});
-  broken.transforms[0].transform.rotation.w = 0.0;
-  frames.take(broken);
-  broken = fixed("a", "d", {});
-  broken.transforms[0].transform.translation.x = std::numeric_limits<double>::quiet_NaN();
-  frames.take(broken);
-  EXPECT_FALSE(frames.between("x", "b"));
-  EXPECT_FALSE(frames.between("a", "c"));
-  EXPECT_FALSE(frames.between("a", "d"));
-  EXPECT_TRUE(frames.between("a", "b"));
 }
 
 FrameReport report_at(const std::optional<Pose>& odometry, Verdict verdict = Verdict::trusted) {

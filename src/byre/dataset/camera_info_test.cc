@@ -1,7 +1,11 @@
-#include "byre/dataset/bag_calibration.h"
+#include "byre/dataset/camera_info.h"
 
 #include "byre/dataset/test_folder.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/input_error.h"
+
+#include <functional>
+#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -29,7 +33,7 @@ ros::TransformStamped transform(const std::string& parent, const std::string& ch
   return {{.frame_id = parent}, child, {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-TEST(BagCalibration, IsOfTheModelThatTheInfoNames) {
+TEST(CameraInfo, IsOfTheModelThatTheInfoNames) {
   const Camera camera = camera_of(info("left"));
   EXPECT_EQ(camera.model, CameraModel::radial_tangential);
   EXPECT_EQ(camera, (Camera{CameraModel::radial_tangential,
@@ -51,14 +55,14 @@ TEST(BagCalibration, IsOfTheModelThatTheInfoNames) {
   EXPECT_EQ(camera_of(rational), camera);
 }
 
-TEST(BagCalibration, OfRectifiedImagesIsInTheirProjection) {
+TEST(CameraInfo, OfRectifiedImagesIsInTheirProjection) {
   PlacedCameraInfo placed = info("left");
   placed.is_rectified = true;
   placed.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 431.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
 }
 
-TEST(BagCalibration, IsRefusedWhereByreDoesNotKnowTheLens) {
+TEST(CameraInfo, IsRefusedWhereByreDoesNotKnowTheLens) {
   PlacedCameraInfo rational = info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
@@ -75,7 +79,7 @@ TEST(BagCalibration, IsRefusedWhereByreDoesNotKnowTheLens) {
   EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("cut out"));
 }
 
-TEST(BagCalibration, HasTheBaselineOfTheProjectionOfRectifiedImages) {
+TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
   PlacedCameraInfo left = info("left"), right = info("left");
   left.is_rectified = right.is_rectified = true;
   left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
@@ -85,7 +89,7 @@ TEST(BagCalibration, HasTheBaselineOfTheProjectionOfRectifiedImages) {
   EXPECT_THAT(right_from_left, PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}, 1e-12, 1e-12));
 }
 
-TEST(BagCalibration, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
+TEST(CameraInfo, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
   // Rectified frames as a stereo calibration makes them: turned like each other, one behind the other along x.
   const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
   const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
@@ -98,27 +102,40 @@ TEST(BagCalibration, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
   EXPECT_THAT(partner_of(left, right, {}).right_from_left, PoseNear(expected, 1e-9, 1e-9));
 }
 
-TEST(BagCalibration, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
-  FrameTree frames;
+TEST(CameraInfo, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
+  StaticFrames frames;
   const Pose base_from_left{rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.05, 0.4}};
-  frames.add({{transform("/base_link", "left", base_from_left), transform("left", "right", inverse(kRightFromLeft))}});
+  frames.take({{transform("/base_link", "left", base_from_left), transform("left", "right", inverse(kRightFromLeft))}});
   EXPECT_THAT(partner_of(info("left"), info("right"), frames).right_from_left, PoseNear(kRightFromLeft, 1e-9, 1e-9));
   EXPECT_THAT(body_from_camera("left", frames), PoseNear(base_from_left, 1e-9, 1e-9));
   EXPECT_THAT(body_from_camera("right", frames), PoseNear(base_from_left * inverse(kRightFromLeft), 1e-9, 1e-9));
 }
 
-TEST(BagCalibration, IsRefusedWhereNothingTellsTheBaseline) {
+TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
   EXPECT_THAT(error_of([] { partner_of(info("left"), info("right"), {}); }),
               HasSubstr("does not lead from the frame \"left\" to \"right\" (name a calibration"));
   EXPECT_THAT(error_of([] { partner_of(info("left"), info("left"), {}); }), HasSubstr("walk.bag: /left/camera_info"));
   EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
 }
 
-TEST(FrameTree, EndsWhereFramesLeadRoundInACircle) {
-  FrameTree frames;
-  frames.add({{transform("a", "b", kRightFromLeft), transform("b", "a", kRightFromLeft)}});
-  EXPECT_TRUE(frames.between("a", "b").has_value());
-  EXPECT_FALSE(frames.between("a", "c").has_value());
+TEST(CameraInfo, IsRefusedWhereItMakesNoSense) {
+  PlacedCameraInfo left = info("left");
+  left.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  const auto is_refused = [&left](const std::function<void(ros::CameraInfo&)>& change) {
+    PlacedCameraInfo right = left;
+    right.info.p[3] = -43.0;
+    change(right.info);
+    EXPECT_THROW(partner_of(left, right, {}), InputError);
+  };
+  is_refused([](auto& info) { info.k[0] = 0.0; });
+  is_refused([](auto& info) { info.k[4] = std::numeric_limits<double>::quiet_NaN(); });
+  is_refused([](auto& info) { info.p[3] = 0.0; });
+  is_refused([](auto& info) { info.p[3] = 43.0; });
+  is_refused([](auto& info) { info.r = {}; });
+  is_refused([](auto& info) { info.distortion_model = "kannala"; });
+  is_refused([](auto& info) { info.d = {1.0, 2.0, 3.0}; });
+  is_refused([](auto& info) { info.roi.x_offset = 8; });
+  is_refused([](auto& info) { info.width = 0; });
 }
 
 }  // namespace

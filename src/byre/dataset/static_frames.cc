@@ -1,4 +1,4 @@
-#include "byre/node/static_frames.h"
+#include "byre/dataset/static_frames.h"
 
 #include <cmath>
 
