@@ -1,0 +1,75 @@
+#include "byre/optimise/reduced_system.h"
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+// Each pose is a neighbour of those up to three before it, and of the first.
+std::vector<std::vector<int>> neighbours_of(int poses) {
+  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(poses));
+  for (int row = 1; row < poses; ++row) {
+    std::vector<int>& columns = neighbours[static_cast<std::size_t>(row)];
+    if (row > 3) columns.push_back(0);
+    for (int column = std::max(0, row - 3); column < row; ++column) columns.push_back(column);
+  }
+  return neighbours;
+}
+
+// Fills the system with random blocks, made positive definite by a heavy diagonal; returns it as one matrix.
+Eigen::MatrixXd fill(ReducedSystem& system, int poses, double diagonal) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> value(-1.0, 1.0);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(6 * poses, 6 * poses);
+  const std::vector<std::vector<int>> neighbours = neighbours_of(poses);
+  system.set_zero();
+  const auto add = [&](int row, int column, const Matrix6& block) {
+    system.at(row, column) += block;
+    whole.block<6, 6>(6 * row, 6 * column) = block;
+    whole.block<6, 6>(6 * column, 6 * row) = block.transpose();
+  };
+  for (int row = 0; row < poses; ++row) {
+    for (const int column : neighbours[static_cast<std::size_t>(row)]) {
+      add(row, column, Matrix6::NullaryExpr([&] { return value(random); }));
+    }
+    const Matrix6 own = Matrix6::NullaryExpr([&] { return value(random); });
+    add(row, row, own * own.transpose() + diagonal * Matrix6::Identity());
+  }
+  return whole;
+}
+
+class ReducedSystemOf : public testing::TestWithParam<int> {};  // poses
+
+TEST_P(ReducedSystemOf, HasTheSolutionOfTheWholeMatrix) {
+  ReducedSystem system(GetParam(), neighbours_of(GetParam()));
+  const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(6 * GetParam(), -1.0, 2.0);
+  for (const double diagonal : {2000.0, 700.0}) {  // the second time by the pattern of the first
+    const Eigen::MatrixXd whole = fill(system, GetParam(), diagonal);
+    const auto solution = system.solve(right);
+    ASSERT_TRUE(solution);
+    EXPECT_LT((whole * *solution - right).norm(), 1e-9 * right.norm());
+  }
+}
+
+TEST_P(ReducedSystemOf, HasNoSolutionWhereItIsNotPositiveDefinite) {
+  ReducedSystem system(GetParam(), neighbours_of(GetParam()));
+  fill(system, GetParam(), 2000.0);
+  system.at(0, 0) -= 1e6 * Matrix6::Identity();
+  EXPECT_FALSE(system.solve(Eigen::VectorXd::Ones(6 * GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(DenseAndSparse, ReducedSystemOf, testing::Values(1, 20, ReducedSystem::kMaxDensePoses + 10));
+
+TEST(ReducedSystem, OfNoPosesHasAnEmptySolution) {
+  const auto solution = ReducedSystem(0, {}).solve(Eigen::VectorXd());
+  ASSERT_TRUE(solution);
+  EXPECT_EQ(solution->size(), 0);
+}
+
+}  // namespace
+}  // namespace byre
