@@ -73,10 +73,10 @@ struct BundleResult {
   bool usable = false;  // false when the solver failed: then poses and points are as given
 };
 
-// Minimises the robust reprojection error over poses and points (Triggs 2000) with Ceres' Schur complement.
-// Observations that start at or behind the camera have no say. Poses or points without any other stay where they are.
-// With nothing fixed the first observed pose is held. Where nothing tells the scale (one camera, one pose held), the
-// distance between the held camera and the one that starts farthest from it is.
+// Minimises the robust reprojection error over poses and points (Triggs 2000) with a Schur complement, see
+// bundle_schur.h. Observations that start at or behind the camera have no say. Poses or points without any other stay
+// where they are. With nothing fixed the first observed pose is held. Where nothing tells the scale (one camera, one
+// pose held), the distance between the held camera and the one that starts farthest from it is.
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options);
 
 // The problem with the measurements that there would be, had the given calibration been so much better; its calibration
