@@ -9,22 +9,8 @@ render_room=${2:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
 folder=${3:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
-skip() {
-  echo "Skipped: $1"
-  exit 77
-}
-
-command -v node >/dev/null || skip "Node is not installed"
-command -v npm >/dev/null || skip "npm is not installed"
-
-# npm puts packages beside the files that use them: not into the source tree.
-mkdir -p "$folder"
-cp "$source"/*.mjs "$source"/package.json "$source"/package-lock.json "$folder"
-cd "$folder"
-if ! cmp -s package-lock.json node_modules/installed-lock.json; then
-  npm ci --no-audit --no-fund --fetch-retries=1 >npm.log 2>&1 || skip "npm cannot fetch @mcap/core, see $folder/npm.log"
-  cp package-lock.json node_modules/installed-lock.json
-fi
+source "$source/../node_packages.sh"
+fetch_packages "$source" "$folder" @mcap/core
 
 rm -rf room record.mcap
 "$render_room" room --frames 24 --rate 10 --laps 0.15 2>/dev/null

@@ -1,5 +1,6 @@
 #include "byre/assessment/ros_report.h"
 
+#include "byre/assessment/pose_messages.h"
 #include "byre/input/formatted.h"
 
 #include <algorithm>
@@ -12,35 +13,8 @@ ros::Header header(const char* frame, Timestamp time) {
   return {ros::to_time(time), frame};
 }
 
-ros::Quaternion ros_rotation(const Eigen::Quaterniond& q) {
-  return {q.x(), q.y(), q.z(), q.w()};
-}
-
-ros::Pose ros_bare_pose(const Pose& pose) {
-  const Eigen::Vector3d& t = pose.translation;
-  return {{t.x(), t.y(), t.z()}, ros_rotation(pose.rotation)};
-}
-
-ros::TransformStamped ros_transform(const char* parent, const char* child, const Pose& parent_from_child,
-                                    Timestamp time) {
-  const Eigen::Vector3d& t = parent_from_child.translation;
-  return {header(parent, time), child, {{t.x(), t.y(), t.z()}, ros_rotation(parent_from_child.rotation)}};
-}
-
 bool is_believed(const FrameReport& report) {
   return report.map_from_body && report.health.verdict != Verdict::untrusted;
-}
-
-std::byte level_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::trusted:
-      return ros::DiagnosticStatus::kOk;
-    case Verdict::degraded:
-      return ros::DiagnosticStatus::kWarn;
-    case Verdict::untrusted:
-      break;
-  }
-  return ros::DiagnosticStatus::kError;
 }
 
 ros::KeyValue number(const char* name, double value) {
@@ -76,15 +50,22 @@ void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) 
 
 }  // namespace
 
-ros::PoseWithCovariance ros_pose(const Pose& parent_from_body, const Matrix6& body_covariance) {
-  const Eigen::Matrix3d rotation = parent_from_body.rotation.toRotationMatrix();
-  Matrix6 turned = Matrix6::Zero();
-  turned.topLeftCorner<3, 3>() = rotation;
-  turned.bottomRightCorner<3, 3>() = rotation;
-  ros::PoseWithCovariance pose{ros_bare_pose(parent_from_body)};
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(pose.covariance.data()) =
-      turned * body_covariance * turned.transpose();
-  return pose;
+std::byte diagnostic_level(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::trusted:
+      return ros::DiagnosticStatus::kOk;
+    case Verdict::degraded:
+      return ros::DiagnosticStatus::kWarn;
+    case Verdict::untrusted:
+      break;
+  }
+  return ros::DiagnosticStatus::kError;
+}
+
+std::string verdict_and_doubt(const Health& health) {
+  std::string text(to_string(health.verdict));
+  if (health.doubt != Doubt::none) text.append(": ").append(to_string(health.doubt));
+  return text;
 }
 
 ros::TFMessage ros_transforms(const FrameReport& report) {
@@ -92,15 +73,17 @@ ros::TFMessage ros_transforms(const FrameReport& report) {
   if (!report.odometry_from_body) return message;
   if (is_believed(report)) {
     const Pose map_from_odometry = *report.map_from_body * inverse(*report.odometry_from_body);
-    message.transforms.push_back(ros_transform(kMapFrame, kOdometryFrame, map_from_odometry, report.time));
+    message.transforms.push_back(transform_message(header(kMapFrame, report.time), kOdometryFrame, map_from_odometry));
   }
-  message.transforms.push_back(ros_transform(kOdometryFrame, kBodyFrame, *report.odometry_from_body, report.time));
+  message.transforms.push_back(
+      transform_message(header(kOdometryFrame, report.time), kBodyFrame, *report.odometry_from_body));
   return message;
 }
 
 ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before) {
-  ros::Odometry odometry{header(kOdometryFrame, report.time), kBodyFrame,
-                         ros_pose(*report.odometry_from_body, report.odometry_covariance)};
+  const ros::Header stamped = header(kOdometryFrame, report.time);
+  ros::Odometry odometry{stamped, kBodyFrame,
+                         pose_message(stamped, *report.odometry_from_body, report.odometry_covariance).pose};
   if (!before || before->time >= report.time) return odometry;
   const double seconds = to_seconds(report.time - before->time);
   const Vector6 motion = log_pose(inverse(before->world_from_body) * *report.odometry_from_body) / seconds;
@@ -110,17 +93,14 @@ ros::Odometry ros_odometry(const FrameReport& report, const std::optional<Stampe
 
 std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report) {
   if (!is_believed(report)) return std::nullopt;
-  return ros::PoseWithCovarianceStamped{header(kMapFrame, report.time),
-                                        ros_pose(*report.map_from_body, report.covariance)};
+  return pose_message(header(kMapFrame, report.time), *report.map_from_body, report.covariance);
 }
 
 ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& frame) {
   ros::DiagnosticStatus status{ros::DiagnosticStatus::kStale, "byre: localisation", "no image", "camera", {}};
   if (frame.report) {
-    const Health& health = frame.report->health;
-    status.level = level_of(health.verdict);
-    status.message = to_string(health.verdict);
-    if (health.doubt != Doubt::none) status.message.append(": ").append(to_string(health.doubt));
+    status.level = diagnostic_level(frame.report->health.verdict);
+    status.message = verdict_and_doubt(frame.report->health);
     status.values = values_of(*frame.report);
   }
   status.values.push_back({"frame", std::to_string(number_of_frame)});
@@ -132,7 +112,7 @@ ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& fra
 ros::Path ros_path(const Trajectory& trajectory, Timestamp time) {
   ros::Path path{header(kMapFrame, time), {}};
   for (const StampedPose& sample : trajectory) {
-    path.poses.push_back({header(kMapFrame, sample.time), ros_bare_pose(sample.world_from_body)});
+    path.poses.push_back({header(kMapFrame, sample.time), ros_pose(sample.world_from_body)});
   }
   return path;
 }
@@ -155,10 +135,10 @@ ros::PointCloud2 ros_cloud(const Map& map, Timestamp time) {
 }
 
 ros::TFMessage ros_mounts(const Calibration& calibration, Timestamp time) {
-  ros::TFMessage mounts{{ros_transform(kBodyFrame, kLeftFrame, calibration.body_from_left, time)}};
+  ros::TFMessage mounts{{transform_message(header(kBodyFrame, time), kLeftFrame, calibration.body_from_left)}};
   if (calibration.right) {
     const Pose left_from_right = inverse(calibration.right->right_from_left);
-    mounts.transforms.push_back(ros_transform(kLeftFrame, kRightFrame, left_from_right, time));
+    mounts.transforms.push_back(transform_message(header(kLeftFrame, time), kRightFrame, left_from_right));
   }
   return mounts;
 }

@@ -18,8 +18,10 @@ inline constexpr const char* kBodyFrame = "base_link";
 inline constexpr const char* kLeftFrame = "left_camera";  // optical: x right, y down, z forward
 inline constexpr const char* kRightFrame = "right_camera";
 
-// The covariance of a pose about the fixed axes of its parent, given that of a small motion as seen in the body.
-ros::PoseWithCovariance ros_pose(const Pose& parent_from_body, const Matrix6& body_covariance);
+// OK for trusted, WARN for degraded, ERROR for untrusted.
+std::byte diagnostic_level(Verdict verdict);
+// "untrusted: pose is uncertain", or the verdict alone where there is no doubt.
+std::string verdict_and_doubt(const Health& health);
 
 // odom -> base_link while there is odometry, and map -> odom while the pose in the map is not untrusted: else whoever
 // needs it goes on with the last one.

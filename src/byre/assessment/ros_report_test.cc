@@ -1,5 +1,7 @@
 #include "byre/assessment/ros_report.h"
 
+#include "byre/assessment/pose_messages.h"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -34,7 +36,7 @@ Pose pose_of(const ros::Transform& transform) {
 TEST(RosReport, TurnsCovariancesIntoTheAxesOfTheParent) {
   Matrix6 in_body = Matrix6::Zero();
   in_body.diagonal() << 4.0, 1.0, 0.5, 0.4, 0.1, 0.2;  // a quarter turn about z swaps x and y
-  const ros::PoseWithCovariance pose = ros_pose(kMapFromBody, in_body);
+  const ros::PoseWithCovariance pose = pose_message({}, kMapFromBody, in_body).pose;
   const std::array<double, 6> expected = {1.0, 4.0, 0.5, 0.1, 0.4, 0.2};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_THAT(pose.covariance[7 * i], DoubleNear(expected[i], 1e-12)) << i;
   EXPECT_EQ(pose.pose.position, (ros::Point{1.0, 2.0, 0.5}));

@@ -1,7 +1,5 @@
 #include "byre/dataset/grey_png.h"
 
-#include "byre/dataset/png_chunks.h"
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -100,13 +98,14 @@ bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above,
 
 }  // namespace
 
-std::optional<GreyPng> decode_grey_png(std::span<const std::uint8_t> png) {
+std::optional<GreyPng> decode_grey_png(std::span<const PngChunk> chunks) {
   std::optional<Header> header;
   std::vector<std::uint8_t> compressed;
-  for (const PngChunk& chunk : chunks_of(png)) {
-    if (chunk.type == "IHDR") header = header_of(chunk.data);
-    if (chunk.type == "tRNS") return std::nullopt;
-    if (chunk.type == "IDAT") compressed.insert(compressed.end(), chunk.data.begin(), chunk.data.end());
+  for (const PngChunk& chunk : chunks) {
+    const Bytes data = chunk.data();
+    if (chunk.type() == "IHDR") header = header_of(data);
+    if (chunk.type() == "tRNS") return std::nullopt;
+    if (chunk.type() == "IDAT") compressed.insert(compressed.end(), data.begin(), data.end());
   }
   if (!header) return std::nullopt;
   const std::size_t stride = header->stride();

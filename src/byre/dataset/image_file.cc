@@ -55,8 +55,8 @@ bool is_cut_jpeg(const Bytes& bytes) {
 }
 
 // Empty for what is left to OpenCV.
-cv::Mat decode_grey(const Bytes& png) {
-  const std::optional<GreyPng> image = decode_grey_png(png);
+cv::Mat decode_grey(std::span<const PngChunk> chunks) {
+  const std::optional<GreyPng> image = decode_grey_png(chunks);
   if (!image) return {};
   cv::Mat grey(image->height, image->width, image->bytes_a_pixel == 1 ? CV_8U : CV_16U);
   if (image->bytes_a_pixel == 1) {
@@ -73,11 +73,13 @@ cv::Mat decode_grey(const Bytes& png) {
 cv::Mat decode(const Bytes& bytes, int flags) {
   const std::optional<ImageSize> size = stated_size(bytes);
   if (size && size->pixels() > kMostPixels) return {};
-  const std::optional<Bytes> png = is_png(bytes) ? png_of_pixels(bytes) : std::nullopt;
-  if (is_png(bytes) && !png) return {};
-  if (png) {
-    const cv::Mat grey = decode_grey(*png);
+  std::optional<Bytes> png;
+  if (is_png(bytes)) {
+    const std::optional<std::vector<PngChunk>> chunks = png_chunks(bytes);
+    if (!chunks) return {};
+    const cv::Mat grey = decode_grey(*chunks);
     if (!grey.empty() && (flags == cv::IMREAD_UNCHANGED || grey.type() == CV_8U)) return grey;
+    png = png_of_pixels(*chunks);
   }
   try {
     return cv::imdecode(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);

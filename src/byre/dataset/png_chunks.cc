@@ -21,10 +21,6 @@ std::size_t number_at(Bytes bytes, std::size_t place) {
   return number;
 }
 
-std::string_view type_of(Bytes chunk) {
-  return {reinterpret_cast<const char*>(chunk.data()) + 4, 4};
-}
-
 // The chunk that begins there; empty when the file ends before it, or its checksum is wrong.
 std::optional<Bytes> chunk_at(Bytes bytes, std::size_t begin) {
   if (bytes.size() - begin < kFrame) return std::nullopt;
@@ -46,27 +42,23 @@ bool is_png(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= kSignature.size() && std::ranges::equal(bytes.first<kSignature.size()>(), kSignature);
 }
 
-std::optional<std::vector<std::uint8_t>> png_of_pixels(std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint8_t> pixels(kSignature.begin(), kSignature.end());
-  pixels.reserve(bytes.size());
+std::optional<std::vector<PngChunk>> png_chunks(std::span<const std::uint8_t> bytes) {
+  std::vector<PngChunk> chunks;
   for (std::size_t begin = kSignature.size();;) {
     const std::optional<Bytes> chunk = chunk_at(bytes, begin);
     if (!chunk) return std::nullopt;
-    if (is_of_pixels(type_of(*chunk))) pixels.insert(pixels.end(), chunk->begin(), chunk->end());
-    if (type_of(*chunk) == "IEND") return pixels;
+    chunks.push_back({*chunk});
+    if (chunks.back().type() == "IEND") return chunks;
     begin += chunk->size();
   }
 }
 
-std::vector<PngChunk> chunks_of(std::span<const std::uint8_t> bytes) {
-  std::vector<PngChunk> chunks;
-  std::size_t begin = kSignature.size();
-  while (const std::optional<Bytes> chunk = chunk_at(bytes, begin)) {
-    chunks.push_back({type_of(*chunk), chunk->subspan(8, chunk->size() - kFrame)});
-    if (chunks.back().type == "IEND") break;
-    begin += chunk->size();
+std::vector<std::uint8_t> png_of_pixels(std::span<const PngChunk> chunks) {
+  std::vector<std::uint8_t> pixels(kSignature.begin(), kSignature.end());
+  for (const PngChunk& chunk : chunks) {
+    if (is_of_pixels(chunk.type())) pixels.insert(pixels.end(), chunk.bytes.begin(), chunk.bytes.end());
   }
-  return chunks;
+  return pixels;
 }
 
 }  // namespace byre

@@ -10,17 +10,20 @@ namespace byre {
 
 bool is_png(std::span<const std::uint8_t> bytes);
 
-// What the pixels of a PNG file are made of, and nothing else (PNG specification, section 5): of profiles and the like
-// that do not suit it, and of damage, the decoder would tell on the standard error stream. Empty when the file is cut
-// off or damaged. Precondition: is_png(bytes).
-std::optional<std::vector<std::uint8_t>> png_of_pixels(std::span<const std::uint8_t> bytes);
-
+// A part of a PNG file (PNG specification, section 5).
 struct PngChunk {
-  std::string_view type;  // four letters
-  std::span<const std::uint8_t> data;
+  std::span<const std::uint8_t> bytes;  // length, type, data, checksum
+
+  std::string_view type() const { return {reinterpret_cast<const char*>(bytes.data()) + 4, 4}; }  // four letters
+  std::span<const std::uint8_t> data() const { return bytes.subspan(8, bytes.size() - 12); }
 };
 
-// The chunks up to the last one, or to what is cut off or damaged. Precondition: is_png(bytes).
-std::vector<PngChunk> chunks_of(std::span<const std::uint8_t> bytes);
+// The chunks up to the last one; empty when the file is cut off or damaged. They are parts of the bytes. Precondition:
+// is_png(bytes).
+std::optional<std::vector<PngChunk>> png_chunks(std::span<const std::uint8_t> bytes);
+
+// A PNG file of what the pixels are made of, and nothing else: of profiles and the like that do not suit it, the
+// decoder would tell on the standard error stream.
+std::vector<std::uint8_t> png_of_pixels(std::span<const PngChunk> chunks);
 
 }  // namespace byre

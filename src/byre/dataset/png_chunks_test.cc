@@ -37,7 +37,7 @@ Bytes chunk(const std::string& type, const std::string& data) {
 TEST(PngChunks, AreAllKeptWhereAllAreOfPixels) {
   const Bytes png = some_png();
   ASSERT_TRUE(is_png(png));
-  EXPECT_EQ(png_of_pixels(png), png);
+  EXPECT_EQ(png_of_pixels(*png_chunks(png)), png);
 }
 
 TEST(PngChunks, AreLeftOutWhereTheyTellOfOtherThings) {
@@ -46,13 +46,13 @@ TEST(PngChunks, AreLeftOutWhereTheyTellOfOtherThings) {
   Bytes with_profile = png;
   const Bytes profile = chunk("iCCP", "a profile that does not suit");
   with_profile.insert(with_profile.begin() + kAfterHeader, profile.begin(), profile.end());
-  EXPECT_EQ(png_of_pixels(with_profile), png);
+  EXPECT_EQ(png_of_pixels(*png_chunks(with_profile)), png);
 }
 
 TEST(PngChunks, AreMissingInAFileThatIsCutOff) {
   const Bytes png = some_png();
   for (std::size_t size = 8; size < png.size(); ++size) {
-    EXPECT_FALSE(png_of_pixels(std::span(png).first(size))) << size;
+    EXPECT_FALSE(png_chunks(std::span(png).first(size))) << size;
   }
 }
 
@@ -61,7 +61,7 @@ TEST(PngChunks, ShowDamageOfAnyByte) {
   for (std::size_t i = 8; i < png.size(); ++i) {
     Bytes damaged = png;
     damaged[i] ^= 0x10;
-    EXPECT_FALSE(png_of_pixels(damaged)) << i;
+    EXPECT_FALSE(png_chunks(damaged)) << i;
   }
 }
 
@@ -69,7 +69,17 @@ TEST(PngChunks, EndWithTheLastOne) {
   Bytes followed = some_png();
   const Bytes png = followed;
   followed.insert(followed.end(), {1, 2, 3});
-  EXPECT_EQ(png_of_pixels(followed), png);
+  EXPECT_EQ(png_of_pixels(*png_chunks(followed)), png);
+}
+
+TEST(PngChunks, AreToldOneByOne) {
+  const Bytes png = some_png();
+  const auto chunks = png_chunks(png);
+  ASSERT_TRUE(chunks);
+  ASSERT_GE(chunks->size(), 3u);
+  EXPECT_EQ(chunks->front().type(), "IHDR");
+  EXPECT_EQ(chunks->front().data().size(), 13u);
+  EXPECT_EQ(chunks->back().type(), "IEND");
 }
 
 TEST(PngChunks, AreThoseOfPngFilesOnly) {

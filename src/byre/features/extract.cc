@@ -104,6 +104,13 @@ struct Described {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
   std::vector<Patch> patches;
+
+  // The memory stays, as frames are much alike.
+  void clear() {
+    keypoints.clear();
+    descriptors.clear();
+    patches.clear();
+  }
 };
 
 }  // namespace
@@ -153,7 +160,7 @@ void Extractor::State::prepare(const ImageFrame& images, Frame& frame) {
 void Extractor::State::describe_octave(int octave, int quota) {
   const auto slot = static_cast<std::size_t>(octave);
   Described& found = described[slot];
-  found = {};
+  found.clear();
   const cv::Mat& level = left.levels[slot];
   DetectOptions detect;
   detect.fast_threshold = options.fast_threshold;

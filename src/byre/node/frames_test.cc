@@ -1,7 +1,7 @@
 // Frames of a robot: map -> odom -> base.
 
+#include "byre/assessment/pose_messages.h"
 #include "byre/node/pose_frames.h"
-#include "byre/node/pose_messages.h"
 
 #include <cmath>
 

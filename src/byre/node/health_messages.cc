@@ -1,27 +1,12 @@
 #include "byre/node/health_messages.h"
 
 #include "byre/assessment/report_json.h"
+#include "byre/assessment/ros_report.h"
 #include "byre/input/formatted.h"
 
 #include <nlohmann/json.hpp>
 
 namespace byre {
-namespace {
-
-std::byte level_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::trusted:
-      return ros::DiagnosticStatus::kOk;
-    case Verdict::degraded:
-      return ros::DiagnosticStatus::kWarn;
-    case Verdict::untrusted:
-      break;
-  }
-  return ros::DiagnosticStatus::kError;
-}
-
-}  // namespace
-
 std::string advice_for(Doubt doubt) {
   switch (doubt) {
     case Doubt::no_pose:
@@ -44,11 +29,10 @@ std::string advice_for(Doubt doubt) {
 ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   const Health& health = report.health;
   ros::DiagnosticStatus status;
-  status.level = level_of(health.verdict);
+  status.level = diagnostic_level(health.verdict);
   status.name = "byre: localisation";
   const std::string advice = advice_for(health.doubt);
-  status.message = std::string(to_string(health.verdict));
-  if (health.doubt != Doubt::none) status.message += ": " + std::string(to_string(health.doubt));
+  status.message = verdict_and_doubt(health);
   if (!advice.empty()) status.message += "; " + advice;
   status.values = {{"verdict", std::string(to_string(health.verdict))},
                    {"doubt", std::string(to_string(health.doubt))},

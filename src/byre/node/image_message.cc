@@ -1,5 +1,6 @@
 #include "byre/node/image_message.h"
 
+#include "byre/dataset/image_file.h"
 #include "byre/dataset/image_size.h"
 #include "byre/input_error.h"
 
@@ -9,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
@@ -58,11 +58,11 @@ void require_size(const ros::Image& message, const Encoding& encoding, const std
   }
 }
 
-ReceivedImage grey_image(ros::Header header, const cv::Mat& grey) {
+ReceivedImage grey_image(ros::Header header, Image grey) {
   ReceivedImage image;
   image.header = std::move(header);
-  image.about = {.width = grey.cols, .height = grey.rows, .format = PixelFormat::grey8};
-  image.pixels.assign(grey.datastart, grey.dataend);
+  image.about = {.width = grey.width, .height = grey.height, .format = PixelFormat::grey8};
+  image.pixels = std::move(grey.pixels);
   image.about.time = ros::to_nanoseconds(image.header.stamp);
   return image;
 }
@@ -82,9 +82,10 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
   const int width = static_cast<int>(message.width), height = static_cast<int>(message.height);
   if (encoding->to_grey) {
     const cv::Mat given(height, width, encoding->cv_type, message.data.data(), message.step);
-    cv::Mat grey;
-    cv::cvtColor(given, grey, *encoding->to_grey);
-    return grey_image(std::move(message.header), grey);
+    Image grey{width, height, std::vector<std::uint8_t>(std::size_t{message.width} * message.height)};
+    cv::Mat written(height, width, CV_8UC1, grey.pixels.data());
+    cv::cvtColor(given, written, *encoding->to_grey);
+    return grey_image(std::move(message.header), std::move(grey));
   }
   ReceivedImage image;
   image.header = std::move(message.header);
@@ -95,18 +96,12 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
 }
 
 ReceivedImage received_image(const ros::CompressedImage& message, const std::string& place) {
-  const auto size = stated_size(std::span(message.data));
-  const bool is_sensible = size && size->pixels() > 0.0 && size->pixels() <= kMostPixels;
-  cv::Mat grey;
-  try {
-    if (is_sensible) grey = cv::imdecode(message.data, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
-  }
-  if (grey.empty()) {
+  ImageReading<Image> decoded = decoded_image(message.data);
+  if (!decoded.image) {
     throw InputError(place, "has an image that is no whole JPEG or PNG ('" + message.format.substr(0, 40) + "')",
                      "look at what the camera's driver compresses to");
   }
-  return grey_image(message.header, grey);
+  return grey_image(message.header, std::move(*decoded.image));
 }
 
 }  // namespace byre

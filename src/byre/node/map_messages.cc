@@ -1,9 +1,9 @@
 #include "byre/node/map_messages.h"
 
+#include "byre/assessment/pose_messages.h"
 #include "byre/dataset/image_file.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
-#include "byre/node/pose_messages.h"
 
 #include <algorithm>
 #include <cmath>

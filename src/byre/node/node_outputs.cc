@@ -1,11 +1,11 @@
 #include "byre/node/node_outputs.h"
 
+#include "byre/assessment/pose_messages.h"
 #include "byre/assessment/report_json.h"
 #include "byre/dataset/floor_plan.h"
 #include "byre/dds/type_hashes.h"
 #include "byre/node/health_messages.h"
 #include "byre/node/map_messages.h"
-#include "byre/node/pose_messages.h"
 
 #include <chrono>
 #include <utility>

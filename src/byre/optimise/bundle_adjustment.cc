@@ -5,6 +5,7 @@
 #include "byre/optimise/bundle_roles.h"
 #include "byre/optimise/bundle_schur.h"
 #include "byre/optimise/ceres_problem.h"
+#include "byre/optimise/reduced_system.h"
 #include "byre/optimise/rotation_manifold.h"
 
 #include <algorithm>
@@ -36,11 +37,12 @@ class StopWhenAsked final : public ceres::IterationCallback {
   const std::function<bool()>& should_stop_;  // owned by the caller
 };
 
-// Ceres' view of a problem: blocks of parameters and the costs between them. Lives for one call.
-class CeresBundle {
+// Ceres' view of a problem whose calibration is sought: blocks of parameters and the costs between them. Lives for one
+// call.
+class CalibrationBundle {
  public:
-  CeresBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
-              double huber_width)
+  CalibrationBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
+                    double huber_width)
       : roles_(roles), loss_(huber_width), ceres_(borrowing_problem()) {
     for (const BundlePose& pose : problem.poses) poses_.push_back(pose.camera_from_world);
     for (const BundlePoint& point : problem.points) points_.push_back(point.position_in_world);
@@ -50,14 +52,14 @@ class CeresBundle {
     for (const int i : roles.observations) {
       const BundleObservation& observation = problem.observations[i];
       const int rig = problem.poses[observation.pose].rig;
-      if (problem.calibration && problem.calibration->rig == rig) {
+      if (problem.calibration->rig == rig) {
         add(observation, problem.rigs[rig], *problem.calibration->sensitivity);
       } else {
         add(observation, problem.rigs[rig]);
       }
     }
     if (scale) hold(*scale);
-    if (problem.calibration) expect(*problem.calibration);
+    expect(*problem.calibration);
   }
 
   ceres::Solver::Summary solve(const BundleOptions& options) {
@@ -109,7 +111,7 @@ class CeresBundle {
     }
   }
 
-  // Where the calibration is sought too; what does not move is held constant.
+  // Through the rig whose calibration is sought; what does not move is held constant.
   void add(const BundleObservation& observation, const Rig& rig, const CalibrationSensitivity& sensitivity) {
     const auto [pose, point] = std::pair(observation.pose, observation.point);
     auto& cost = calibration_costs_.emplace_back(rig, sensitivity, observation);
@@ -142,11 +144,10 @@ class CeresBundle {
 
   // The Schur complement needs both kinds; with one kind alone the normal matrix is sparse as it stands.
   ceres::LinearSolverType linear_solver() const {
-    constexpr int kMaxDensePoses = 60;
     const auto poses = std::ranges::count(roles_.pose_moves, true);
     const auto points = std::ranges::count(roles_.point_moves, true);
     if (poses == 0 || points == 0) return ceres::SPARSE_NORMAL_CHOLESKY;
-    return poses <= kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+    return poses <= ReducedSystem::kMaxDensePoses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   }
 
   ceres::ParameterBlockOrdering* points_before_poses() {
@@ -159,7 +160,6 @@ class CeresBundle {
       order->AddElementToGroup(rotation(i), 1);
       order->AddElementToGroup(translation(i), 1);
     }
-    if (!calibration_prior_) return order;
     for (double* const block : calibration_blocks()) order->AddElementToGroup(block, 1);
     return order;
   }
@@ -181,10 +181,10 @@ class CeresBundle {
   ceres::Problem ceres_;  // last: refers to all of the above
 };
 
-BundleSolution solve_by_ceres(const BundleProblem& problem, const BundleRoles& roles,
-                              const std::optional<HeldDistance>& scale, const BundleOptions& options,
-                              CalibrationVector& calibration_change) {
-  CeresBundle bundle(problem, roles, scale, options.huber_width);
+BundleSolution solve_with_calibration(const BundleProblem& problem, const BundleRoles& roles,
+                                      const std::optional<HeldDistance>& scale, const BundleOptions& options,
+                                      CalibrationVector& calibration_change) {
+  CalibrationBundle bundle(problem, roles, scale, options.huber_width);
   const ceres::Solver::Summary summary = bundle.solve(options);
   BundleSolution solution = bundle.solution();
   solution.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
@@ -205,9 +205,9 @@ BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const
                    const BundleOptions& options) {
   BundleResult result = unmoved(problem);
   if (roles.observations.empty()) return result;
-  const BundleSolution solution = problem.calibration
-                                      ? solve_by_ceres(problem, roles, scale, options, result.calibration_change)
-                                      : solve_bundle(problem, roles, scale, options);
+  const BundleSolution solution =
+      problem.calibration ? solve_with_calibration(problem, roles, scale, options, result.calibration_change)
+                          : solve_bundle(problem, roles, scale, options);
   result.iterations = solution.iterations;
   result.usable = solution.usable;
   if (!result.usable) return result;

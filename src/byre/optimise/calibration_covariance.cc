@@ -45,9 +45,9 @@ Share weighted_share(const BundleProblem& solved, const BundleObservation& obser
 }
 
 // The normal matrix over moving poses, then the calibration; lower triangle.
-class ReducedSystem {
+class CalibrationSystem {
  public:
-  explicit ReducedSystem(int poses)
+  explicit CalibrationSystem(int poses)
       : poses_(6 * poses),
         matrix_(Eigen::MatrixXd::Zero(poses_ + kCalibrationParameters, poses_ + kCalibrationParameters)) {}
 
@@ -140,7 +140,7 @@ std::optional<CalibrationMatrix> calibration_information(const BundleProblem& so
   const std::vector<int> observations = observations_by_point(solved);
   int pose_count = 0;
   const std::vector<int> slots = slots_of_moving_poses(solved, observations, pose_count);
-  ReducedSystem reduced(pose_count);
+  CalibrationSystem reduced(pose_count);
   std::vector<Share> shares;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const BundleObservation& observation = solved.observations[static_cast<std::size_t>(observations[i])];

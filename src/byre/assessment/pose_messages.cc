@@ -1,4 +1,4 @@
-#include "byre/node/pose_messages.h"
+#include "byre/assessment/pose_messages.h"
 
 namespace byre {
 namespace {
