@@ -72,7 +72,8 @@ void bind_enums_of_reports(py::module_& module) {
                     {"frozen", Doubt::frozen},
                     {"right_camera", Doubt::right_camera},
                     {"cameras_disagree", Doubt::cameras_disagree},
-                    {"calibration", Doubt::calibration}});
+                    {"calibration", Doubt::calibration},
+                    {"bridged", Doubt::bridged}});
   bind_enum<SessionEvent>(module, "Event", "What happened in a frame.",
                           {{"initialised", SessionEvent::initialised},
                            {"localised", SessionEvent::localised},

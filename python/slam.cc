@@ -109,8 +109,9 @@ ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, in
   return view;
 }
 
-std::optional<Pose> motion_of(const std::optional<Eigen::Matrix4d>& last_from_body) {
-  return last_from_body ? std::optional(pose_of(*last_from_body, "last_from_body")) : std::nullopt;
+std::optional<BodyMotion> motion_of(const std::optional<Eigen::Matrix4d>& last_from_body) {
+  if (!last_from_body) return std::nullopt;
+  return BodyMotion(pose_of(*last_from_body, "last_from_body"));
 }
 
 FrameReport process(Slam& slam, std::int64_t time_ns, const py::array& left, const std::optional<py::array>& right,
@@ -123,13 +124,13 @@ FrameReport process(Slam& slam, std::int64_t time_ns, const py::array& left, con
   if (right)
     images.right = view_of(*right, picture_format(*right, format), Timestamp(right_time_ns.value_or(time_ns)), bits);
   if (depth) images.depth = view_of(*depth, depth_format(*depth), Timestamp(depth_time_ns.value_or(time_ns)), bits);
-  const std::optional<Pose> motion = motion_of(last_from_body);
+  const std::optional<BodyMotion> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(images, motion);
 }
 
 FrameReport process_images(Slam& slam, const ImageFrame& images, const std::optional<Eigen::Matrix4d>& last_from_body) {
-  const std::optional<Pose> motion = motion_of(last_from_body);
+  const std::optional<BodyMotion> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(view_of(images), motion);
 }
@@ -212,6 +213,19 @@ void bind_slam_itself(py::module_& module) {
           "Tracks the next frame: arrays height x width of uint8 or uint16 (of so many bits), or height x width x 3 of "
           "uint8 (blue, green, red, unless format says rgb8); depth of uint16 (units) or float32 (metres). They are "
           "borrowed for the time of the call.")
+      .def(
+          "tell_wheels",
+          [](Slam& slam, std::int64_t time_ns, const Eigen::Matrix4d& odometry_from_base) {
+            slam.tell_wheels({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
+          },
+          py::arg("time_ns"), py::arg("odometry_from_base"),
+          "What wheels tell, before the frames that it leads to: the robot's base in a frame of their own.")
+      .def(
+          "tell_gyroscope",
+          [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
+            slam.tell_gyroscope({Timestamp(time_ns), rate});
+          },
+          py::arg("time_ns"), py::arg("rate"), "What a gyroscope tells, likewise: radians per second.")
       .def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")

@@ -15,7 +15,7 @@ from typing import Iterator, NamedTuple
 FLOORS = [
     {"input", "workers"},
     {"geometry", "ros"},
-    {"bag", "features", "optimise", "evaluation", "dds"},
+    {"bag", "motion", "features", "optimise", "evaluation", "dds"},
     {"dataset"},
     {"map"},
     {"place", "simulation"},
@@ -36,6 +36,7 @@ PUBLIC = {
     "input_error.h": "input",
     "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "rig.h": "geometry",
     "trajectory.h": "geometry", "two_view_failure.h": "geometry",
+    "body_motion.h": "motion",
     "features.h": "features", "image.h": "features", "image_condition.h": "features",
     "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
     "calibration_file.h": "dataset", "recording.h": "dataset",

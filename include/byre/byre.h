@@ -3,6 +3,7 @@
 // All of byre's library. A robot's own program needs byre/slam.h; see docs/library.md.
 
 #include "byre/alignment.h"
+#include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
 #include "byre/features.h"

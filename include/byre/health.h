@@ -32,7 +32,8 @@ enum class Doubt : std::uint8_t {
   frozen,              // the camera gives the same image again
   right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
   cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
-  calibration          // points of the map fit the images by another focal length
+  calibration,         // points of the map fit the images by another focal length
+  bridged              // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
 };
 
 std::string_view to_string(Doubt doubt);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/image.h"
 
@@ -45,6 +46,9 @@ struct OpenOptions {
   // Topics of a bag's images; empty where it leaves no choice. The left one alone: that camera, or its only pair.
   std::optional<std::string> left_topic{};
   std::optional<std::string> right_topic{};
+  std::optional<std::filesystem::path> wheels{};  // file of wheel odometry, in place of wheel.txt in the folder
+  bool use_wheels = true;                         // whether wheel.txt is used where it is there
+  bool use_gyroscope = false;                     // whether imu0 of the folder is used
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
@@ -61,6 +65,8 @@ class Recording {
   // likewise without a depth image, but no warning where none was taken.
   // May be called from any thread, but from one at a time.
   virtual std::optional<ImageFrame> read(int index) = 0;
+  // What wheels and a gyroscope told meanwhile; none where nothing was recorded or asked for.
+  virtual const MotionSamples& motion() const;
   virtual const std::vector<std::string>& warnings() const = 0;  // warnings of opening it first, then of reading
 
   int size() const { return static_cast<int>(times().size()); }

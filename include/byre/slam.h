@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/features.h"
 #include "byre/frame_report.h"
@@ -62,13 +63,23 @@ class Slam {
   ~Slam();
 
   // Tracks the next frame. The images are borrowed for the time of the call.
-  // last_from_body: how the body has moved since the frame handed over before, in metres, as wheels tell it. It takes
-  // the place of the guess that the body moves on as it did, and leads back to the map after some seconds without a
-  // pose. Of no use where lengths are no metres, and left alone there.
-  FrameReport process(const CameraImages& images, const std::optional<Pose>& last_from_body = {});
+  // told: how the body has moved since the frame handed over before, in metres. It takes the place of the guess that
+  // the body moves on as it did. Where nothing is recognised the pose goes on by it, with a covariance that grows, and
+  // is caught again by the map. Of no use where lengths are no metres, and left alone there. Empty: what wheels and a
+  // gyroscope told, if they did.
+  FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& told = {});
 
   // Tracks the next frame by features of one's own, in pixels of rig().
-  FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {});
+  FrameReport process(const Frame& frame, const std::optional<BodyMotion>& told = {});
+
+  // What wheels tell, at any rate: the pose of the robot's base in a frame of their own, which drifts; metres. In order
+  // of time, by the clock of the images, before the frames that it leads to; what comes up to a tenth of a second late
+  // is made up for. How the camera is mounted on the base, how late wheels stamp and, with one camera, how long the
+  // map's unit is, byre finds out while the robot drives and turns; until then it does not use them. Where wheels slip
+  // they are left out.
+  void tell_wheels(const StampedPose& odometry_from_base);
+  // What a gyroscope tells, likewise. Its bias and how it is turned against the body are found out.
+  void tell_gyroscope(const AngularRate& rate);
 
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
   // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come

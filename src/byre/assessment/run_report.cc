@@ -3,6 +3,7 @@
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/finish_report.h"
 #include "byre/assessment/map_statistics.h"
+#include "byre/assessment/motion_report.h"
 #include "byre/input/formatted.h"
 #include "byre/system/stored_map.h"
 #include "byre/trajectory_error.h"
@@ -218,6 +219,7 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission) {
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
+  text += motion_rows(run, protocol.is_metric);
   text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
                                 protocol.is_metric ? "m" : "units", run.final.size()));
   text += cost_rows(run, protocol.options.pace, resources);

@@ -5,6 +5,7 @@
 #include "byre/dataset/bag_recording.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_file.h"
+#include "byre/dataset/motion_files.h"
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/video.h"
 #include "byre/input_error.h"
@@ -25,13 +26,15 @@ const Camera& depth_lens(const Calibration& calibration) {
 
 class ImageFiles final : public Recording {
  public:
-  explicit ImageFiles(RecordingIndex index) : index_(std::move(index)), warnings_(index_.warnings) {
+  ImageFiles(RecordingIndex index, MotionSamples motion)
+      : index_(std::move(index)), motion_(std::move(motion)), warnings_(index_.warnings) {
     for (const FrameFiles& frame : index_.frames) times_.push_back(frame.time);
   }
 
   const Calibration& calibration() const override { return index_.calibration.cameras; }
   const std::vector<Timestamp>& times() const override { return times_; }
   std::optional<ImageFrame> read(int index) override;
+  const MotionSamples& motion() const override { return motion_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:
@@ -41,6 +44,7 @@ class ImageFiles final : public Recording {
   std::optional<DepthImage> read_depth(const FrameFiles& files);
 
   RecordingIndex index_;               // constant after construction
+  MotionSamples motion_;               // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
   std::vector<std::string> warnings_;  // grows with read
 };
@@ -129,6 +133,12 @@ void require_no_topics(RecordingFormat format, const fs::path& path, const OpenO
   throw InputError(path.string(), "is no bag, so it has no topics", "leave them out");
 }
 
+void require_no_motion(const fs::path& path, const OpenOptions& options) {
+  if (!options.wheels && !options.use_gyroscope) return;
+  throw InputError(path.string(), "is no folder, and wheels and gyroscopes are read beside folders of images",
+                   "leave them out, or extract the images");
+}
+
 fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options) {
   if (options.calibration) return *options.calibration;
   if (const std::optional<fs::path> file = find_calibration(folder)) return *file;
@@ -160,6 +170,11 @@ PlacedDepthCamera depth_camera_for(const fs::path& folder, const OpenOptions& op
   const bool is_beside = !names_depth_camera(of_cameras) && fs::is_regular_file(beside);
   const fs::path file = is_beside ? beside : of_cameras;
   return {read_depth_camera(file), file.string()};
+}
+
+const MotionSamples& Recording::motion() const {
+  static const MotionSamples none;
+  return none;
 }
 
 std::string_view to_string(RecordingFormat format) {
@@ -234,6 +249,7 @@ RecordingIndex index_recording(const fs::path& path, const OpenOptions& options)
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
   const RecordingFormat format = guess_format(path);
   require_no_topics(format, path, options);
+  if (format == RecordingFormat::video || format == RecordingFormat::bag) require_no_motion(path, options);
   if (format == RecordingFormat::video) return open_video(path, range, options);
   if (format == RecordingFormat::bag) {
     require_untimed(format, path, options);
@@ -242,7 +258,8 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   const RecordingIndex whole = index_recording(path, options);
   const BesideLeft beside = images_beside_left(whole);
   require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
-  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), beside, options.camera, path));
+  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), beside, options.camera, path),
+                                      read_motion(path, options));
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {

@@ -3,6 +3,8 @@
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
 
+#include <cmath>
+
 namespace byre {
 namespace {
 
@@ -17,10 +19,30 @@ KeyframeId anchor_of(const HybridTrack& track) {
   return track.is_online_off() && track.offline_reference ? *track.offline_reference : track.tracked.reference;
 }
 
-bool Whereabouts::may_be_led_back(Timestamp time) const {
-  constexpr double kMostSeconds = 5.0;
-  return !has_pose_ && motion_.is_told() && !trajectory_.empty() &&
-         to_seconds(time - trajectory_.back().time) <= kMostSeconds;
+void Whereabouts::tell(const std::optional<BodyMotion>& motion) {
+  motion_.tell(motion);
+  since_believed_ = since_believed_ && motion ? std::optional(*since_believed_ * *motion) : std::nullopt;
+}
+
+bool Whereabouts::may_be_led_back() const {
+  constexpr double kMostShare = 0.15;  // share of the depth of what was seen
+  constexpr double kMostTurn = 0.1;    // radians
+  if (has_pose_ || !motion_.told() || trajectory_.empty()) return false;
+  const Matrix6 covariance = (bridge_ ? *bridge_ * *motion_.told() : *motion_.told()).covariance;
+  return std::sqrt(covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
+         std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
+}
+
+Matrix6 Whereabouts::carried_covariance() const {
+  if (!carried_) return Matrix6::Zero();
+  return move_covariance(carried_->covariance, inverse(odometry_.map_from_body()) * carried_->map_from_body);
+}
+
+// Every pose so far is believed, and the last one was seen.
+void Whereabouts::believe() {
+  trajectory_.believe_all();
+  since_believed_ = no_motion();
+  bridge_.reset();
 }
 
 FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) const {
@@ -62,8 +84,9 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
                    seen.segment});
   if (on_offline_map_) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
   has_pose_ = true;
+  last_seen_ = seen.frame.time;
   if (!confirmation_.is_believed()) return progress;
-  trajectory_.believe_all();
+  believe();
   if (!seen.is_registered) return progress;
   last_believed_ = seen.frame.time;
   if (confirmation_.is_proven()) last_proven_ = seen.frame.time;
@@ -73,31 +96,57 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
 void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t segment, const Rig& rig,
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
-  trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
+  if (bridge_ && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
+  bridge_ ? void(odometry_.follow(body, {})) : trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
   odometry_.remember_offset({});
   for (const KeyframeId id : keyframes) {
-    trajectory_.add({online.find_keyframe(id)->frame.time, id, Pose{}, segment});
+    const Timestamp time = online.find_keyframe(id)->frame.time;
+    if (trajectory_.empty() || trajectory_.back().time < time) trajectory_.add({time, id, Pose{}, segment});
   }
-  trajectory_.believe_all();
+  believe();
   motion_.reach(Vector6::Zero());
   confirmation_ = {};
   has_pose_ = true;
+  last_seen_ = trajectory_.back().time;
 }
 
 void Whereabouts::lose() {
   has_pose_ = false;
   confirmation_ = {};
   motion_.lose();
-  if (trajectory_.ends_in_doubt()) motion_.forget_told();
+  if (trajectory_.ends_in_doubt()) motion_.go_back_to(since_believed_);
   trajectory_.drop_doubtful();
   odometry_.remember_offset({});
+}
+
+bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
+  if (has_pose_ || !motion_.told() || trajectory_.empty()) {
+    if (!has_pose_) bridge_.reset();
+    return false;
+  }
+  const AnchoredPose last = trajectory_.back();
+  const Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
+  bridge_ = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
+  const Pose camera_from_keyframe = camera_from_map * inverse(byre::camera_from_world(map, last.keyframe));
+  trajectory_.add({time, last.keyframe, camera_from_keyframe, last.segment});
+  trajectory_.believe_all();
+  since_believed_ = no_motion();
+  motion_.go_on();
+  odometry_.follow(body_pose(rig, camera_from_map), {});
+  return true;
+}
+
+// Precondition: there is a bridge.
+Matrix6 Whereabouts::covariance_of_bridge() const {
+  return move_covariance(quality_.covariance, inverse(bridge_->last_from_body)) + bridge_->covariance;
 }
 
 void Whereabouts::follow(const LengthChanges& changes) {
   trajectory_.follow(changes);
   if (trajectory_.empty()) return;
   const auto change = changes.find(trajectory_.back().keyframe);
-  if (change != changes.end()) motion_.scale_lengths(change->second);
+  if (change == changes.end()) return;
+  motion_.scale_lengths(change->second);
 }
 
 void Whereabouts::turn(const RigTurn& turn, const Map& online) {
@@ -111,7 +160,7 @@ void Whereabouts::turn_camera(const Pose& after_from_before) {
 }
 
 std::optional<Pose> Whereabouts::follow_map(const Rig& rig, const MapView& map) {
-  if (!has_pose_) return std::nullopt;
+  if (!has_pose_ && !bridge_) return std::nullopt;
   const Pose before = odometry_.map_from_body();
   const Pose body = body_pose(rig, camera_from_world(map, trajectory_.back()));
   odometry_.correct(body);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/rolling_shutter.h"
+#include "byre/health.h"
 #include "byre/localisation/confirmation.h"
 #include "byre/localisation/odometry.h"
 #include "byre/mapping/anchored_trajectory.h"
@@ -20,6 +21,13 @@ KeyframeId anchor_of(const HybridTrack& track);
 // maps, and changes nothing but itself. Called from the session's thread.
 class Whereabouts {
  public:
+  // What was reported of a pose.
+  struct PoseQuality {
+    Matrix6 covariance = Matrix6::Zero();           // see FrameReport
+    Matrix6 odometry_covariance = Matrix6::Zero();  // see FrameReport
+    Verdict verdict = Verdict::untrusted;
+  };
+
   // on_offline_map: finds are to be confirmed, and sightings kept.
   Whereabouts(const RegistrationOptions& registration, const HindsightOptions& hindsight, bool on_offline_map)
       : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight) {}
@@ -32,11 +40,19 @@ class Whereabouts {
   CameraMotion camera_motion() const { return {motion_.velocity(), scene_depth_}; }
   // Time of the last believed pose in the reports' frame.
   std::optional<Timestamp> last_believed() const { return last_believed_; }
-  // The pose was lost a moment ago, and it is known how the body has moved since.
-  bool may_be_led_back(Timestamp time) const;
+  // The pose was lost, and it is known how the body has moved since, so well that points are found by it.
+  bool may_be_led_back() const;
+  // The way from the last pose that was seen to where the body is by what is told, while nothing is seen.
+  const std::optional<BodyMotion>& bridge() const { return bridge_; }
+  const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
+  Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
+  Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present segment leaves open
+  std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
 
-  // A frame later; last_from_body is how the body has moved, where that is known.
-  void tell(const std::optional<Pose>& last_from_body) { motion_.tell(last_from_body); }
+  // A frame later; motion is that of the body, where it is known.
+  void tell(const std::optional<BodyMotion>& motion);
+  // What the last frame's report says, of a pose that was seen.
+  void note_quality(const PoseQuality& quality) { quality_ = quality; }
 
   struct TrackedPose {
     const Frame& frame;
@@ -57,6 +73,10 @@ class Whereabouts {
   // The last frame has become a keyframe.
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
   void lose();
+  // Nothing was seen, and the pose goes on by what is told, where it is: whether it does.
+  bool go_on(Timestamp time, const Rig& rig, const MapView& map);
+  // Places told of the present segment anew: nothing is left of what a bridge to it left open.
+  void forget_carried() { carried_.reset(); }
 
   // Changes of the map, or of the camera.
   void follow(const LengthChanges& changes);
@@ -72,6 +92,7 @@ class Whereabouts {
  private:
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+  void believe();
 
   // Constant after construction.
   RegistrationOptions registration_;
@@ -79,6 +100,16 @@ class Whereabouts {
 
   AnchoredTrajectory trajectory_;
   MotionModel motion_;
+  std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
+  std::optional<BodyMotion> bridge_;
+  PoseQuality quality_;
+  std::optional<Timestamp> last_seen_;
+  // Where the present segment was begun by a bridge, and how uncertain that was.
+  struct Carried {
+    Pose map_from_body;
+    Matrix6 covariance;
+  };
+  std::optional<Carried> carried_;
   Odometry odometry_;
   Confirmation confirmation_;
   std::optional<Timestamp> last_believed_;  // in the reports' frame

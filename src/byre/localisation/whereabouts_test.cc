@@ -113,12 +113,51 @@ TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   whereabouts_.tell(Pose{});
-  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time)) << "it has its pose";
+  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "it has its pose";
   whereabouts_.lose();
-  EXPECT_TRUE(whereabouts_.may_be_led_back(mission_.frames[next].time));
-  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time + std::chrono::seconds(6)));
+  EXPECT_TRUE(whereabouts_.may_be_led_back());
+  Pose far;
+  far.translation.x() = 100.0;
+  whereabouts_.tell(far);
+  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "nobody knows where a hundred metres of wheels end";
+}
+
+TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
+  find_and_believe(0);
+  const std::size_t next = whereabouts_.trajectory().size();
+  const Pose before = whereabouts_.odometry().map_from_body();
+  Pose ahead;
+  ahead.translation.x() = 0.1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    whereabouts_.tell(ahead);
+    whereabouts_.lose();
+    EXPECT_TRUE(whereabouts_.go_on(mission_.frames[next + i].time, mission_.rig, map_));
+  }
+  EXPECT_THAT(whereabouts_.bridge()->last_from_body, PoseNear(ahead * ahead * ahead, 1e-9, 1e-9));
+  EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(before * ahead * ahead * ahead, 1e-9, 1e-9));
+  EXPECT_EQ(whereabouts_.trajectory().size(), next + 3);
   whereabouts_.tell({});
-  EXPECT_FALSE(whereabouts_.may_be_led_back(mission_.frames[next].time));
+  whereabouts_.lose();
+  EXPECT_FALSE(whereabouts_.go_on(mission_.frames[next + 3].time, mission_.rig, map_));
+  EXPECT_FALSE(whereabouts_.bridge());
+}
+
+// A find that comes to nothing does not end a bridge that was there before.
+TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
+  find_and_believe(0);
+  const std::size_t next = whereabouts_.trajectory().size();
+  const Pose before = whereabouts_.odometry().map_from_body();
+  Pose ahead;
+  ahead.translation.x() = 0.1;
+  whereabouts_.tell(ahead);
+  whereabouts_.lose();
+  whereabouts_.go_on(mission_.frames[next].time, mission_.rig, map_);
+  whereabouts_.tell(ahead);
+  whereabouts_.note({mission_.frames[next + 1], track_of(0), true, true, 0}, mission_.rig, map_);
+  whereabouts_.tell(ahead);
+  whereabouts_.lose();
+  ASSERT_TRUE(whereabouts_.go_on(mission_.frames[next + 2].time, mission_.rig, map_));
+  EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(before * ahead * ahead * ahead, 1e-9, 1e-9));
 }
 
 TEST_F(TrueWhereabouts, BelieveASegmentThatBeginsAtOnce) {

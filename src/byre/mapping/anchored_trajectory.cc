@@ -3,6 +3,8 @@
 #include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
 
+#include <algorithm>
+
 namespace byre {
 
 Pose camera_from_world(const MapView& map, KeyframeId id) {
@@ -15,6 +17,12 @@ Pose turn_of(const RigTurn& turn, KeyframeId id, const Map& online) {
 
 Pose camera_from_world(const MapView& map, const AnchoredPose& pose) {
   return pose.camera_from_keyframe * camera_from_world(map, pose.keyframe);
+}
+
+std::optional<Pose> AnchoredTrajectory::camera_at(Timestamp time, const MapView& map) const {
+  const auto found = std::ranges::lower_bound(poses_, time, {}, &AnchoredPose::time);
+  if (found == poses_.end() || found->time != time) return {};
+  return byre::camera_from_world(map, *found);
 }
 
 Vector6 AnchoredTrajectory::velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const {

@@ -44,6 +44,8 @@ class AnchoredTrajectory {
   std::size_t size() const { return poses_.size(); }
   const AnchoredPose& back() const { return poses_.back(); }
   const AnchoredPose& operator[](std::size_t number) const { return poses_[number]; }
+  // The camera at a frame that had a pose then; empty for any other.
+  std::optional<Pose> camera_at(Timestamp time, const MapView& map) const;
   // The camera's velocity from the last pose to one at a later time, see MotionModel; zero where no time went by.
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const;
   bool ends_in_doubt() const { return poses_.size() > believed_end_; }

@@ -1,6 +1,7 @@
 #include "byre/mapping/mapper.h"
 
 #include "byre/slam/keyframes.h"
+#include "byre/slam/start_beside.h"
 
 #include <cassert>
 #include <utility>
@@ -35,8 +36,10 @@ void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationO
   calibrator_.emplace(given, options);
 }
 
-Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world) {
-  Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world) : begin_monocular(frame);
+Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+                                const AnchoredTrajectory& trajectory) {
+  Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
+                                    : begin_monocular(frame, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
   newest_ = begun.keyframes.back();
   for (const KeyframeId id : begun.keyframes) index_place(id);
@@ -45,7 +48,8 @@ Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& 
 }
 
 // In a mission its place in the offline map is not known yet.
-Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world) {
+Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+                                       const AnchoredTrajectory& trajectory) {
   auto first = initialise_stereo(frame, rig, options_.min_initial_points);
   if (!first) return {};
   offline_ ? segments_.begin_in_own_frame(next_keyframe_number())
@@ -57,20 +61,49 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
   TrackedFrame tracked;
   tracked.camera_from_world = camera_from_world;
   Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig));
-  keyframe.parent.reset();
+  keyframe.parent = parent_of_bridge(trajectory);
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
   add_stereo_points(online_, id);
   return {{id}};
 }
 
-Mapper::Beginning Mapper::begin_monocular(const Frame& frame) {
+// The keyframe from which the way to a new segment was told; none in a mission, where the two lie in frames of their
+// own.
+std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& trajectory) const {
+  return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
+}
+
+Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Pose& camera_from_world,
+                                          const AnchoredTrajectory& trajectory) {
   MonocularAttempt attempt = initialiser_->try_start(frame);
   if (!attempt.start) return {{}, attempt.failure};
+  if (online_.keyframe_count() > 0) {
+    const Timestamp first_time = attempt.start->map.find_keyframe(attempt.start->first)->frame.time;
+    const auto first = trajectory.camera_at(first_time, map());
+    if (!first) return {};
+    const std::uint32_t first_number = next_keyframe_number();
+    const auto keyframes = add_beside(*attempt.start, {*first, camera_from_world}, parent_of_bridge(trajectory),
+                                      options_.recording, online_);
+    if (keyframes.empty()) return {};
+    initialiser_.reset();
+    segments_.begin_in_map_frame(first_number);
+    pending_.push_back(keyframes.back());
+    return {keyframes, attempt.failure};
+  }
   initialiser_.reset();
   online_ = std::move(attempt.start->map);
   segments_.begin_in_map_frame(0);
   pending_.push_back(attempt.start->second);
   return {{attempt.start->first, attempt.start->second}, attempt.failure};
+}
+
+void Mapper::expect_beginning_beside(const Rig& rig, bool is_told) {
+  if (rig.is_stereo() || offline_ || online_.keyframe_count() == 0) return;
+  if (!is_told) {
+    initialiser_.reset();
+  } else if (!initialiser_) {
+    initialiser_.emplace(rig, options_.monocular_start, options_.mapping);
+  }
 }
 
 void Mapper::begin_where_found(const HybridTrack& found) {

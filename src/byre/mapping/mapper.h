@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/mapping/anchored_trajectory.h"
 #include "byre/mapping/calibrator.h"
 #include "byre/mapping/global_lane.h"
 #include "byre/mapping/loop_closer.h"
@@ -57,13 +58,17 @@ class Mapper {
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
   // Begins a segment with a frame, seen from there or, in an empty map, from where the map's frame is. One camera knows
-  // no scale: it begins one map, and beside another it would not know how large what it sees is.
+  // no scale: it begins one map, and beside another where the trajectory goes on by what is told of the motion.
   struct Beginning {
     std::vector<KeyframeId> keyframes;  // empty: no segment was begun
     TwoViewFailure failure = TwoViewFailure::none;
   };
-  Beginning begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world);
+  Beginning begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+                  const AnchoredTrajectory& trajectory);
   bool can_begin(const Rig& rig) const { return rig.is_stereo() || initialiser_; }
+  // One camera may begin beside what there is where it is told how it has moved since, or, is_told being false, may
+  // not.
+  void expect_beginning_beside(const Rig& rig, bool is_told);
   // Begins one where a frame was found from nothing.
   void begin_where_found(const HybridTrack& found);
   // The present segment does not lie in the map's frame as was believed.
@@ -93,8 +98,10 @@ class Mapper {
   LengthChanges adjust_around_offline(const FinishHooks& hooks);
 
  private:
-  Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world);
-  Beginning begin_monocular(const Frame& frame);
+  Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+                         const AnchoredTrajectory& trajectory);
+  Beginning begin_monocular(const Frame& frame, const Pose& camera_from_world, const AnchoredTrajectory& trajectory);
+  std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   void take_over(const MapDelta& delta);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
   void settle_loop(const LoopHypothesis& loop);

@@ -34,7 +34,7 @@ class MapperOfAMission : public ::testing::Test {
 TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
   Mapper mapper = this->mapper(make_inline_executor());
   EXPECT_FALSE(mapper.newest_keyframe());
-  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
   ASSERT_EQ(begun.keyframes.size(), 1u);
   EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[0]);
   EXPECT_TRUE(mapper.segments().is_registered());
@@ -44,14 +44,14 @@ TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
 TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
   Mapper mapper = this->mapper(make_inline_executor());
   const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
-  EXPECT_THAT(mapper.begin(blank, mission_.rig, Pose{}).keyframes, IsEmpty());
+  EXPECT_THAT(mapper.begin(blank, mission_.rig, Pose{}, AnchoredTrajectory({})).keyframes, IsEmpty());
   EXPECT_TRUE(mapper.segments().empty());
   EXPECT_EQ(mapper.revision(), 0);
 }
 
 TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
   Mapper mapper = this->mapper(make_paced_executor(2));
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
   const int begun = mapper.revision();
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const int added = mapper.revision();
@@ -66,7 +66,7 @@ TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
 
 TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(5));
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.add_keyframe(mission_.frames[8], track(mapper, 8), mission_.rig);
   EXPECT_EQ(mapper.pending(), 1);
@@ -76,7 +76,7 @@ TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
 
 TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{});
+  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
   EXPECT_FALSE(mapper.segments().is_registered()) << "nobody knows yet where it lies";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const Pose offline_from_online{rotation_exp({0.0, 0.0, 0.4}), {1.0, 2.0, 0.0}};
@@ -104,7 +104,7 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
   std::size_t frame = 0;
   Mapper::Beginning begun;
   while (begun.keyframes.empty() && frame < mission.frames.size()) {
-    begun = mapper.begin(mission.frames[frame++], rig, Pose{});
+    begun = mapper.begin(mission.frames[frame++], rig, Pose{}, AnchoredTrajectory({}));
   }
   ASSERT_EQ(begun.keyframes.size(), 2u);
   EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[1]);

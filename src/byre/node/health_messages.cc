@@ -21,6 +21,8 @@ std::string advice_for(Doubt doubt) {
       return "look whether the cameras are in step, exchanged or were moved; calibrate them";
     case Doubt::calibration:
       return "calibrate the cameras";
+    case Doubt::bridged:
+      return "look for covered lenses and darkness; wheels lead the robot on for some metres only";
     default:
       return "";
   }

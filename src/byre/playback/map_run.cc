@@ -5,6 +5,7 @@
 #include "byre/system/resources.h"
 #include "byre/workers/stopwatch.h"
 
+#include <chrono>
 #include <utility>
 
 namespace byre {
@@ -31,12 +32,42 @@ MappedFrame mapped(Engine& engine, const DecodedFrame& decoded) {
   return frame;
 }
 
+// Hands over what was told of the motion up to a frame, as it would have come on the robot.
+class MotionFeed {
+ public:
+  MotionFeed(const MotionSamples& samples, Timestamp first_frame) : samples_(samples) {
+    constexpr Timestamp kBefore = std::chrono::seconds(1);
+    while (wheel_ < samples.wheels.size() && samples.wheels[wheel_].time < first_frame - kBefore) ++wheel_;
+    while (rate_ < samples.rates.size() && samples.rates[rate_].time < first_frame - kBefore) ++rate_;
+  }
+
+  void feed(Engine& engine, Timestamp until) {
+    for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
+      engine.tell_wheels(samples_.wheels[wheel_]);
+    }
+    for (; rate_ < samples_.rates.size() && samples_.rates[rate_].time <= until; ++rate_) {
+      engine.tell_gyroscope(samples_.rates[rate_]);
+    }
+  }
+
+ private:
+  const MotionSamples& samples_;
+  std::size_t wheel_ = 0;
+  std::size_t rate_ = 0;
+};
+
+// What was found out of wheels and a gyroscope.
+ToldMotion told_motion(const MotionPrior& prior) {
+  return {!prior.is_empty(), prior.wheels(), prior.gyroscope(), prior.time_offset(), prior.slips()};
+}
+
 void take_over_result(const Engine& engine, MapRun& run) {
   run.final = engine.session().final_trajectory();
   run.map = engine.kept_map();
   run.calibration = engine.calibration();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = engine.log().job_seconds;
+  run.told = told_motion(engine.prior());
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
     if (frame.report && frame.report->odometry_from_body) {
@@ -52,6 +83,7 @@ MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunH
   const Stopwatch watch;
   Engine engine(recording.calibration(), options, std::move(before));
   DecodeAhead decoder(recording);
+  MotionFeed feed(recording.motion(), recording.times().front());
   LiveClock clock;
   MapRun run;
   bool is_begun = false;
@@ -62,6 +94,7 @@ MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunH
     }
     if (hooks.should_stop()) break;
     run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
+    feed.feed(engine, decoded->time);
     run.frames.push_back(mapped(engine, *decoded));
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
     if (hooks.look && decoded->images) hooks.look({*decoded->images, run.frames.back(), engine.session()});

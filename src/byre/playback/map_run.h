@@ -21,6 +21,15 @@ struct MappedFrame {
   double memory_mb = 0.0;  // resident memory of the whole program
 };
 
+// What was found out of what told the robot's motion.
+struct ToldMotion {
+  bool is_told = false;  // by wheels or a gyroscope
+  std::optional<WheelMounting> wheels;
+  std::optional<GyroscopeMounting> gyroscope;
+  double time_offset = 0.0;  // seconds that wheels stamp later than the camera
+  int slips = 0;             // times that wheels were left out
+};
+
 struct MapRun {
   std::vector<MappedFrame> frames;  // one for each frame of the recording, fewer when the run was stopped
   Trajectory causal;                // poses as published when their frames came
@@ -31,9 +40,10 @@ struct MapRun {
   std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
-  std::vector<std::string> warnings;                // warnings of the recording
-  std::vector<double> lateness;                     // seconds by which late frames were fed too late, in a live run
-  double wall_seconds = 0.0;                        // wall time of the whole run
+  ToldMotion told;
+  std::vector<std::string> warnings;  // warnings of the recording
+  std::vector<double> lateness;       // seconds by which late frames were fed too late, in a live run
+  double wall_seconds = 0.0;          // wall time of the whole run
 };
 
 // What can be seen of a run right after a frame: valid for the time of the call.

@@ -16,6 +16,7 @@ class OfCamera final : public Recording {
   const Calibration& calibration() const override { return calibration_; }
   const std::vector<Timestamp>& times() const override { return recording_->times(); }
   std::optional<ImageFrame> read(int index) override { return recording_->read(index); }
+  const MotionSamples& motion() const override { return recording_->motion(); }
   const std::vector<std::string>& warnings() const override { return recording_->warnings(); }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -56,10 +57,26 @@ HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) 
   return evidence;
 }
 
+// The poses of a frame that nothing was recognised in, by what is told of the body's motion since the last one.
+FrameReport bridged(FrameReport report, const FrameSummary& summary) {
+  const Whereabouts& whereabouts = summary.whereabouts;
+  const BodyMotion& bridge = *whereabouts.bridge();
+  if (summary.is_bridged_in_map()) {
+    report.map_from_body = whereabouts.odometry().map_from_body();
+    report.covariance = whereabouts.covariance_of_bridge();
+  }
+  report.odometry_from_body = whereabouts.odometry().odometry_from_body();
+  report.odometry_covariance =
+      move_covariance(whereabouts.quality_before().odometry_covariance, inverse(bridge.last_from_body)) +
+      bridge.covariance;
+  return report;
+}
+
 HealthEvidence evidence_of(const FrameSummary& summary) {
   const Confirmation& confirmation = summary.whereabouts.confirmation();
   HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
                           confirmation.is_believed() && confirmation.is_proven()};
+  if (summary.is_bridged_in_map()) evidence.bridged_from = summary.whereabouts.quality_before().verdict;
   evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;
   evidence.image_fault = summary.input.fault;
   evidence.input = summary.input.evidence;
@@ -77,12 +94,14 @@ FrameReport described(FrameReport report, const FrameSummary& summary) {
     if (summary.is_registered()) report.map_from_body = odometry.map_from_body();
     report.odometry_from_body = odometry.odometry_from_body();
   }
+  if (summary.whereabouts.bridge()) return bridged(std::move(report), summary);
+  report.covariance = summary.whereabouts.carried_covariance();
   if (!summary.track) return report;
   const TrackedFrame& tracked = summary.track->tracked;
   report.expected_points = tracked.expected;
   report.matches = tracked.matches;
   report.inliers = static_cast<int>(tracked.features.size());
-  report.covariance = body_covariance(covariance_in_map(tracked, summary.mission), summary.rig);
+  report.covariance += body_covariance(covariance_in_map(tracked, summary.mission), summary.rig);
   report.odometry_covariance =
       odometry_covariance(body_covariance(tracked.match_covariance, summary.rig), odometry.travelled());
   return report;

@@ -26,6 +26,11 @@ struct FrameSummary {
   Timestamp first_frame{};
 
   bool is_registered() const { return mapper.segments().is_registered(); }
+  // The pose goes on by what is told, from one in the map.
+  bool is_bridged_in_map() const {
+    return whereabouts.bridge() &&
+           mapper.segments().frame(whereabouts.trajectory().back().segment) == Segments::kMapFrame;
+  }
 };
 
 // A report with the frame's poses, their covariances and the counts of points in it.

@@ -47,11 +47,11 @@ std::optional<RefinedCalibration> Session::self_calibration() const {
   return shutter_.refined({});
 }
 
-FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& last_from_body) {
+FrameReport Session::process(const Frame& rectified, const std::optional<BodyMotion>& motion) {
   FrameReport report;
   report.time = rectified.time;
   if (!first_frame_) first_frame_ = rectified.time;
-  whereabouts_.tell(last_from_body);
+  whereabouts_.tell(motion);
   const Stopwatch mapping_before;
   take_over_results(report);
   const InputFrame input = input_of(rectified);
@@ -74,6 +74,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& 
     report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
   } else {
     lose_pose(input.fault, report);
+    whereabouts_.go_on(rectified.time, rig_, map());
   }
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
@@ -84,6 +85,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& 
   report = described(std::move(report), summary);
   report.state = state_;
   report.health = health_of(summary, report.covariance, options_.health);
+  note_quality(report);
   const bool was_error_told = std::exchange(is_error_told_, is_navigation_error(seconds_without));
   if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
 
@@ -91,6 +93,12 @@ FrameReport Session::process(const Frame& rectified, const std::optional<Pose>& 
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
   report.map_seconds = seconds_before + mapping_after.seconds();
   return report;
+}
+
+// A pose that goes on from a believed one is as good as that was.
+void Session::note_quality(const FrameReport& report) {
+  if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.confirmation().is_believed()) return;
+  whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
 }
 
 bool Session::is_navigation_error(double seconds_without_pose) const {
@@ -105,6 +113,7 @@ void Session::take_over_results(FrameReport& report) {
   if (take_over_camera() || is_shutter_better) report.events.push_back(SessionEvent::recalibrated);
   if (const auto changes = mapper_.take_over_correction()) {
     whereabouts_.follow(*changes);
+    whereabouts_.forget_carried();
     report.events.push_back(SessionEvent::map_corrected);
   }
   if (const auto found = mission_ ? mission_->collect_place() : std::nullopt) {
@@ -160,7 +169,7 @@ Session::Located Session::locate(const InputFrame& input) {
   const Tracker::Scene scene{rig_, mapper_, mission_ ? &mission_->mission() : nullptr,
                              mission_ && mission_->ask_for_focal_length()};
   const bool can_search = mission_ || mapper_.places();
-  const bool is_led_back = can_search && whereabouts_.may_be_led_back(frame.time);
+  const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
   if (!trajectory.empty() && (whereabouts_.has_pose() || !can_search || is_led_back)) {
     const AnchoredPose& last = trajectory.back();
@@ -177,22 +186,25 @@ Session::Located Session::locate(const InputFrame& input) {
     located.from_nothing = located.track.has_value();
     if (located.track) mapper_.begin_where_found(*located.track);
   }
+  mapper_.expect_beginning_beside(rig_, !located.track && whereabouts_.bridge());
   return located.track || !may_begin_segment(input) ? located : begin_segment(frame);
 }
 
 bool Session::may_begin_segment(const InputFrame& input) const {
   if (!options_.map_online || !mapper_.can_begin(rig_)) return false;
-  if (!rig_.is_stereo()) return true;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || mission_;
-  if (!mission_ || input.fault != ImageFault::none) return false;
-  return to_seconds(input.frame.time - trajectory.back().time) >= options_.mission.restart_after;
+  if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || (mission_ && rig_.is_stereo());
+  if (input.fault != ImageFault::none || (!mission_ && !whereabouts_.bridge())) return false;
+  const Timestamp last_seen = whereabouts_.last_seen().value_or(trajectory.back().time);
+  return to_seconds(input.frame.time - last_seen) >= options_.mission.restart_after;
 }
 
 Session::Located Session::begin_segment(const Frame& frame) {
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  const Pose camera_from_last = trajectory.empty() ? Pose{} : camera_from_world(map(), trajectory.back());
-  const Mapper::Beginning begun = mapper_.begin(frame, rig_, camera_from_last);
+  const Pose camera_from_last =
+      trajectory.empty() ? Pose{}
+                         : whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
+  const Mapper::Beginning begun = mapper_.begin(frame, rig_, camera_from_last, trajectory);
   if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
   whereabouts_.begin(begun.keyframes, mapper_.segments().present(), rig_, mapper_.online());
   tracker_.restart_from(begun.keyframes.back());

@@ -61,8 +61,8 @@ class Session {
   // What is known of the calibration by now; empty until it was refined.
   std::optional<RefinedCalibration> self_calibration() const;
 
-  // last_from_body: how the body has moved since the last frame, where that is known.
-  FrameReport process(const Frame& rectified, const std::optional<Pose>& last_from_body = {});
+  // motion: of the body since the last frame, where that is known.
+  FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {});
 
   // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
   void hurry() { mapper_.hurry(); }
@@ -108,6 +108,7 @@ class Session {
   bool may_add_keyframe(const InputFrame& input, const HybridTrack& track) const;
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
+  void note_quality(const FrameReport& report);
   bool is_navigation_error(double seconds_without_pose) const;
   bool is_registered() const { return mapper_.segments().is_registered(); }
 

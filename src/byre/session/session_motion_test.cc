@@ -34,7 +34,7 @@ std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_tol
                   has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
-    std::optional<Pose> motion;
+    std::optional<BodyMotion> motion;
     if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
     const bool is_dark = i >= kDark && i < kLight;
     reports.push_back(session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion));
@@ -52,10 +52,75 @@ TEST(ToldMotion, LeadsBackToTheMapAfterTheDark) {
   for (const bool has_vocabulary : {true, false}) {
     const std::vector<FrameReport> told = reports_of(mission, true, has_vocabulary);
     const std::vector<FrameReport> untold = reports_of(mission, false, has_vocabulary);
-    for (std::size_t i = kDark; i < kLight; ++i) EXPECT_FALSE(told[i].map_from_body) << i;
     ASSERT_TRUE(told[kLight].map_from_body);
+    EXPECT_NE(told[kLight].health.doubt, Doubt::bridged);
     EXPECT_LT(error_of(told[kLight], mission, kLight), 0.05);
     EXPECT_FALSE(untold[kLight].map_from_body && error_of(untold[kLight], mission, kLight) < 0.05);
+  }
+}
+
+TEST(ToldMotion, GoesOnInTheDarkWithACovarianceThatGrows) {
+  const SimulatedMission mission = lap();
+  const std::vector<FrameReport> told = reports_of(mission, true, true);
+  const std::vector<FrameReport> untold = reports_of(mission, false, true);
+  double sigma = told[kDark - 1].health.position_sigma;
+  for (std::size_t i = kDark; i < kLight; ++i) {
+    ASSERT_TRUE(told[i].map_from_body && told[i].odometry_from_body) << i;
+    EXPECT_FALSE(untold[i].map_from_body) << i;
+    EXPECT_LT(error_of(told[i], mission, i), 0.02) << i;
+    EXPECT_EQ(told[i].health.doubt, Doubt::bridged) << i;
+    EXPECT_NE(told[i].health.verdict, Verdict::trusted) << i;
+    EXPECT_GT(told[i].health.position_sigma, sigma) << i;
+    sigma = told[i].health.position_sigma;
+  }
+}
+
+TEST(ToldMotion, KeepsBridgedPosesInTheTrajectory) {
+  const SimulatedMission mission = lap();
+  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    const bool is_dark = i >= kDark && i < kLight;
+    session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+  }
+  session.finish();
+  EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
+}
+
+TEST(ToldMotion, EndsABridgeWhereItIsNotTold) {
+  const SimulatedMission mission = lap();
+  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  for (std::size_t i = 0; i < kLight; ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0 && i != kDark + 4) {
+      motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    }
+    const FrameReport report =
+        session.process(i >= kDark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+    if (i >= kDark) EXPECT_EQ(report.map_from_body.has_value(), i < kDark + 4) << i;
+  }
+}
+
+// The way goes on elsewhere, so that nothing of the map is recognised after the dark.
+TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
+  const SimulatedMission mission = lap();
+  constexpr std::size_t kLongDark = 30;  // frames
+  SessionOptions options;
+  options.relocalise.min_inliers = 1000000;
+  options.min_kept_share = 0.0;
+  for (const bool is_told : {true, false}) {
+    Session session(mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+    FrameReport report;
+    for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+      std::optional<BodyMotion> motion;
+      if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+      const bool is_dark = i >= kDark && i < kDark + kLongDark;
+      report = session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+    }
+    const bool is_joined = report.map_from_body && report.health.doubt != Doubt::bridged &&
+                           error_of(report, mission, mission.frames.size() - 1) < 0.1;
+    EXPECT_EQ(is_joined, is_told);
   }
 }
 

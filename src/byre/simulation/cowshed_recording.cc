@@ -161,6 +161,13 @@ Trajectory CowshedRecording::truth() const {
   return truth;
 }
 
+std::optional<MotionSamples> CowshedRecording::motion() const {
+  if (!options_.motion) return std::nullopt;
+  MotionSensorOptions sensors = *options_.motion;
+  sensors.seed = hash(options_.barn.seed, static_cast<std::uint64_t>(options_.barn.mission), 5);
+  return simulated_motion(truth(), sensors);
+}
+
 // Seconds by which a row is exposed after the middle of the image.
 double CowshedRecording::row_offset(double row) const {
   return options_.camera.rolling_shutter_s * ((row + 0.5) / scene_->calibration.left.height - 0.5);
@@ -291,6 +298,7 @@ void write_cowshed_recording(CowshedRecording& recording, const std::filesystem:
                              const std::function<bool(int frames_done)>& go_on) {
   const EurocWriter writer(recording.told_calibration(), recording.times(), recording.truth(), folder);
   if (!recording.is_calibration_exact()) write_true_calibration(recording.calibration(), recording.times(), folder);
+  if (const auto motion = recording.motion()) write_motion(*motion, folder);
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
   write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
                    recording.sightings(), folder / "plan");

@@ -5,11 +5,13 @@
 #include "byre/simulation/cowshed_plan.h"
 #include "byre/simulation/feeding_robot.h"
 #include "byre/simulation/image_sensor.h"
+#include "byre/simulation/motion_sensors.h"
 
 #include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace byre {
 
@@ -20,7 +22,8 @@ struct CowshedRecordingOptions {
   int image_divisor = 1;  // 1: 752 x 480 pixels
   double dirt = 0.0;      // dirt on the lenses: 0 none, 1 a dozen of soft spots each
   CameraImperfection camera;
-  int threads = 0;  // 0: as many as the machine has; changes no byte
+  std::optional<MotionSensorOptions> motion{};  // wheels and gyroscope that are recorded too; their seed is the barn's
+  int threads = 0;                              // 0: as many as the machine has; changes no byte
 };
 
 // Where the robot drives. Missions keep to the same course, a hand's breadth aside and begun elsewhere; where the gate
@@ -46,6 +49,9 @@ class CowshedRecording {
   // world_from_body at 200 Hz, frames included.
   Trajectory truth() const;
   Pose world_from_body(Timestamp time) const;
+
+  // What wheels and a gyroscope tell; empty where none are recorded.
+  std::optional<MotionSamples> motion() const;
 
   // The frame after the last one rendered: frames follow one another, as automatic exposure learns from each.
   // Precondition: there is one.

@@ -3,6 +3,7 @@
 #include "byre/simulation/euroc_writer.h"
 
 #include "byre/input_error.h"
+#include "byre/trajectory_file.h"
 
 #include <algorithm>
 #include <fstream>
@@ -140,6 +141,17 @@ EurocWriter::EurocWriter(const Calibration& calibration, const std::vector<Times
     write_camera(mav_ / "cam1", calibration.right->camera, body_from_right(calibration), times);
   }
   write_truth(mav_ / "state_groundtruth_estimate0", truth);
+}
+
+void write_motion(const MotionSamples& motion, const fs::path& folder) {
+  write_trajectory(motion.wheels, folder / "wheel.txt");
+  const fs::path path = folder / "mav0" / "imu0" / "data.csv";
+  std::ofstream file = create(path);
+  file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
+  for (const AngularRate& rate : motion.rates) {
+    file << rate.time.count() << "," << rate.rate.x() << "," << rate.rate.y() << "," << rate.rate.z() << "\n";
+  }
+  close(file, path);
 }
 
 void write_true_calibration(const Calibration& calibration, const std::vector<Timestamp>& times,

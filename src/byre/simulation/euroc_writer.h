@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/image.h"
 #include "byre/trajectory.h"
@@ -25,6 +26,10 @@ class EurocWriter {
  private:
   std::filesystem::path mav_;  // constant after construction
 };
+
+// Writes what wheels and a gyroscope told into the folder of a recording: wheel.txt, and mav0/imu0/data.csv without
+// accelerations. Throws InputError when a file cannot be written.
+void write_motion(const MotionSamples& motion, const std::filesystem::path& folder);
 
 // Writes a calibration into the folder of a recording, beside the one it has: mav0/cam0/true_sensor.yaml and, of a
 // pair, cam1. Throws InputError when a file cannot be written.

@@ -15,8 +15,16 @@ Doubt fault_of_input(const HealthEvidence& evidence) {
   return evidence.input.cameras_disagree ? Doubt::cameras_disagree : Doubt::none;
 }
 
+// Why a pose is of no use that goes on by what is told of the motion; none while it cannot have gone far wrong.
+Doubt reason_against_bridge(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  const bool is_open = options.sigmas * health.position_sigma > options.trusted_error ||
+                       options.sigmas * health.rotation_sigma > options.max_bridged_rotation;
+  return is_open || *evidence.bridged_from == Verdict::untrusted ? Doubt::bridged : Doubt::none;
+}
+
 // Why the pose is of no use; none when it is.
 Doubt reason_against(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return reason_against_bridge(health, evidence, options);
   if (!evidence.pose_found || !evidence.registered) {
     const Doubt cause = fault_of_input(evidence);
     if (cause != Doubt::none && !(evidence.pose_found && cause == Doubt::blinded)) return cause;
@@ -44,6 +52,7 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
 
 // What asks for care; none when nothing does.
 Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return Doubt::bridged;
   const Doubt input = fault_of_input(evidence);
   if (input != Doubt::none && input != Doubt::blinded) return input;
   if (evidence.is_calibration_doubtful) return Doubt::calibration;
@@ -105,6 +114,8 @@ std::string_view to_string(Doubt doubt) {
       return "left and right images do not fit";
     case Doubt::calibration:
       return "calibration does not fit the map";
+    case Doubt::bridged:
+      return "bridged by wheels or a gyroscope";
   }
   return "";
 }

@@ -3,19 +3,22 @@
 #include "byre/health.h"
 #include "byre/slam/input_watch.h"
 
+#include <optional>
+
 namespace byre {
 
 struct HealthOptions {
-  double trusted_error = 0.2;        // metres: what a trusted pose promises
-  double sigmas = 3.0;               // sigmas of the pose's position that must fit into that, together with drift
-  double drift_share = 0.005;        // drift as a share of the path since offline points last held the pose
-  double max_rotation_sigma = 0.02;  // radians
-  int min_points = 40;               // inliers of both kinds
-  double min_spread = 0.04;          // deviation of those where they spread least, as a share of the image's diagonal
-  double max_disagreement = 0.05;    // metres between the poses from offline and from online points
-  int min_offline_points = 15;       // offline inliers, where many should be in view
-  double max_changed_path = 5.0;     // metres of path with fewer of them that are let pass
-  double max_frozen = 0.15;          // seconds that a camera may give the same image, until the pose is of no use
+  double trusted_error = 0.2;         // metres: what a trusted pose promises
+  double sigmas = 3.0;                // sigmas of the pose's position that must fit into that, together with drift
+  double drift_share = 0.005;         // drift as a share of the path since offline points last held the pose
+  double max_rotation_sigma = 0.02;   // radians
+  double max_bridged_rotation = 0.1;  // radians, sigmas of the rotation of a pose that goes on by what is told
+  int min_points = 40;                // inliers of both kinds
+  double min_spread = 0.04;           // deviation of those where they spread least, as a share of the image's diagonal
+  double max_disagreement = 0.05;     // metres between the poses from offline and from online points
+  int min_offline_points = 15;        // offline inliers, where many should be in view
+  double max_changed_path = 5.0;      // metres of path with fewer of them that are let pass
+  double max_frozen = 0.15;           // seconds that a camera may give the same image, until the pose is of no use
 };
 
 // What is known of a frame beside its measures.
@@ -30,6 +33,8 @@ struct HealthEvidence {
   // Without an offline map: the self-calibration asked for more than a calibration errs by, or did not look yet.
   bool is_calibration_doubtful = false;
   bool is_calibration_open = false;
+  // Nothing is recognised, and the pose goes on by what is told of the motion: verdict on the last one that was seen.
+  std::optional<Verdict> bridged_from{};
 };
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose

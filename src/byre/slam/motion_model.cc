@@ -1,16 +1,17 @@
 #include "byre/slam/motion_model.h"
 
+#include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
 
 namespace byre {
 
-void MotionModel::tell(const std::optional<Pose>& last_from_body) {
-  told_ = told_ && last_from_body ? std::optional(*told_ * *last_from_body) : std::nullopt;
+void MotionModel::tell(const std::optional<BodyMotion>& motion) {
+  told_ = told_ && motion ? std::optional(*told_ * *motion) : std::nullopt;
 }
 
 void MotionModel::reach(const Vector6& velocity) {
   velocity_ = velocity;
-  told_ = Pose{};
+  told_ = no_motion();
 }
 
 void MotionModel::turn_camera(const Pose& after_from_before) {
@@ -19,10 +20,13 @@ void MotionModel::turn_camera(const Pose& after_from_before) {
 
 void MotionModel::scale_lengths(double change) {
   if (velocity_) velocity_->head<3>() *= change;
+  if (told_)
+    told_ =
+        BodyMotion{byre::scale_lengths(told_->last_from_body, change), byre::scale_lengths(told_->covariance, change)};
 }
 
 Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const {
-  if (told_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * *told_);
+  if (told_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * told_->last_from_body);
   if (velocity_) return exp_pose(*velocity_ * seconds) * last_camera_from_world;
   return last_camera_from_world;
 }

@@ -23,7 +23,7 @@ TEST(MotionModel, StandsStillWhereNothingIsKnown) {
   MotionModel motion;
   motion.tell({});
   EXPECT_EQ(motion.predict(kLast, robot_rig(), 0.1), kLast);
-  EXPECT_FALSE(motion.is_told());
+  EXPECT_FALSE(motion.told());
 }
 
 TEST(MotionModel, GoesOnAsItMovedBefore) {
@@ -64,12 +64,14 @@ TEST(MotionModel, IsNotToldAfterAGapUntilAPoseIsReached) {
   motion.reach(kVelocity);
   motion.tell({});
   motion.tell(kAhead);
-  EXPECT_FALSE(motion.is_told());
+  EXPECT_FALSE(motion.told());
   motion.reach(kVelocity);
   motion.tell(kAhead);
-  EXPECT_TRUE(motion.is_told());
-  motion.forget_told();
-  EXPECT_FALSE(motion.is_told());
+  EXPECT_TRUE(motion.told());
+  motion.go_back_to({});
+  EXPECT_FALSE(motion.told());
+  motion.go_back_to(kAhead);
+  EXPECT_TRUE(motion.told());
 }
 
 TEST(MotionModel, KnowsNoVelocityOnceThePoseIsLost) {

@@ -69,11 +69,20 @@ void Engine::refine_calibration(const Calibration& given, const EngineOptions& o
   }
 }
 
-Engine::Processed Engine::process(const ImageFrame& images, const std::optional<Pose>& last_from_body) {
+FrameReport Engine::process(const Frame& frame, const std::optional<BodyMotion>& motion) {
+  const bool is_told = !motion && last_frame_ && !prior_.is_empty();
+  FrameReport report = session_.process(frame, is_told ? prior_.between(*last_frame_, frame.time) : motion);
+  last_frame_ = frame.time;
+  const bool is_seen = report.odometry_from_body && report.health.doubt != Doubt::bridged;
+  prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
+  return report;
+}
+
+Engine::Processed Engine::process(const ImageFrame& images, const std::optional<BodyMotion>& motion) {
   const double submit_seconds_before = log_.submit_seconds;
   const Stopwatch watch;
   const Extraction extraction = extractor_.extract(images);
-  Processed processed{session_.process(extraction.frame, last_from_body), {}};
+  Processed processed{process(extraction.frame, motion), {}};
   processed.seconds.total = watch.seconds();
   processed.seconds.rectify = extraction.times.rectify;
   processed.seconds.extract = extraction.times.extract;

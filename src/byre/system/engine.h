@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/extract.h"
+#include "byre/motion/motion_prior.h"
 #include "byre/session/session.h"
 #include "byre/system/logged_executor.h"
 
@@ -74,10 +75,13 @@ class Engine {
   Engine(const Engine&) = delete;  // executors know where its log is
   Engine& operator=(const Engine&) = delete;
 
-  Processed process(const ImageFrame& images, const std::optional<Pose>& last_from_body = {});
-  FrameReport process(const Frame& frame, const std::optional<Pose>& last_from_body = {}) {
-    return session_.process(frame, last_from_body);
-  }
+  // What wheels and a gyroscope tell, each in order of time, before the frames that it leads to.
+  void tell_wheels(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
+  void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
+
+  // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.
+  Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
+  FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
 
   void hurry() { session_.hurry(); }  // see Session
   void finish() { session_.finish(); }
@@ -89,6 +93,7 @@ class Engine {
   const Map& online() const { return session_.map().online(); }
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
+  const MotionPrior& prior() const { return prior_; }
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
   // What is kept of the map by now.
@@ -100,6 +105,8 @@ class Engine {
   JobLog log_;
   std::optional<RefinedCalibration> known_;  // before any frame
   Extractor extractor_;
+  MotionPrior prior_;
+  std::optional<Timestamp> last_frame_;
   Session session_;
 };
 

@@ -86,7 +86,7 @@ struct Slam::Parts {
   // The images that the engine is to see; empty where they are dropped, see input.
   const ImageFrame* take(const CameraImages& images);
   // How the body has moved since the frame that the engine saw last.
-  std::optional<Pose> take_motion(const std::optional<Pose>& last_from_body, bool is_dropped);
+  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& motion, bool is_dropped);
   FrameReport noted(FrameReport report);
   // Whether anything was mapped; where a map is gone on with, whether anything was added to it.
   bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
@@ -104,10 +104,11 @@ struct Slam::Parts {
 
   Engine engine;
   InputCheck input;
-  ImageFrame buffer;                           // holds the images while they are looked at
-  std::optional<Pose> unseen_motion = Pose{};  // motion over frames that were dropped since; empty: not known
-  State state = State::initialising;           // state after the last frame
-  std::optional<Timestamp> first_time;         // time of the first frame that was not dropped
+  ImageFrame buffer;  // holds the images while they are looked at
+  std::optional<BodyMotion> unseen_motion =
+      no_motion();                      // motion over frames that were dropped since; empty: not known
+  State state = State::initialising;    // state after the last frame
+  std::optional<Timestamp> first_time;  // time of the first frame that was not dropped
   Timestamp last_time{};
   bool had_pose = false;  // whether any frame had a pose in the map
   bool is_finished = false;
@@ -129,12 +130,11 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
   return &buffer;
 }
 
-std::optional<Pose> Slam::Parts::take_motion(const std::optional<Pose>& last_from_body, bool is_dropped) {
+std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& motion, bool is_dropped) {
   const bool is_of_use = about.scale == MapScale::metric;  // nobody can tell metres to who knows none
-  const auto motion =
-      is_of_use && unseen_motion && last_from_body ? std::optional(*unseen_motion * *last_from_body) : std::nullopt;
-  unseen_motion = is_dropped ? motion : Pose{};
-  return motion;
+  const auto since = is_of_use && unseen_motion && motion ? std::optional(*unseen_motion * *motion) : std::nullopt;
+  unseen_motion = is_dropped ? since : no_motion();
+  return since;
 }
 
 FrameReport Slam::Parts::noted(FrameReport report) {
@@ -205,19 +205,27 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   return Slam(std::move(parts));
 }
 
-FrameReport Slam::process(const CameraImages& images, const std::optional<Pose>& last_from_body) {
+FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMotion>& told) {
   const ImageFrame* const taken = parts_->take(images);
-  const auto motion = parts_->take_motion(last_from_body, taken == nullptr);
+  const auto motion = parts_->take_motion(told, taken == nullptr);
   if (taken == nullptr) return parts_->dropped(images.left.time);
   return parts_->noted(parts_->engine.process(*taken, motion).report);
 }
 
-FrameReport Slam::process(const Frame& frame, const std::optional<Pose>& last_from_body) {
+FrameReport Slam::process(const Frame& frame, const std::optional<BodyMotion>& told) {
   const InputFault fault =
       parts_->is_finished ? parts_->input.note(InputFault::after_finishing) : parts_->input.note(frame);
-  const auto motion = parts_->take_motion(last_from_body, is_dropped(fault));
+  const auto motion = parts_->take_motion(told, is_dropped(fault));
   if (is_dropped(fault)) return parts_->dropped(frame.time);
   return parts_->noted(parts_->engine.process(frame, motion));
+}
+
+void Slam::tell_wheels(const StampedPose& odometry_from_base) {
+  parts_->engine.tell_wheels(odometry_from_base);
+}
+
+void Slam::tell_gyroscope(const AngularRate& rate) {
+  parts_->engine.tell_gyroscope(rate);
 }
 
 void Slam::finish(const std::function<bool()>& should_stop) {

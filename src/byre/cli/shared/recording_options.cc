@@ -45,6 +45,11 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
           "--fps", set_frame_rate,
           "Frame rate of images and videos, in place of the times in their names or of what the video says")
       ->type_name("HZ");
+  add_input(command, Input::file, "--wheels", options.wheels,
+            "Wheel odometry, \"time_s tx ty tz qx qy qz qw\" a line, in place of wheel.txt in the folder")
+      ->type_name("FILE");
+  command.add_flag("!--no-wheels", options.use_wheels, "Leave wheel.txt in the folder out");
+  command.add_flag("--gyroscope", options.use_gyroscope, "Use the gyroscope in the folder: mav0/imu0/data.csv");
   add_text(command, "--left", options.left_topic, "Topic of a bag's left images, or of its only camera's")
       ->type_name("TOPIC");
   add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");

@@ -25,6 +25,8 @@ struct SimulateOptions {
   CowshedRecordingOptions recording;
   ImperfectionOptions imperfection;
   fs::path output;
+  bool has_motion = false;
+  MotionSensorOptions motion;
   bool json = false;
   bool quiet = false;
 };
@@ -34,6 +36,7 @@ constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed --mission 2 -o barn_2
   byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
   byre simulate cowshed --imperfection good -o barn_4
+  byre simulate cowshed --motion -o barn_6
   byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
 A feeding robot drives up and down the feed alley with a stereo camera. The same seed is the same barn; another mission
@@ -41,7 +44,8 @@ is another visit to it: other feed, other light, cows elsewhere, a share of the 
 gate open to a store that the first visit did not see.
 FOLDER gets an EuRoC recording with exact truth (mav0), and a floor plan with points to register a map of this recording
 on it (plan). Where the calibration errs, sensor.yaml has the erring one, and true_sensor.yaml beside it what rendered
-the images. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
+the images. With --motion it gets what two driven wheels and a gyroscope told too (wheel.txt, mav0/imu0), with their
+errors. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
 docs/simulation.md describes both.)";
 
 std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
@@ -132,6 +136,30 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
 
 }  // namespace
 
+void declare_motion(CLI::App& command, SimulateOptions& options) {
+  MotionSensorOptions& motion = options.motion;
+  CLI::Option* const flag =
+      command.add_flag("--motion", options.has_motion, "Record wheel odometry and a gyroscope too");
+  command.add_option("--wheel-radius-error", motion.radius_error, "Share by which wheels are smaller than is told")
+      ->type_name("SHARE")
+      ->check(between(-0.2, 0.2))
+      ->needs(flag)
+      ->capture_default_str();
+  command.add_option("--wheel-slip", motion.slip, "Deviation of a wheel's way, as a share of it")
+      ->type_name("SHARE")
+      ->check(between(0.0, 1.0))
+      ->needs(flag)
+      ->capture_default_str();
+  command.add_option("--lift-from", motion.lifted_from, "When the left wheel leaves the ground and spins")
+      ->type_name("SECONDS")
+      ->check(between(0.0, 36000.0))
+      ->needs(flag);
+  command.add_option("--lift-to", motion.lifted_to, "When it is down again")
+      ->type_name("SECONDS")
+      ->check(between(0.0, 36000.0))
+      ->needs(flag);
+}
+
 Action declare_simulate(CLI::App& command) {
   const auto options = std::make_shared<SimulateOptions>();
   command.require_subcommand(1);
@@ -139,6 +167,7 @@ Action declare_simulate(CLI::App& command) {
   declare_visit(cowshed, options->recording);
   declare_camera(cowshed, options->recording);
   declare_imperfection(cowshed, options->imperfection);
+  declare_motion(cowshed, *options);
   add_output(cowshed, Output::folder, "-o,--output", options->output, "Folder for the recording")
       ->type_name("FOLDER")
       ->required();
@@ -147,6 +176,7 @@ Action declare_simulate(CLI::App& command) {
   cowshed.footer(kSimulateFooter);
   return [options](std::ostream& result) {
     options->recording.camera = asked_for(options->imperfection);
+    if (options->has_motion) options->recording.motion = options->motion;
     return run_simulate(*options, result);
   };
 }

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "byre/pose.h"
+#include "byre/trajectory.h"
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace byre {
+
+// How the body moved from one moment to a later one, as something else than the camera tells it.
+struct BodyMotion {
+  // With the covariance of ordinary wheels: 2 % of the way and of the turn, and 1 degree on each metre.
+  BodyMotion(const Pose& earlier_from_later);  // NOLINT(google-explicit-constructor): a pose is a motion
+  BodyMotion(const Pose& earlier_from_later, const Matrix6& motion_covariance)
+      : last_from_body(earlier_from_later), covariance(motion_covariance) {}
+
+  Pose last_from_body;  // metres
+  Matrix6 covariance;   // covariance of delta in last_from_body * exp_pose(delta)
+};
+
+inline BodyMotion no_motion() {
+  return {Pose{}, Matrix6::Zero()};
+}
+
+// One motion after another. What errs in both is taken to be the same, as the radius of a wheel or the bias of a
+// gyroscope is: deviations add up, not variances.
+BodyMotion operator*(const BodyMotion& first, const BodyMotion& second);
+
+// What a gyroscope tells.
+struct AngularRate {
+  Timestamp time{};
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's own axes
+};
+
+// What was recorded of a robot's motion beside its images.
+struct MotionSamples {
+  Trajectory wheels;               // poses of the robot's base in a frame of the wheels' own
+  std::vector<AngularRate> rates;  // in order of time
+};
+
+}  // namespace byre

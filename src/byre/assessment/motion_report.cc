@@ -1,0 +1,45 @@
+#include "byre/assessment/motion_report.h"
+
+#include "byre/geometry/degrees.h"
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+
+namespace byre {
+namespace {
+
+std::string describe(const WheelMounting& wheels, const ToldMotion& told, bool is_metric) {
+  const Eigen::Vector3d& arm = wheels.base_from_body.translation;
+  std::string text =
+      formatted("body %.2f m ahead and %.2f m to the left of the base; stamped %.0f ms after the images; ", arm.x(),
+                arm.y(), 1e3 * told.time_offset);
+  const double share = 100.0 * wheels.scale_sigma;
+  text += is_metric
+              ? formatted("%.2f %% longer than seen (sigma %.2f %%)", 100.0 * (wheels.metres_per_unit - 1.0), share)
+              : formatted("a unit of the map is %.3f m (sigma %.2f %%)", wheels.metres_per_unit, share);
+  return text + formatted("; left out for slip %d times", told.slips);
+}
+
+bool is_bridged(const MappedFrame& frame) {
+  return frame.report && frame.report->map_from_body && frame.report->health.doubt == Doubt::bridged;
+}
+
+}  // namespace
+
+std::string motion_rows(const MapRun& run, bool is_metric) {
+  const ToldMotion& told = run.told;
+  if (!told.is_told) return "";
+  std::string text;
+  if (told.wheels) text += row("wheels", describe(*told.wheels, told, is_metric));
+  if (told.gyroscope) {
+    text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
+                                       told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
+  }
+  if (!told.wheels && !told.gyroscope) {
+    return row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
+  }
+  const auto bridged = std::ranges::count_if(run.frames, is_bridged);
+  return text + row("bridged", formatted("%d frames that show nothing known", static_cast<int>(bridged)));
+}
+
+}  // namespace byre

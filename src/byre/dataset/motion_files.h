@@ -1,0 +1,17 @@
+#pragma once
+
+#include "byre/body_motion.h"
+#include "byre/recording.h"
+
+#include <filesystem>
+
+namespace byre {
+
+// What wheels and a gyroscope recorded beside the images of a folder:
+//   wheel.txt               poses of the base in the wheels' own frame, "time_s tx ty tz qx qy qz qw" (TUM)
+//   mav0/imu0/data.csv      EuRoC: time in nanoseconds, angular rates in radians per second, accelerations
+// Wheels are used where the file is there or the options name one; the gyroscope where the options ask for it. Throws
+// InputError naming file and line: a file named is not there, or does not parse, or has times out of order.
+MotionSamples read_motion(const std::filesystem::path& recording, const OpenOptions& options);
+
+}  // namespace byre

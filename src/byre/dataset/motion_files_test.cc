@@ -1,0 +1,67 @@
+#include "byre/dataset/motion_files.h"
+
+#include "byre/dataset/test_folder.h"
+#include "byre/input_error.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kWheels = "1.0 0 0 0 0 0 0 1\n1.5 0.25 0 0 0 0 0 1\n";
+
+using MotionFiles = TestFolder;
+
+TEST_F(MotionFiles, AreNoneWhereNothingWasRecorded) {
+  const MotionSamples samples = read_motion(folder_, {});
+  EXPECT_TRUE(samples.wheels.empty());
+  EXPECT_TRUE(samples.rates.empty());
+}
+
+TEST_F(MotionFiles, HoldWheelsWhichMayBeLeftOut) {
+  write("wheel.txt", kWheels);
+  const MotionSamples samples = read_motion(folder_, {});
+  ASSERT_EQ(samples.wheels.size(), 2u);
+  EXPECT_EQ(samples.wheels.back().time, std::chrono::milliseconds(1500));
+  EXPECT_EQ(samples.wheels.back().world_from_body.translation.x(), 0.25);
+  EXPECT_TRUE(read_motion(folder_, {.use_wheels = false}).wheels.empty());
+}
+
+TEST_F(MotionFiles, MayLieElsewhere) {
+  write("other/odometry.txt", kWheels);
+  EXPECT_EQ(read_motion(folder_, {.wheels = folder_ / "other/odometry.txt"}).wheels.size(), 2u);
+  EXPECT_THROW(read_motion(folder_, {.wheels = folder_ / "none.txt"}), InputError);
+}
+
+TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
+  write("mav0/cam0/data.csv", "");
+  write("mav0/imu0/data.csv",
+        "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n100,0.1,0.2,0.3,0,0,9.8\n200,0.4,0.5,0.6,0,0,9.8\n");
+  EXPECT_TRUE(read_motion(folder_, {}).rates.empty());
+  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true});
+  ASSERT_EQ(samples.rates.size(), 2u);
+  EXPECT_EQ(samples.rates.back().time, Timestamp(200));
+  EXPECT_EQ(samples.rates.back().rate, Eigen::Vector3d(0.4, 0.5, 0.6));
+}
+
+TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
+  const auto failure = [&](const std::string& text) {
+    write("mav0/cam0/data.csv", "");
+    if (!text.empty()) write("mav0/imu0/data.csv", text);
+    try {
+      read_motion(folder_, {.use_gyroscope = true});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("read");
+  };
+  EXPECT_THAT(failure(""), HasSubstr("is not there"));
+  EXPECT_THAT(failure("100,0.1,0.2\n"), HasSubstr("fewer than four fields"));
+  EXPECT_THAT(failure("100,0.1,0.2,left\n"), HasSubstr("\"left\" is not a number"));
+  EXPECT_THAT(failure("100,0,0,0\n100,0,0,0\n"), HasSubstr("not later"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,54 @@
+// For tests: a base that drives turning both ways, as its wheels and a camera on it tell.
+
+#pragma once
+
+#include "byre/motion/wheel_mounting.h"
+#include "byre/trajectory.h"
+
+#include <cmath>
+#include <random>
+
+namespace byre {
+
+struct Drive {
+  Pose base_from_body;           // metres
+  double metres_per_unit = 1.0;  // metres in a unit of the lengths that the camera knows
+  double wheel_delay = 0.0;      // seconds
+  double noise = 0.0;            // deviation of what is seen, metres and radians
+
+  // The base at a time: half a metre a second, its turning swings within 0.5 rad/s.
+  static Pose world_from_base(double seconds) {
+    constexpr double kStep = 0.01;
+    static const std::vector<Pose> poses = [] {
+      std::vector<Pose> path{Pose{}};
+      for (double t = 0.0; t < 200.0; t += kStep) {
+        const double yaw_rate = 0.5 * std::sin(0.4 * t) + 0.1;
+        path.push_back(path.back() * Pose{rotation_exp({0.0, 0.0, yaw_rate * kStep}), {0.5 * kStep, 0.0, 0.0}});
+      }
+      return path;
+    }();
+    const double place = std::max(0.0, seconds) / kStep;
+    const auto before = static_cast<std::size_t>(place);
+    return interpolate(poses[before], poses[before + 1], place - static_cast<double>(before));
+  }
+
+  StampedPose wheels(double seconds) const { return {from_seconds(seconds + wheel_delay), world_from_base(seconds)}; }
+
+  // In the map's lengths, in a frame of the map's own.
+  Pose seen(double seconds, std::mt19937& random) const {
+    std::normal_distribution<double> deviation(0.0, noise);
+    const auto deviations = [&] { return Eigen::Vector3d(deviation(random), deviation(random), deviation(random)); };
+    Pose body = inverse(base_from_body) * world_from_base(seconds) * base_from_body;
+    body.translation /= metres_per_unit;
+    return body * Pose{rotation_exp(deviations()), deviations() / metres_per_unit};
+  }
+};
+
+// A camera that looks ahead, 0.4 m before the middle of the axle and 0.1 m to its left.
+inline Pose camera_on_base() {
+  Eigen::Matrix3d axes;
+  axes << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
+  return {Eigen::Quaterniond(axes) * rotation_exp({0.1, -0.05, 0.02}), {0.4, 0.1, 0.0}};
+}
+
+}  // namespace byre

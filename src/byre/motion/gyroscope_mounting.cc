@@ -1,0 +1,85 @@
+#include "byre/motion/gyroscope_mounting.h"
+
+#include "byre/geometry/median.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/SVD>
+
+namespace byre {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kLeastTurn = 0.5;    // radians, all turns together
+constexpr double kMaxError = 0.15;    // radians per second, median
+constexpr Timestamp kBiasSpan = 30s;  // back from the last motion seen
+constexpr int kRounds = 4;
+
+struct TurnPair {
+  Eigen::Vector3d seen;  // radians, about the body's axes
+  Eigen::Vector3d told;  // radians, about the gyroscope's axes, bias and all
+  double seconds = 0.0;
+  bool is_recent = false;
+};
+
+std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen, const RateTrack& rates) {
+  std::vector<TurnPair> pairs;
+  for (const SeenMotion& motion : seen) {
+    const auto told = rates.between(motion.earlier, motion.later, Eigen::Vector3d::Zero());
+    if (!told) continue;
+    pairs.push_back({rotation_log(motion.body.rotation), rotation_log(*told), to_seconds(motion.later - motion.earlier),
+                     motion.later + kBiasSpan >= seen.back().later});
+  }
+  return pairs;
+}
+
+// Least squares over all pairs (Kabsch 1976).
+Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias) {
+  Eigen::Matrix3d sum = 1e-12 * Eigen::Matrix3d::Identity();
+  for (const TurnPair& pair : pairs) sum += pair.seen * (pair.told - bias * pair.seconds).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  signs.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+}
+
+Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quaterniond& body_from_gyroscope) {
+  std::array<std::vector<double>, 3> rates;
+  for (const TurnPair& pair : pairs) {
+    if (!pair.is_recent) continue;
+    const Eigen::Vector3d rate = (pair.told - body_from_gyroscope.conjugate() * pair.seen) / pair.seconds;
+    for (int axis = 0; axis < 3; ++axis) rates[static_cast<std::size_t>(axis)].push_back(rate[axis]);
+  }
+  Eigen::Vector3d bias;
+  for (int axis = 0; axis < 3; ++axis) bias[axis] = median_or(std::move(rates[static_cast<std::size_t>(axis)]), 0.0);
+  return bias;
+}
+
+}  // namespace
+
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen, const RateTrack& rates) {
+  constexpr std::size_t kLeastPairs = 8;
+  const std::vector<TurnPair> pairs = pairs_of(seen, rates);
+  double turned = 0.0;
+  for (const TurnPair& pair : pairs) turned += pair.seen.norm();
+  if (pairs.size() < kLeastPairs || turned < kLeastTurn) return {};
+  GyroscopeMounting mounting;
+  for (int round = 0; round < kRounds; ++round) {
+    mounting.body_from_gyroscope = rotation_of(pairs, mounting.bias);
+    mounting.bias = bias_of(pairs, mounting.body_from_gyroscope);
+  }
+  std::vector<double> errors;
+  for (const TurnPair& pair : pairs) {
+    const Eigen::Vector3d told = mounting.body_from_gyroscope * (pair.told - mounting.bias * pair.seconds);
+    errors.push_back((told - pair.seen).norm() / pair.seconds);
+  }
+  mounting.error = median_or(std::move(errors), kMaxError);
+  return mounting.error < kMaxError ? std::optional(mounting) : std::nullopt;
+}
+
+}  // namespace byre

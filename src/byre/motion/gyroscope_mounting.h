@@ -1,0 +1,23 @@
+#pragma once
+
+#include "byre/motion/rate_track.h"
+#include "byre/motion/seen_motion.h"
+
+#include <deque>
+#include <optional>
+
+namespace byre {
+
+// How the gyroscope is turned against the body, and what it tells of a body at rest.
+struct GyroscopeMounting {
+  Eigen::Quaterniond body_from_gyroscope = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's axes
+  double error = 0.0;                              // median difference from what was seen, radians per second
+};
+
+// By turns that were seen, of some seconds at least; the bias is that of the last half minute. Where all turns are
+// about one axis, how the gyroscope is turned about that one stays open, and matters to no such turn. Empty while too
+// little was turned, or what it tells is not what was seen.
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen, const RateTrack& rates);
+
+}  // namespace byre

@@ -1,0 +1,163 @@
+#include "byre/motion/motion_prior.h"
+
+#include "byre/motion/time_offset.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Timestamp kStride = 500ms;       // length of the motions that are compared
+constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
+constexpr std::size_t kMostMotions = 240;
+constexpr int kMotionsPerLook = 4;
+
+// How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
+double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
+  constexpr double kMetres = 0.03;
+  constexpr double kRadians = 0.03;
+  constexpr double kShare = 0.2;
+  const double way = metres_per_unit * std::max(told.translation.norm(), seen.body.translation.norm());
+  const double turn = std::max(rotation_log(told.rotation).norm(), rotation_log(seen.body.rotation).norm());
+  const double way_error = metres_per_unit * (told.translation - seen.body.translation).norm();
+  const double turn_error = angle_between(told.rotation, seen.body.rotation);
+  return std::max(way_error / (kMetres + kShare * (way + 0.2 * turn)), turn_error / (kRadians + kShare * turn));
+}
+
+// What wheels so mounted leave open, in the lengths of the map.
+Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
+  constexpr double kLeastShare = 0.01;
+  constexpr double kTurnPerMetre = 0.01;  // radians
+  constexpr double kLeastMetres = 1e-3;
+  constexpr double kLeastTurn = 5e-4;  // radians
+  const double way = motion.translation.norm();
+  const double turn = rotation_log(motion.rotation).norm();
+  const double way_sigma = way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
+                           kLeastMetres / mounting.metres_per_unit;
+  const double turn_sigma =
+      turn * std::max(kLeastShare, mounting.turn_error) + kTurnPerMetre * way * mounting.metres_per_unit + kLeastTurn;
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal().head<3>().setConstant(way_sigma * way_sigma);
+  covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);
+  return covariance;
+}
+
+}  // namespace
+
+void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
+  if (is_empty()) return;
+  if (!odometry_from_body) {
+    begin_.reset();
+    last_.reset();
+    return;
+  }
+  const StampedPose now{time, *odometry_from_body};
+  if (last_ && time - last_->time <= kMaxFrameGap) {
+    velocity_ = log_pose(inverse(last_->world_from_body) * now.world_from_body) / to_seconds(time - last_->time);
+  } else {
+    begin_.reset();
+  }
+  last_ = now;
+  if (!begin_) begin_ = now;
+  if (time - begin_->time < kStride) return;
+  const SeenMotion motion{begin_->time, time, inverse(begin_->world_from_body) * now.world_from_body};
+  begin_ = now;
+  watch_for_slip(motion);
+  seen_.push_back(motion);
+  if (seen_.size() > kMostMotions) seen_.pop_front();
+  if (++unlooked_ >= kMotionsPerLook) look_for_mountings();
+}
+
+std::vector<MotionPair> MotionPrior::pairs() const {
+  const Timestamp offset = from_seconds(time_offset_);
+  std::vector<MotionPair> pairs;
+  for (const SeenMotion& motion : seen_) {
+    if (const auto base = wheels_.between(motion.earlier + offset, motion.later + offset)) {
+      pairs.push_back({*base, motion.body});
+    }
+  }
+  return pairs;
+}
+
+void MotionPrior::look_for_mountings() {
+  unlooked_ = 0;
+  if (!rates_.empty()) {
+    if (const auto found = find_gyroscope_mounting(seen_, rates_)) gyroscope_ = found;
+  }
+  if (wheels_.empty()) return;
+  if (const auto found = find_wheel_mounting(pairs())) mounting_ = found;
+  if (!mounting_) return;
+  const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  if (const auto offset = find_time_offset(seen_, up, wheels_)) time_offset_ = *offset;
+}
+
+void MotionPrior::watch_for_slip(const SeenMotion& motion) {
+  constexpr int kAgreeing = 2;  // motions after which wheels are believed again
+  if (!mounting_) return;
+  const Timestamp offset = from_seconds(time_offset_);
+  const auto base = wheels_.between(motion.earlier + offset, motion.later + offset);
+  if (!base) return;
+  if (disagreement(body_motion(*mounting_, *base), motion, mounting_->metres_per_unit) > 1.0) {
+    if (!is_slipping_) ++slips_;
+    is_slipping_ = true;
+    agreeing_ = 0;
+  } else if (++agreeing_ >= kAgreeing) {
+    is_slipping_ = false;
+  }
+}
+
+std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earlier, Timestamp later) const {
+  if (!gyroscope_) return {};
+  const auto told = rates_.between(earlier, later, gyroscope_->bias);
+  if (!told) return {};
+  return gyroscope_->body_from_gyroscope * *told * gyroscope_->body_from_gyroscope.conjugate();
+}
+
+std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later) const {
+  if (!mounting_ || is_slipping_) return {};
+  const Timestamp offset = from_seconds(time_offset_);
+  const auto base = wheels_.between(earlier + offset, later + offset);
+  if (!base) return {};
+  const Pose motion = body_motion(*mounting_, *base);
+  return BodyMotion{motion, covariance_of(motion, *mounting_)};
+}
+
+std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp later) const {
+  constexpr Timestamp kLongest = 1s;
+  constexpr double kShare = 0.3;         // share of the way
+  constexpr double kAcceleration = 1.0;  // lengths of the map per second squared
+  if (!velocity_ || seen_.empty() || later - seen_.back().later > kLongest + kStride) return {};
+  const double seconds = to_seconds(later - earlier);
+  const Pose motion = exp_pose(*velocity_ * seconds);
+  const double sigma = kShare * motion.translation.norm() + 0.5 * kAcceleration * seconds * seconds;
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal().head<3>().setConstant(sigma * sigma);
+  return BodyMotion{motion, covariance};
+}
+
+std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp later) const {
+  constexpr double kLeastTurn = 1e-4;  // radians
+  auto motion = by_wheels(earlier, later);
+  const auto turn = turn_by_gyroscope(earlier, later);
+  if (!turn) return motion;
+  if (motion) {
+    Pose base = mounting_->base_from_body;
+    base.translation /= mounting_->metres_per_unit;
+    Pose base_motion = base * motion->last_from_body * inverse(base);
+    base_motion.rotation = base.rotation * *turn * base.rotation.conjugate();
+    motion->last_from_body = inverse(base) * base_motion * base;
+  } else if ((motion = by_sight(earlier, later))) {
+    motion->last_from_body.rotation = *turn;
+  } else {
+    return {};
+  }
+  const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
+  motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+  return motion;
+}
+
+}  // namespace byre

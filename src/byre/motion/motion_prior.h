@@ -1,0 +1,62 @@
+#pragma once
+
+#include "byre/body_motion.h"
+#include "byre/motion/gyroscope_mounting.h"
+#include "byre/motion/rate_track.h"
+#include "byre/motion/seen_motion.h"
+#include "byre/motion/wheel_mounting.h"
+#include "byre/motion/wheel_track.h"
+#include "byre/trajectory.h"
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// What wheels and a gyroscope tell of the body's motion. How they are mounted, their scale, bias and delay are found by
+// comparing them with what is seen, and followed while that goes on. Nothing is told before they are known. Where
+// wheels do not move as is seen they are left out, until they do again. Call it from one thread.
+class MotionPrior {
+ public:
+  void add(const StampedPose& wheels) { wheels_.add(wheels); }
+  void add(const AngularRate& rate) { rates_.add(rate); }
+  bool is_empty() const { return wheels_.empty() && rates_.empty(); }
+
+  // A frame's smooth pose, in the map's lengths, as it was seen; empty where nothing was.
+  void note(Timestamp time, const std::optional<Pose>& odometry_from_body);
+
+  // The body's motion between frames, in the map's lengths. A gyroscope alone tells a turn; the way is then taken to go
+  // on as it was seen, for a second at most. Empty where it is not known.
+  std::optional<BodyMotion> between(Timestamp earlier, Timestamp later) const;
+
+  const std::optional<WheelMounting>& wheels() const { return mounting_; }
+  const std::optional<GyroscopeMounting>& gyroscope() const { return gyroscope_; }
+  double time_offset() const { return time_offset_; }  // seconds that wheels stamp later than the camera
+  bool are_wheels_slipping() const { return is_slipping_; }
+  int slips() const { return slips_; }  // times that they began to
+
+ private:
+  void look_for_mountings();
+  void watch_for_slip(const SeenMotion& motion);
+  std::vector<MotionPair> pairs() const;
+  std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later) const;
+  std::optional<BodyMotion> by_sight(Timestamp earlier, Timestamp later) const;
+  std::optional<Eigen::Quaterniond> turn_by_gyroscope(Timestamp earlier, Timestamp later) const;
+
+  WheelTrack wheels_;
+  RateTrack rates_;
+  std::deque<SeenMotion> seen_;       // motions of the last minutes, half a second each
+  std::optional<StampedPose> begin_;  // begin of the motion that is being seen
+  std::optional<StampedPose> last_;   // the last frame, where it was seen
+  std::optional<Vector6> velocity_;   // velocity of the body, per second, when it was seen last
+  int unlooked_ = 0;                  // motions seen since mountings were looked for
+  std::optional<WheelMounting> mounting_;
+  std::optional<GyroscopeMounting> gyroscope_;
+  double time_offset_ = 0.0;
+  bool is_slipping_ = false;
+  int agreeing_ = 0;  // motions that wheels told as they were seen, since they slipped
+  int slips_ = 0;
+};
+
+}  // namespace byre

@@ -1,0 +1,116 @@
+#include "byre/motion/motion_prior.h"
+
+#include "byre/motion/drive_scene.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+const Eigen::Vector3d kBias(0.02, -0.01, 0.03);  // radians per second
+const Eigen::Quaterniond kBodyFromGyroscope = rotation_exp({0.3, 1.2, -0.4});
+
+Eigen::Vector3d rate_of_body(const Drive& drive, double seconds) {
+  constexpr double kStep = 0.002;
+  const Pose base = inverse(Drive::world_from_base(seconds)) * Drive::world_from_base(seconds + kStep);
+  return drive.base_from_body.rotation.conjugate() * rotation_log(base.rotation) / kStep;
+}
+
+struct Told {
+  bool wheels = true;
+  bool gyroscope = false;
+  double slip_from = 1e9;  // seconds, from when on the wheels spin
+  double slip_to = 1e9;    // seconds
+};
+
+// A prior that has followed a drive: seen until dark, told until the end.
+MotionPrior followed(const Drive& drive, const Told& told, double dark, double end) {
+  MotionPrior prior;
+  std::mt19937 random(5);
+  Pose wheels;
+  for (int step = 0; step * 0.01 < end; ++step) {
+    const double t = step * 0.01;
+    if (told.wheels && step % 2 == 0) {
+      Pose motion = inverse(Drive::world_from_base(t - 0.02)) * Drive::world_from_base(t);
+      if (t > told.slip_from && t < told.slip_to) motion.translation.x() += 0.02;
+      wheels = wheels * motion;
+      prior.add(StampedPose{from_seconds(t + drive.wheel_delay), wheels});
+    }
+    if (told.gyroscope) {
+      prior.add(AngularRate{from_seconds(t), kBodyFromGyroscope.conjugate() * rate_of_body(drive, t) + kBias});
+    }
+    if (step % 5 == 0) prior.note(from_seconds(t), t < dark ? std::optional(drive.seen(t, random)) : std::nullopt);
+  }
+  return prior;
+}
+
+Pose true_motion(const Drive& drive, double from, double to) {
+  Drive exact = drive;
+  exact.noise = 0.0;
+  std::mt19937 random;
+  return inverse(exact.seen(from, random)) * exact.seen(to, random);
+}
+
+// The motion over a time in the dark, frame after frame.
+BodyMotion over(const MotionPrior& prior, double from, double to) {
+  BodyMotion sum = *prior.between(from_seconds(from), from_seconds(from + 0.05));
+  for (double t = from + 0.05; t < to - 0.01; t += 0.05) {
+    sum = sum * *prior.between(from_seconds(t), from_seconds(t + 0.05));
+  }
+  return sum;
+}
+
+TEST(MotionPrior, TellsNothingBeforeItKnowsHowWheelsAreMounted) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  const MotionPrior prior = followed(drive, {}, 1.0, 2.0);
+  EXPECT_FALSE(prior.wheels());
+  EXPECT_FALSE(prior.between(from_seconds(1.0), from_seconds(1.05)));
+}
+
+TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .wheel_delay = 0.07, .noise = 0.001};
+  const MotionPrior prior = followed(drive, {}, 60.0, 72.0);
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.time_offset(), 0.07, 0.01);
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.37, 0.004);
+  const BodyMotion told = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05);  // metres, of 5
+  EXPECT_LT(error.tail<3>().norm(), 0.02);
+  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
+TEST(MotionPrior, TurnsByTheGyroscope) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const MotionPrior prior = followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0);
+  ASSERT_TRUE(prior.gyroscope());
+  EXPECT_LT((prior.gyroscope()->bias - kBias).norm(), 0.003);
+  const BodyMotion told = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.head<3>().norm(), 0.05);
+  EXPECT_LT(error.tail<3>().norm(), 0.03);
+}
+
+TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.0005};
+  const MotionPrior prior = followed(drive, {.wheels = false, .gyroscope = true}, 60.0, 72.0);
+  ASSERT_TRUE(prior.between(from_seconds(60.0), from_seconds(60.05)));
+  const Vector6 error = log_pose(inverse(over(prior, 60.0, 60.5).last_from_body) * true_motion(drive, 60.0, 60.5));
+  EXPECT_LT(error.head<3>().norm(), 0.1);
+  EXPECT_LT(error.tail<3>().norm(), 0.01);
+  EXPECT_FALSE(prior.between(from_seconds(65.0), from_seconds(65.05)));
+}
+
+TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  EXPECT_TRUE(followed(drive, {.slip_from = 50.0, .slip_to = 100.0}, 55.0, 55.0).are_wheels_slipping());
+  const MotionPrior after = followed(drive, {.slip_from = 50.0, .slip_to = 53.0}, 60.0, 60.0);
+  EXPECT_FALSE(after.are_wheels_slipping());
+  EXPECT_EQ(after.slips(), 1);
+  EXPECT_NEAR(after.wheels()->metres_per_unit, 1.0, 0.01);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "byre/body_motion.h"
+
+#include <deque>
+#include <optional>
+
+namespace byre {
+
+// What a gyroscope tells, of the last minutes.
+class RateTrack {
+ public:
+  // Samples that are not later than the one before are left out.
+  void add(const AngularRate& sample);
+
+  bool empty() const { return samples_.empty(); }
+  // The gyroscope's turn, earlier_from_later, by its rates less a bias; empty where a twentieth of a second is not
+  // covered.
+  std::optional<Eigen::Quaterniond> between(Timestamp earlier, Timestamp later, const Eigen::Vector3d& bias) const;
+
+ private:
+  std::deque<AngularRate> samples_;
+};
+
+}  // namespace byre

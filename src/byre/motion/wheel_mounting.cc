@@ -1,0 +1,157 @@
+#include "byre/motion/wheel_mounting.h"
+
+#include "byre/geometry/median.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+namespace {
+
+constexpr double kLeastTurn = 1.5;           // radians, all turns together
+constexpr double kLeastWay = 1.5;            // metres, all ways together
+constexpr double kMaxAxisError = 0.35;       // radians, median angle between the axes of turns that were seen
+constexpr double kMaxScaleSigma = 0.05;      // share
+constexpr double kMaxDirectionSigma = 0.05;  // radians
+constexpr int kRounds = 8;                   // rounds of weighting again
+
+using Vector4 = Eigen::Vector4d;
+
+double yaw_of(const Pose& base) {
+  return rotation_log(base.rotation).z();
+}
+
+// The axis of the base, upwards, as the body has it; empty where too little was turned, or about no common axis.
+std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions) {
+  constexpr double kSmall = 0.03;  // radians, turns whose axis says little
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double turned = 0.0;
+  for (const MotionPair& motion : motions) {
+    sum += yaw_of(motion.base) * rotation_log(motion.body.rotation);
+    turned += std::abs(yaw_of(motion.base));
+  }
+  if (turned < kLeastTurn || !(sum.norm() > 0.0)) return {};
+  const Eigen::Vector3d up = sum.normalized();
+  std::vector<double> errors;
+  for (const MotionPair& motion : motions) {
+    const double yaw = yaw_of(motion.base);
+    if (std::abs(yaw) < kSmall) continue;
+    errors.push_back((rotation_log(motion.body.rotation) / yaw - up).norm());
+  }
+  return median_or(std::move(errors), kMaxAxisError) < kMaxAxisError ? std::optional(up) : std::nullopt;
+}
+
+// One motion as two equations, in metres, linear in (s cos, s sin, x, y): s the metres in a unit, the angle that from
+// the levelled body to the base, x and y the lever arm.
+struct PlanarMotion {
+  Eigen::Matrix<double, 2, 4> factors;
+  Eigen::Vector2d base;
+  double way = 0.0;  // metres by the wheels
+};
+
+PlanarMotion planar(const MotionPair& motion, const Eigen::Quaterniond& level_from_body) {
+  const double yaw = yaw_of(motion.base);
+  const Eigen::Vector3d seen = level_from_body * motion.body.translation;
+  const double turned = 1.0 - std::cos(yaw), swept = std::sin(yaw);
+  PlanarMotion result;
+  result.factors << seen.x(), -seen.y(), turned, swept,  //
+      seen.y(), seen.x(), -swept, turned;
+  result.base = motion.base.translation.head<2>();
+  result.way = result.base.norm();
+  return result;
+}
+
+struct Solution {
+  Vector4 unknowns = Vector4::Zero();
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  double way_error = 0.0;
+};
+
+double deviation(const PlanarMotion& motion, const Vector4& unknowns) {
+  constexpr double kNoise = 0.005;  // metres
+  return (motion.factors * unknowns - motion.base).norm() / (motion.way + kNoise);
+}
+
+// Weighted least squares, again and again with the weights of Geman and McClure.
+std::optional<Solution> solve(const std::vector<PlanarMotion>& motions) {
+  constexpr double kLeastShare = 0.01;  // share of the way: no wheels are better
+  constexpr double kNoise = 0.005;      // metres
+  std::vector<double> weights(motions.size(), 1.0);
+  Solution solution;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix4d normal = 1e-9 * Eigen::Matrix4d::Identity();
+    Vector4 right = Vector4::Zero();
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const double weight = weights[i] / std::pow(motions[i].way + kNoise, 2);
+      normal += weight * motions[i].factors.transpose() * motions[i].factors;
+      right += weight * motions[i].factors.transpose() * motions[i].base;
+    }
+    const Eigen::LDLT<Eigen::Matrix4d> factored(normal);
+    if (factored.info() != Eigen::Success) return {};
+    solution.unknowns = factored.solve(right);
+    std::vector<double> errors;
+    for (const PlanarMotion& motion : motions) errors.push_back(deviation(motion, solution.unknowns));
+    solution.way_error = median_or(errors, 1.0);
+    const double usual = std::max(solution.way_error, kLeastShare);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      weights[i] = 1.0 / std::pow(1.0 + std::pow(errors[i] / (3.0 * usual), 2), 2);
+    }
+    solution.covariance = usual * usual * factored.solve(Eigen::Matrix4d::Identity());
+  }
+  return solution;
+}
+
+double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up) {
+  constexpr double kSmall = 0.05;  // radians
+  std::vector<double> errors;
+  for (const MotionPair& motion : motions) {
+    const double yaw = yaw_of(motion.base);
+    if (std::abs(yaw) > kSmall) errors.push_back(std::abs(rotation_log(motion.body.rotation).dot(up) / yaw - 1.0));
+  }
+  return median_or(std::move(errors), 0.0);
+}
+
+}  // namespace
+
+std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions) {
+  const auto up = find_up(motions);
+  if (!up) return {};
+  const Eigen::Quaterniond level_from_body = Eigen::Quaterniond::FromTwoVectors(*up, Eigen::Vector3d::UnitZ());
+  std::vector<PlanarMotion> planar_motions;
+  double way = 0.0;
+  for (const MotionPair& motion : motions) {
+    planar_motions.push_back(planar(motion, level_from_body));
+    way += planar_motions.back().way;
+  }
+  if (way < kLeastWay) return {};
+  const auto solved = solve(planar_motions);
+  if (!solved) return {};
+  const double scale = solved->unknowns.head<2>().norm();
+  if (!(scale > 0.0)) return {};
+  const Eigen::Vector2d along = solved->unknowns.head<2>() / scale, across(-along.y(), along.x());
+  const Eigen::Matrix2d covariance = solved->covariance.topLeftCorner<2, 2>() / (scale * scale);
+  const double scale_sigma = std::sqrt(along.dot(covariance * along));
+  const double direction_sigma = std::sqrt(across.dot(covariance * across));
+  if (!(scale_sigma < kMaxScaleSigma) || !(direction_sigma < kMaxDirectionSigma)) return {};
+  const double angle = std::atan2(along.y(), along.x());
+  WheelMounting mounting;
+  mounting.base_from_body.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())) * level_from_body;
+  mounting.base_from_body.translation = {solved->unknowns[2], solved->unknowns[3], 0.0};
+  mounting.metres_per_unit = scale;
+  mounting.scale_sigma = scale_sigma;
+  mounting.way_error = solved->way_error;
+  mounting.turn_error = median_turn_error(motions, *up);
+  return mounting;
+}
+
+Pose body_motion(const WheelMounting& mounting, const Pose& base) {
+  Pose motion = inverse(mounting.base_from_body) * base * mounting.base_from_body;
+  motion.translation /= mounting.metres_per_unit;
+  return motion;
+}
+
+}  // namespace byre

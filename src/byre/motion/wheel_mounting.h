@@ -1,0 +1,35 @@
+#pragma once
+
+#include "byre/pose.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// The same motion as wheels tell it and as it was seen, both earlier_from_later.
+struct MotionPair {
+  Pose base;  // metres
+  Pose body;  // in the lengths that the map has
+};
+
+// How the body is mounted on the base whose wheels tell its motion, and how long the map's unit is by them. The base
+// drives in its plane, so how high the body lies above it cannot be known, and is taken to be nothing.
+struct WheelMounting {
+  Pose base_from_body;           // metres
+  double metres_per_unit = 1.0;  // metres by the wheels in a unit of the map's lengths
+  double scale_sigma = 0.0;      // standard deviation of metres_per_unit as a share of it
+  double way_error = 0.0;        // median distance between motions by wheels and by sight, as a share of the way
+  double turn_error = 0.0;       // median difference of turns, as a share of the turn
+};
+
+// The mounting by motions in which the base turned both ways or far, and drove: first the axis about which both turn,
+// then, linear in all that is left, the direction ahead, the lever arm and the scale (Heng, Li and Pollefeys,
+// "CamOdoCal", IROS 2013, sections III.A and III.B). Motions that disagree with most, as where a wheel slips, count for
+// nothing. Empty while the motions leave it open.
+std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions);
+
+// The body's motion, in the map's lengths, by that of the base.
+Pose body_motion(const WheelMounting& mounting, const Pose& base);
+
+}  // namespace byre

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "byre/trajectory.h"
+
+#include <deque>
+#include <optional>
+
+namespace byre {
+
+// What wheels tell: poses of the robot's base in a frame of their own, which drifts. The last minutes are kept.
+class WheelTrack {
+ public:
+  // Samples that are not later than the one before are left out.
+  void add(const StampedPose& sample);
+
+  bool empty() const { return samples_.empty(); }
+  // The base at a time between two samples at most half a second apart, or up to a tenth of a second after the last
+  // one.
+  std::optional<Pose> pose_at(Timestamp time) const;
+  // The base's motion, earlier_from_later; empty where either end is not known.
+  std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
+
+ private:
+  std::deque<StampedPose> samples_;
+};
+
+}  // namespace byre

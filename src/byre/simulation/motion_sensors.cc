@@ -1,0 +1,94 @@
+#include "byre/simulation/motion_sensors.h"
+
+#include "byre/simulation/seeded_draws.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+namespace byre {
+namespace {
+
+constexpr std::uint64_t kWheelStream = 71;
+constexpr std::uint64_t kRateStream = 72;
+
+// Normally distributed, by Box and Muller.
+double normal(SeededDraws& draws) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - static_cast<double>(draws.between(0.0f, 1.0f))));
+  return radius * std::cos(2.0 * std::numbers::pi * static_cast<double>(draws.between(0.0f, 1.0f)));
+}
+
+// One wheel with its encoder.
+class Wheel {
+ public:
+  Wheel(double told_per_true, const MotionSensorOptions& options) : told_per_true_(told_per_true), options_(options) {}
+
+  // The metres that the odometry is told, in whole ticks, when the wheel has rolled so far.
+  double roll(double metres, SeededDraws& draws) {
+    way_ += told_per_true_ * metres * (1.0 + options_.slip * normal(draws));
+    const double ticks = std::floor(way_ / options_.tick);
+    const double told = (ticks - ticks_) * options_.tick;
+    ticks_ = ticks;
+    return told;
+  }
+
+ private:
+  double told_per_true_;
+  MotionSensorOptions options_;
+  double way_ = 0.0;  // metres
+  double ticks_ = 0.0;
+};
+
+// Odometry of two wheels: an arc between samples.
+Trajectory told_by_wheels(const Trajectory& truth, const MotionSensorOptions& options) {
+  constexpr double kFreeSpeed = 1.0;  // metres per second of a wheel in the air
+  SeededDraws draws(options.seed, kWheelStream);
+  const double told = 1.0 / (1.0 - options.radius_error), half = 0.5 * options.radius_difference;
+  Wheel left(told * (1.0 - half), options), right(told * (1.0 + half), options);
+  const Timestamp start = truth.front().time, end = truth.back().time, step = from_seconds(1.0 / options.wheel_rate_hz);
+  Trajectory wheels;
+  Pose pose;
+  for (Timestamp time = start; time + step <= end; time += step) {
+    const auto before = pose_at(truth, time, step), after = pose_at(truth, time + step, step);
+    if (!before || !after) continue;
+    wheels.push_back({time + from_seconds(options.wheel_delay), pose});
+    const Pose motion = inverse(*before) * *after;
+    const double turn = rotation_log(motion.rotation).z(), way = motion.translation.x();
+    const double seconds = to_seconds(time - start);
+    const bool is_lifted = seconds >= options.lifted_from && seconds < options.lifted_to;
+    const double left_way = is_lifted ? kFreeSpeed * to_seconds(step) : way - 0.5 * options.wheel_distance * turn;
+    const double left_told = left.roll(left_way, draws);
+    const double right_told = right.roll(way + 0.5 * options.wheel_distance * turn, draws);
+    const double told_turn = (right_told - left_told) / options.wheel_distance;
+    const double told_way = 0.5 * (left_told + right_told);
+    const Eigen::Vector3d arc(told_way * std::cos(0.5 * told_turn), told_way * std::sin(0.5 * told_turn), 0.0);
+    pose = pose * Pose{rotation_exp({0.0, 0.0, told_turn}), arc};
+  }
+  return wheels;
+}
+
+std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const MotionSensorOptions& options) {
+  SeededDraws draws(options.seed, kRateStream);
+  Eigen::Vector3d bias;
+  for (int axis = 0; axis < 3; ++axis) bias[axis] = options.rate_bias * normal(draws);
+  std::vector<AngularRate> rates;
+  for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
+    const double seconds = to_seconds(truth[i + 1].time - truth[i].time);
+    const Pose motion = inverse(truth[i].world_from_body) * truth[i + 1].world_from_body;
+    AngularRate rate{truth[i].time, rotation_log(motion.rotation) / seconds + bias};
+    const double sigma = options.rate_noise / std::sqrt(seconds);
+    for (int axis = 0; axis < 3; ++axis) rate.rate[axis] += sigma * normal(draws);
+    rates.push_back(rate);
+  }
+  return rates;
+}
+
+}  // namespace
+
+MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options) {
+  if (world_from_body.size() < 2) return {};
+  return {told_by_wheels(world_from_body, options), told_by_gyroscope(world_from_body, options)};
+}
+
+}  // namespace byre

@@ -1,0 +1,70 @@
+#include "byre/simulation/motion_sensors.h"
+
+#include "byre/simulation/feeding_robot.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kSeconds = 30.0;
+
+Trajectory drive() {
+  const FeedingCourse course({.duration_s = kSeconds});
+  Trajectory truth;
+  for (int i = 0; i < static_cast<int>(kSeconds * 200.0); ++i) {
+    truth.push_back({from_seconds(0.005 * i), course.world_from_body(0.005 * i)});
+  }
+  return truth;
+}
+
+Pose motion_between(const Trajectory& path, double from, double to) {
+  constexpr Timestamp kGap = std::chrono::seconds(1);
+  return inverse(*pose_at(path, from_seconds(from), kGap)) * *pose_at(path, from_seconds(to), kGap);
+}
+
+TEST(MotionSensors, AreExactWithoutErrors) {
+  const Trajectory truth = drive();
+  const MotionSamples told = simulated_motion(truth, {.radius_error = 0.0,
+                                                      .radius_difference = 0.0,
+                                                      .slip = 0.0,
+                                                      .tick = 1e-6,
+                                                      .wheel_delay = 0.0,
+                                                      .rate_noise = 0.0,
+                                                      .rate_bias = 0.0});
+  const Pose wheels = motion_between(told.wheels, 1.0, 28.0), path = motion_between(truth, 1.0, 28.0);
+  EXPECT_LT((wheels.translation - path.translation).head<2>().norm(), 0.05);
+  EXPECT_NEAR(rotation_log(wheels.rotation).z(), rotation_log(path.rotation).z(), 0.01);
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  for (const AngularRate& rate : told.rates) turn = turn * rotation_exp(0.005 * rate.rate);
+  const Pose whole = inverse(truth.front().world_from_body) * truth.back().world_from_body;
+  EXPECT_LT(angle_between(turn, whole.rotation), 1e-6);
+}
+
+TEST(MotionSensors, ErrAsTheyAreTold) {
+  const Trajectory truth = drive();
+  const MotionSamples told = simulated_motion(truth, {.radius_error = 0.05, .slip = 0.0});
+  const double way = motion_between(truth, 2.0, 12.0).translation.norm();
+  EXPECT_NEAR(motion_between(told.wheels, 2.03, 12.03).translation.norm(), way / 0.95, 0.01 * way);
+  EXPECT_EQ(told.wheels.front().time, truth.front().time + std::chrono::milliseconds(30));
+}
+
+TEST(MotionSensors, TurnWhereAWheelIsLifted) {
+  const Trajectory truth = drive();
+  const MotionSamples told = simulated_motion(truth, {.lifted_from = 5.0, .lifted_to = 8.0});
+  const double told_turn = rotation_log(motion_between(told.wheels, 5.03, 8.03).rotation).z();
+  const double turn = rotation_log(motion_between(truth, 5.0, 8.0).rotation).z();
+  EXPECT_GT(std::abs(told_turn - turn), 0.3);
+}
+
+TEST(MotionSensors, TellTheSameForTheSameSeed) {
+  const Trajectory truth = drive();
+  const MotionSamples once = simulated_motion(truth, {.seed = 4}), again = simulated_motion(truth, {.seed = 4});
+  const MotionSamples other = simulated_motion(truth, {.seed = 5});
+  EXPECT_EQ(once.rates.back().rate, again.rates.back().rate);
+  EXPECT_EQ(once.wheels.back().world_from_body, again.wheels.back().world_from_body);
+  EXPECT_NE(once.rates.back().rate, other.rates.back().rate);
+}
+
+}  // namespace
+}  // namespace byre

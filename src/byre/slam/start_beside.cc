@@ -1,0 +1,83 @@
+#include "byre/slam/start_beside.h"
+
+#include "byre/alignment.h"
+
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+// From the start's world, in its lengths, to that of the map.
+struct Placement {
+  Pose world_from_start;
+  double scale = 1.0;
+
+  Pose moved(const Pose& camera_from_start) const {
+    return scale_lengths(camera_from_start, scale) * inverse(world_from_start);
+  }
+};
+
+// Empty where the two cameras did not move as is told.
+std::optional<Placement> placement_of(const MonocularStart& start, const StartPlaces& told) {
+  constexpr double kMaxTurn = 0.1;        // radians between the turn seen and the one told
+  constexpr double kMaxDirection = 0.35;  // radians between the ways
+  const Pose first_from_start = start.map.camera_from_world(start.first);
+  const Pose seen = first_from_start * inverse(start.map.camera_from_world(start.second));
+  const Pose way = told.first_camera_from_world * inverse(told.second_camera_from_world);
+  const double told_length = way.translation.norm(), seen_length = seen.translation.norm();
+  if (!(told_length > 0.0) || !(seen_length > 0.0)) return {};
+  const double cosine = way.translation.dot(seen.translation) / (told_length * seen_length);
+  if (angle_between(way.rotation, seen.rotation) > kMaxTurn || cosine < std::cos(kMaxDirection)) return {};
+  const double scale = told_length / seen_length;
+  return Placement{inverse(told.first_camera_from_world) * scale_lengths(first_from_start, scale), scale};
+}
+
+KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
+                        const std::optional<KeyframeId>& parent, int recording, Map& map) {
+  Keyframe keyframe = *start.map.find_keyframe(id);
+  keyframe.rig = map.add_rig(start.map.rigs()[static_cast<std::size_t>(keyframe.rig)]);
+  keyframe.recording = recording;
+  keyframe.camera_from_world = placement.moved(keyframe.camera_from_world);
+  keyframe.covariance = scale_lengths(keyframe.covariance, placement.scale);
+  keyframe.sightings.clear();
+  keyframe.words.clear();
+  keyframe.parent = parent;
+  return map.add_keyframe(std::move(keyframe));
+}
+
+MapPoint moved(const MapPoint& point, const Placement& placement) {
+  const Eigen::Matrix3d rotation = placement.world_from_start.rotation.toRotationMatrix();
+  const auto scale = static_cast<float>(placement.scale);
+  MapPoint result = point;
+  result.position_in_world = placement.world_from_start * (placement.scale * point.position_in_world);
+  result.covariance = placement.scale * placement.scale * rotation * point.covariance * rotation.transpose();
+  result.mean_viewing_direction = rotation.cast<float>() * point.mean_viewing_direction;
+  result.min_distance *= scale;
+  result.max_distance *= scale;
+  return result;
+}
+
+}  // namespace
+
+std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlaces& told,
+                                   const std::optional<KeyframeId>& parent, int recording, Map& map) {
+  const auto placement = placement_of(start, told);
+  if (!placement) return {};
+  const KeyframeId first = add_keyframe(start, start.first, *placement, parent, recording, map);
+  const KeyframeId second = add_keyframe(start, start.second, *placement, first, recording, map);
+  const auto renamed = [&](KeyframeId id) { return id == start.first ? first : second; };
+  for (const PointId id : start.map.point_ids()) {
+    MapPoint point = moved(*start.map.find_point(id), *placement);
+    point.reference.keyframe = renamed(point.reference.keyframe);
+    const PointId added = map.add_point(point);
+    for (const Observation& seen : start.map.observations(id)) {
+      Sighting sighting = start.map.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)];
+      sighting.point = added;
+      map.add_observation({renamed(seen.keyframe), seen.feature}, sighting);
+    }
+  }
+  return {first, second};
+}
+
+}  // namespace byre
