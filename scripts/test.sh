@@ -17,6 +17,8 @@ esac
 passed=0
 failed=0
 skipped=0
+failures=()
+failure_logs=()
 
 # The sanitizers of GCC 12 cannot start where the kernel spreads addresses wider than they expect.
 runner=()
@@ -36,6 +38,18 @@ print_slowest() {
     sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
 }
 
+# Keeps the names of a preset's failed tests, each with the end of what it printed, to be told once more at the end: by
+# then what ctest said of them is far up.
+keep_failures() {
+  local preset=$1 name reason
+  while read -r name reason; do
+    failures+=("$preset: $name $reason")
+    awk -v name="$name" '$2 == "Testing:" { mine = $3 == name } mine' "build/$preset/Testing/Temporary/LastTest.log" |
+      tail -n 60 >"build/failed_${preset}_$name.log"
+    failure_logs+=("build/failed_${preset}_$name.log")
+  done < <(sed -nE 's/^[[:space:]]+[0-9]+ - ([^ ]+) \((.*)\)$/\1 (\2)/p' "build/$preset/tests.log" | grep -v '(Skipped)$')
+}
+
 # Runs the tests of a preset and adds up what ctest's closing lines say; it counts skipped tests among the passed ones.
 run_tests() {
   local preset=$1 log=build/$1/tests.log closing skips
@@ -43,6 +57,7 @@ run_tests() {
   closing=$(grep -E 'tests? failed out of' "$log") || { echo "test.sh: no tests ran under $preset" >&2; exit 1; }
   [[ $closing =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]
   failed=$((failed + BASH_REMATCH[1]))
+  keep_failures "$preset"
   skips=$(grep -cE '^[[:space:]]+[0-9]+ - .* \(Skipped\)$' "$log" || true)
   passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - skips))
   skipped=$((skipped + skips))
@@ -60,6 +75,7 @@ check_format() {
   else
     echo "Mend with: clang-format -i FILE..."
     failed=$((failed + 1))
+    failures+=("formatting")
   fi
 }
 
@@ -84,12 +100,18 @@ if ! $quick; then
     grep -E 'stat::number_of_executed_units' build/fuzz.log || true
     passed=$((passed + 1))
   else
-    tail -n 40 build/fuzz.log
     failed=$((failed + 1))
+    failures+=("fuzzing")
+    failure_logs+=(build/fuzz.log)
   fi
 fi
 
+for log in "${failure_logs[@]}"; do
+  headline "$log"
+  tail -n 60 "$log"
+done
 echo
+((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"
 echo "$passed passed, $failed failed"
 ((failed == 0))

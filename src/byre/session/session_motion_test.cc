@@ -1,6 +1,9 @@
 // Sessions that are told by wheels or a gyroscope how the body has moved.
 
 #include "byre/session/session_scene.h"
+#include "byre/trajectory_error.h"
+
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
@@ -122,6 +125,51 @@ TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
                            error_of(report, mission, mission.frames.size() - 1) < 0.1;
     EXPECT_EQ(is_joined, is_told);
   }
+}
+
+// How long the map's unit is by the frames so far.
+double metres_per_unit(const std::vector<FrameReport>& reports, const SimulatedMission& mission) {
+  double seen = 0.0, true_way = 0.0;
+  for (std::size_t i = 1; i < reports.size(); ++i) {
+    if (!reports[i - 1].map_from_body || !reports[i].map_from_body || reports[i].health.doubt == Doubt::bridged)
+      continue;
+    seen += (inverse(*reports[i - 1].map_from_body) * *reports[i].map_from_body).translation.norm();
+    true_way +=
+        (mission.truth[i].world_from_body.translation - mission.truth[i - 1].world_from_body.translation).norm();
+  }
+  return seen > 0.0 ? true_way / seen : 1.0;
+}
+
+// One camera that recognises nothing after the dark: what it begins there has the scale that it is told.
+TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
+  Rig rig = simulated_rig();
+  rig.baseline = 0.0;
+  SimulationOptions visit;
+  visit.landmarks = 8000;
+  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(120, 10.0, 2.0, 1.0), visit);
+  constexpr std::size_t kFirstDark = 60, kFirstLight = 80;
+  SessionOptions options;
+  options.relocalise.min_inliers = 1000000;
+  options.min_kept_share = 0.0;
+  Session session(rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+  std::vector<FrameReport> reports;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 40) {
+      Pose pose = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+      pose.translation /= metres_per_unit(reports, mission);
+      motion = pose;
+    }
+    const bool is_dark = i >= kFirstDark && i < kFirstLight;
+    reports.push_back(session.process(is_dark ? dark(mission.frames[i], rig) : mission.frames[i], motion));
+  }
+  EXPECT_TRUE(std::ranges::any_of(reports, [](const FrameReport& r) { return r.has(SessionEvent::restarted); }));
+  EXPECT_NE(reports.back().health.doubt, Doubt::bridged);
+  session.finish();
+  const auto error = absolute_trajectory_error(associate(session.final_trajectory(), mission.truth, {}), Scale::free);
+  ASSERT_TRUE(error);
+  EXPECT_GT(session.final_trajectory().size(), 90u);
+  EXPECT_LT(error->translation.rmse, 0.05);
 }
 
 }  // namespace
