@@ -43,6 +43,16 @@ void Whereabouts::believe() {
   trajectory_.believe_all();
   since_believed_ = no_motion();
   bridge_.reset();
+  bridge_end_.reset();
+}
+
+// Precondition: the frame that was found is not in the trajectory yet.
+void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
+  bridge_end_.reset();
+  if (!bridge_ || !motion_.told()) return;
+  const Pose predicted = motion_.predict(byre::camera_from_world(map, trajectory_.back()), rig, 0.0);
+  const Pose first = byre::camera_from_world(map, trajectory_[bridge_begin_]);
+  bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
 FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) const {
@@ -77,6 +87,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   } else if (on_offline_map_) {
     confirmation_ = confirmation_of(evidence_of_find(seen.frame.time, body), registration_);
   }
+  if (seen.from_nothing && seen.is_registered) note_end_of_bridge(rig, map);
   progress.step = move_to(seen, body, rig, map);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
   const KeyframeId anchor = anchor_of(track);
@@ -86,6 +97,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   has_pose_ = true;
   last_seen_ = seen.frame.time;
   if (!confirmation_.is_believed()) return progress;
+  if (bridge_end_) trajectory_.bend(bridge_end_->first, bridge_end_->second, bridge_end_->told, map);
   believe();
   if (!seen.is_registered) return progress;
   last_believed_ = seen.frame.time;
@@ -116,6 +128,7 @@ void Whereabouts::lose() {
   motion_.lose();
   if (trajectory_.ends_in_doubt()) motion_.go_back_to(since_believed_);
   trajectory_.drop_doubtful();
+  bridge_end_.reset();
   odometry_.remember_offset({});
 }
 
@@ -124,6 +137,7 @@ bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
     if (!has_pose_) bridge_.reset();
     return false;
   }
+  if (!bridge_) bridge_begin_ = trajectory_.size() - 1;
   const AnchoredPose last = trajectory_.back();
   const Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
   bridge_ = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();

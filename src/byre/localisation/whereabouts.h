@@ -93,6 +93,7 @@ class Whereabouts {
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   void believe();
+  void note_end_of_bridge(const Rig& rig, const MapView& map);
 
   // Constant after construction.
   RegistrationOptions registration_;
@@ -102,6 +103,14 @@ class Whereabouts {
   MotionModel motion_;
   std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
   std::optional<BodyMotion> bridge_;
+  std::size_t bridge_begin_ = 0;  // index of the last pose before the bridge
+  // Poses led on by what was told, until the pose that was found after them is believed.
+  struct BridgeEnd {
+    std::size_t first = 0;   // index of the last pose before
+    std::size_t second = 0;  // index of the pose that was found
+    Pose told;               // first_from_second of the camera
+  };
+  std::optional<BridgeEnd> bridge_end_;
   PoseQuality quality_;
   std::optional<Timestamp> last_seen_;
   // Where the present segment was begun by a bridge, and how uncertain that was.

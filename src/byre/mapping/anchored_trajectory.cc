@@ -46,6 +46,19 @@ void AnchoredTrajectory::drop_doubtful() {
   hindsight_.forget_from(believed_end_);
 }
 
+void AnchoredTrajectory::bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map) {
+  const Pose first_from_world = byre::camera_from_world(map, poses_[first]);
+  const Pose seen = first_from_world * inverse(byre::camera_from_world(map, poses_[second]));
+  const Pose correction = seen * inverse(told);
+  const double seconds = to_seconds(poses_[second].time - poses_[first].time);
+  for (std::size_t i = first + 1; i < second; ++i) {
+    const double share = to_seconds(poses_[i].time - poses_[first].time) / seconds;
+    const Pose camera_from_first = byre::camera_from_world(map, poses_[i]) * inverse(first_from_world);
+    const Pose bent = camera_from_first * inverse(interpolate(Pose{}, correction, share)) * first_from_world;
+    poses_[i].camera_from_keyframe = bent * inverse(byre::camera_from_world(map, poses_[i].keyframe));
+  }
+}
+
 void AnchoredTrajectory::follow(const LengthChanges& changes) {
   for (AnchoredPose& pose : poses_) {
     const auto change = changes.find(pose.keyframe);

@@ -58,6 +58,10 @@ class AnchoredTrajectory {
   void believe_all() { believed_end_ = poses_.size(); }
   void drop_doubtful();
 
+  // The poses between two were led on from the first by what was told, and the second, seen again, is not where that
+  // led to: each takes its share, by time, of what the way was told wrongly. told: first_from_second, of the camera.
+  void bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map);
+
   // What was measured relative to keyframes, in lengths that have changed since.
   void follow(const LengthChanges& changes);
   // The cameras of a rig were turned, and those of its keyframes with them.

@@ -39,6 +39,32 @@ TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
   EXPECT_THAT(poses[1].world_from_body, PoseNear(body_pose(mission_.rig, kAhead * moved), 1e-12, 1e-12));
 }
 
+// Wheels that told a way straight ahead, where the robot turned to the left all along.
+TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
+  AnchoredTrajectory trajectory{HindsightOptions{}};
+  const Pose first = map_.camera_from_world(keyframes_[0]);
+  const Timestamp step = std::chrono::milliseconds(100);
+  Pose told, seen;  // from the first pose
+  const auto camera = [&](const Pose& first_from_camera) { return inverse(first_from_camera) * first; };
+  const auto anchored = [&](const Pose& camera_from_world) { return camera_from_world * inverse(first); };
+  trajectory.add({Timestamp(0), keyframes_[0], anchored(camera(told)), 0});
+  std::vector<Pose> truth{seen};
+  for (int i = 1; i < 10; ++i) {
+    told.translation.z() += 0.1;
+    truth.push_back(truth.back() * exp_pose((Vector6() << 0.0, 0.0, 0.1, 0.0, -0.02, 0.0).finished()));
+    trajectory.add({i * step, keyframes_[0], anchored(camera(told)), 0});
+  }
+  told.translation.z() += 0.1;
+  seen = truth.back() * exp_pose((Vector6() << 0.0, 0.0, 0.1, 0.0, -0.02, 0.0).finished());
+  trajectory.add({10 * step, keyframes_[0], anchored(camera(seen)), 0});
+  trajectory.bend(0, 10, told, map_);
+  for (std::size_t i = 0; i < 10; ++i) {
+    const Pose bent = first * inverse(byre::camera_from_world(map_, trajectory[i]));
+    EXPECT_LT((bent.translation - truth[i].translation).norm(), 0.03) << i;  // metres, of a way that was told 0.1 m off
+    EXPECT_LT(angle_between(bent.rotation, truth[i].rotation), 1e-6) << i;
+  }
+}
+
 TEST_F(AnchoredFrames, AreToldWhereTheirSegmentLiesInTheMapFrameAlone) {
   segments_.begin_in_own_frame(7);
   trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 1});
