@@ -24,10 +24,10 @@ void Whereabouts::tell(const std::optional<BodyMotion>& motion) {
   since_believed_ = since_believed_ && motion ? std::optional(*since_believed_ * *motion) : std::nullopt;
 }
 
-bool Whereabouts::may_be_led_back() const {
+bool Whereabouts::is_led_well() const {
   constexpr double kMostShare = 0.15;  // share of the depth of what was seen
   constexpr double kMostTurn = 0.1;    // radians
-  if (has_pose_ || !motion_.told() || trajectory_.empty()) return false;
+  if (!motion_.told() || trajectory_.empty()) return false;
   const Matrix6 covariance = (bridge_ ? *bridge_ * *motion_.told() : *motion_.told()).covariance;
   return std::sqrt(covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
          std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
@@ -60,6 +60,11 @@ FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) con
   if (trajectory_.empty()) return find;
   if (last_believed_) find.seconds_since_believed = to_seconds(time - *last_believed_);
   if (last_proven_) find.seconds_since_proven = to_seconds(time - *last_proven_);
+  if (bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted) {  // no time went by without a pose
+    const double seconds = to_seconds(time - trajectory_.back().time);
+    if (last_believed_) find.seconds_since_believed = seconds;
+    if (last_proven_) find.seconds_since_proven = seconds;
+  }
   find.shift = (body.translation - odometry_.map_from_body().translation).norm();
   return find;
 }

@@ -41,9 +41,10 @@ class Whereabouts {
   // Time of the last believed pose in the reports' frame.
   std::optional<Timestamp> last_believed() const { return last_believed_; }
   // The pose was lost, and it is known how the body has moved since, so well that points are found by it.
-  bool may_be_led_back() const;
-  // The way from the last pose that was seen to where the body is by what is told, while nothing is seen.
-  const std::optional<BodyMotion>& bridge() const { return bridge_; }
+  bool may_be_led_back() const { return !has_pose_ && is_led_well(); }
+  // The way from the last pose that was seen to where the body is by what is told; empty unless the last frame showed
+  // nothing.
+  std::optional<BodyMotion> bridge() const { return has_pose_ ? std::nullopt : bridge_; }
   const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present segment leaves open
@@ -92,6 +93,7 @@ class Whereabouts {
  private:
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+  bool is_led_well() const;  // by what was told since the last pose that was believed
   void believe();
   void note_end_of_bridge(const Rig& rig, const MapView& map);
 

@@ -60,7 +60,7 @@ HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) 
 // The poses of a frame that nothing was recognised in, by what is told of the body's motion since the last one.
 FrameReport bridged(FrameReport report, const FrameSummary& summary) {
   const Whereabouts& whereabouts = summary.whereabouts;
-  const BodyMotion& bridge = *whereabouts.bridge();
+  const BodyMotion bridge = *whereabouts.bridge();
   if (summary.is_bridged_in_map()) {
     report.map_from_body = whereabouts.odometry().map_from_body();
     report.covariance = whereabouts.covariance_of_bridge();
