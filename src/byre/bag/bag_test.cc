@@ -51,13 +51,13 @@ class BagFiles : public BagFolderTest {
 
   fs::path write_by_writer(const std::string& name) const {
     McapWriter writer(folder_ / name);
-    const std::uint16_t left = writer.add_topic<ros::Image>("/left/image_raw");
-    const std::uint16_t right = writer.add_topic<ros::Image>("/right/image_raw");
-    const std::uint16_t words = writer.add_topic<ros::String>("/words");
+    const std::uint16_t left = writer.add(ros::topic_of<ros::Image>("/left/image_raw"));
+    const std::uint16_t right = writer.add(ros::topic_of<ros::Image>("/right/image_raw"));
+    const std::uint16_t words = writer.add(ros::topic_of<ros::String>("/words"));
     for (const SceneMessage& message : scene_messages()) {
       const bool is_word = message.topic == "/words";
-      writer.write(is_word ? words : (message.topic == "/left/image_raw" ? left : right), message.log_time,
-                   message.bytes(ros::Encoding::cdr));
+      writer.put(is_word ? words : (message.topic == "/left/image_raw" ? left : right), message.log_time,
+                 message.bytes(ros::Encoding::cdr));
       if (is_word) writer.flush();
     }
     writer.close();

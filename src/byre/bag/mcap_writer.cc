@@ -33,11 +33,12 @@ void write_entries(ByteWriter& writer, const ByteWriter& entries) {
 }
 
 // The qualities of service that a recorder of ROS 2 would have found, as rosbag2 keeps them up to version 8.
-std::string qos_of(Durability durability) {
+std::string qos_of(ros::Durability durability) {
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
   return "- history: 1\n  depth: 10\n  reliability: 1\n  durability: " +
-         std::string(durability == Durability::kept ? "1" : "2") + "\n  deadline:" + forever + "  lifespan:" + forever +
-         "  liveliness: 1\n  liveliness_lease_duration:" + forever + "  avoid_ros_namespace_conventions: false";
+         std::string(durability == ros::Durability::kept ? "1" : "2") + "\n  deadline:" + forever +
+         "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
+         "  avoid_ros_namespace_conventions: false";
 }
 
 }  // namespace
@@ -48,10 +49,10 @@ McapWriter::McapWriter(const std::filesystem::path& path) : path_(path), file_(p
   header.write_text("byre " BYRE_VERSION);
   start.write_bytes(kMcapMagic);
   write_record(start, McapRecord::header, header);
-  put(start);
+  append(start);
 }
 
-void McapWriter::put(const ByteWriter& writer) {
+void McapWriter::append(const ByteWriter& writer) {
   file_.write(reinterpret_cast<const char*>(writer.bytes().data()), static_cast<std::streamsize>(writer.size()));
   position_ += writer.size();
   if (!file_) {
@@ -60,16 +61,15 @@ void McapWriter::put(const ByteWriter& writer) {
   }
 }
 
-std::uint16_t McapWriter::add_topic(const std::string& name, const std::string& type, const std::string& schema,
-                                    Durability durability) {
-  const auto known = std::ranges::find(schemas_, type, &Schema::type);
+McapWriter::TopicId McapWriter::add(ros::Topic topic) {
+  const auto known = std::ranges::find(schemas_, topic.type, &Schema::type);
   const auto id = static_cast<std::uint16_t>(known - schemas_.begin() + 1);
   if (known == schemas_.end()) {
-    schemas_.push_back({type, schema});
+    schemas_.push_back({std::move(topic.type), std::move(topic.schema)});
     write_schema(chunk_, id, schemas_.back());
   }
-  const auto channel = static_cast<std::uint16_t>(channels_.size());
-  channels_.push_back({name, id, durability});
+  const auto channel = static_cast<TopicId>(channels_.size());
+  channels_.push_back({std::move(topic.name), id, topic.durability});
   write_channel(chunk_, channel, channels_.back());
   return channel;
 }
@@ -95,7 +95,7 @@ void McapWriter::write_channel(ByteWriter& writer, std::uint16_t id, const Chann
   write_record(writer, McapRecord::channel, content);
 }
 
-void McapWriter::write(std::uint16_t topic, Timestamp time, std::span<const std::byte> cdr) {
+void McapWriter::put(TopicId topic, Timestamp time, std::vector<std::byte> cdr) {
   const auto log_time = static_cast<std::uint64_t>(time.count());
   Channel& channel = channels_[topic];
   if (chunk_messages_.empty()) chunk_start_ = chunk_end_ = log_time;
@@ -128,7 +128,7 @@ void McapWriter::flush() {
   content.write_bytes(compressed);
   write_record(record, McapRecord::chunk, content);
   chunk.length = record.size();
-  put(record);
+  append(record);
   write_message_indexes(chunk);
   file_.flush();
   chunks_.push_back(std::move(chunk));
@@ -149,7 +149,7 @@ void McapWriter::write_message_indexes(ChunkIndex& chunk) {
     write_entries(content, entries);
     write_record(record, McapRecord::message_index, content);
     chunk.message_indexes[topic] = position_;
-    put(record);
+    append(record);
   }
   chunk.message_index_length = position_ - begin;
 }
@@ -201,7 +201,7 @@ void McapWriter::close() {
   ByteWriter data_end, end;
   data_end.write(std::uint32_t{0});  // no checksum of all data
   write_record(end, McapRecord::data_end, data_end);
-  put(end);
+  append(end);
 
   const std::uint64_t summary_begin = position_;
   ByteWriter summary, offsets;
@@ -239,7 +239,7 @@ void McapWriter::close() {
   summary.write(offsets_begin);
   summary.write(checksum_of(summary.bytes()));
   summary.write_bytes(kMcapMagic);
-  put(summary);
+  append(summary);
   file_.close();
   if (!file_) throw InputError(path_.string(), "cannot be written", "check that its folder has space");
 }

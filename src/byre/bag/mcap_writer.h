@@ -1,8 +1,7 @@
 #pragma once
 
 #include "byre/input/byte_stream.h"
-#include "byre/ros/message_schema.h"
-#include "byre/ros/message_writer.h"
+#include "byre/ros/message_sink.h"
 #include "byre/trajectory.h"
 
 #include <cstdint>
@@ -10,32 +9,21 @@
 #include <fstream>
 #include <map>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace byre {
 
-// Whether who comes later still gets the last messages of a topic, as players offer them again.
-enum class Durability : std::uint8_t { only_new, kept };
-
 // Writes an MCAP file of ROS 2 messages (profile ros2): chunks compressed with zstd, indexed. What was written before
 // the program or the machine stops can be read, up to the last flush. All throw InputError when the file cannot be
 // written.
-class McapWriter {
+class McapWriter : public ros::MessageSink {
  public:
   explicit McapWriter(const std::filesystem::path& path);
 
-  // A topic, and how its messages are numbered below.
-  template <ros::Message M>
-  std::uint16_t add_topic(const std::string& name, Durability durability = Durability::only_new) {
-    return add_topic(name, std::string(M::kType), ros::message_schema<M>(), durability);
-  }
-  template <ros::Message M>
-  void write(std::uint16_t topic, Timestamp time, const M& message) {
-    write(topic, time, ros::write_message(message, ros::Encoding::cdr));
-  }
-  void write(std::uint16_t topic, Timestamp time, std::span<const std::byte> cdr);
+  TopicId add(ros::Topic topic) override;
+  bool is_wanted(TopicId /*topic*/) const override { return true; }
+  void put(TopicId topic, Timestamp time, std::vector<std::byte> cdr) override;
 
   void flush();  // ends the chunk, so that it is on its way to the disk
   void close();  // writes the summary. To be called once, as the last
@@ -44,7 +32,7 @@ class McapWriter {
   struct Channel {
     std::string topic;
     std::uint16_t schema = 0;
-    Durability durability{};
+    ros::Durability durability{};
     std::uint64_t messages = 0;
   };
   struct Schema {
@@ -59,14 +47,12 @@ class McapWriter {
     std::uint64_t compressed_size = 0, size = 0;
   };
 
-  std::uint16_t add_topic(const std::string& name, const std::string& type, const std::string& schema,
-                          Durability durability);
   static void write_schema(ByteWriter& writer, std::uint16_t id, const Schema& schema);
   static void write_channel(ByteWriter& writer, std::uint16_t id, const Channel& channel);
   static void write_chunk_index(ByteWriter& writer, const ChunkIndex& chunk);
   void write_statistics(ByteWriter& writer) const;
   void write_message_indexes(ChunkIndex& chunk);
-  void put(const ByteWriter& writer);
+  void append(const ByteWriter& writer);
 
   std::filesystem::path path_;  // constant after construction
   std::ofstream file_;
