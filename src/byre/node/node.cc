@@ -41,7 +41,8 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       graph_(participant_, {config.name, config.name_space.empty() ? "/" : config.name_space}),
       calibration_source_(config, participant_, graph_),
       runner_(config),
-      outputs_(config, participant_, graph_),
+      watchers_(config.http_port ? std::make_shared<LiveTopics>() : nullptr),
+      outputs_(config, participant_, graph_, watchers_.get()),
       pairs_(pairing_options(config)),
       watch_(config.topic(config.left), steady_now()) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
@@ -64,8 +65,8 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   graph_.tell();
   if (config.http_port) {
     web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
-                        std::make_unique<StatusSite>(board_));
-    for (const std::string& url : web_server_->urls()) log_("healthz and metrics are served at " + url);
+                        std::make_unique<StatusSite>(board_), watchers_);
+    for (const std::string& url : web_server_->urls()) log_("healthz, metrics and Foxglove are served at " + url);
   }
 }
 
@@ -171,6 +172,8 @@ void Node::process(const Pairs::Pair& pair) {
     CameraImages images{left.view()};
     if (right) images.right = right->view();
     const FrameReport report = runner_.process(images);
+    outputs_.tell_images(pair.stamp, pair.left.bytes(),
+                         pair.right ? pair.right->bytes() : std::span<const std::byte>());
     if (!std::exchange(has_told_cameras_, true)) {
       outputs_.tell_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
     }
@@ -260,6 +263,7 @@ void Node::run(const std::function<bool()>& should_stop) {
       if (const auto pair = pairs_.next(now)) process(*pair);
     }
     tell_state(steady_now());
+    if (web_server_) web_server_->wake();
   }
   manager_.stopping();
   if (runner_.has_anything_to_save()) log_(runner_.save());

@@ -12,6 +12,7 @@
 #include "byre/node/service_manager.h"
 #include "byre/node/slam_runner.h"
 #include "byre/node/stamp_clock.h"
+#include "byre/viewer/live_topics.h"
 #include "byre/viewer/status_site.h"
 #include "byre/viewer/web_server.h"
 
@@ -57,6 +58,7 @@ class Node {
   GraphAnnouncement graph_;
   CalibrationSource calibration_source_;
   SlamRunner runner_;
+  std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
   std::optional<Subscriber> left_, right_, command_, initial_pose_;
   Pairs pairs_;
@@ -65,7 +67,7 @@ class Node {
   PoseFrames pose_frames_;
   ServiceManager manager_;
   std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
-  std::optional<WebServer> web_server_;  // reads the board
+  std::optional<WebServer> web_server_;  // reads the board, and serves watchers
 
   std::optional<Calibration> calibration_;  // once it is known
   std::string left_frame_;                  // frame of the left images; empty before the first one

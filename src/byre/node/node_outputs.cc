@@ -20,23 +20,36 @@ constexpr TopicQos kLatched{.is_reliable = true, .is_latched = true, .depth = 1}
 constexpr TopicQos kTransforms{.is_reliable = true, .is_latched = false, .depth = 100};
 constexpr TopicQos kEvents{.is_reliable = true, .is_latched = true, .depth = 50};
 
-ros::Time wall_time() {
-  return ros::to_time(std::chrono::system_clock::now().time_since_epoch());
-}
-
 }  // namespace
 
-template <ros::Message T>
-NodeOutputs::Output NodeOutputs::open(const std::string& topic, const TopicQos& qos) {
-  const std::string name = config_.topic(topic);
-  if (name.empty()) return std::nullopt;
-  Publisher publisher = participant_.publish(name, message_type<T>(), qos);
-  graph_.add(publisher);
-  return publisher;
+Timestamp NodeOutputs::wall_time() {
+  return std::chrono::system_clock::now().time_since_epoch();
 }
 
-NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph)
-    : config_(config), participant_(participant), graph_(graph) {
+template <ros::Message T>
+NodeOutputs::OptionalOutput NodeOutputs::open(const std::string& topic, const TopicQos& qos) {
+  const std::string name = config_.topic(topic);
+  if (name.empty()) return std::nullopt;
+  Output output{participant_.publish(name, message_type<T>(), qos), {}};
+  graph_.add(output.publisher);
+  const auto durability = qos.is_latched ? ros::Durability::kept : ros::Durability::only_new;
+  if (watchers_ != nullptr) output.watched = watchers_->add(ros::topic_of<T>(name, durability));
+  return output;
+}
+
+bool NodeOutputs::is_wanted(const OptionalOutput& output) const {
+  if (!output) return false;
+  return output->publisher.has_subscribers() || (output->watched && watchers_->is_wanted(*output->watched));
+}
+
+void NodeOutputs::send_bytes(Output& output, std::vector<std::byte> cdr) {
+  if (output.watched) watchers_->put(*output.watched, stamp_, cdr);
+  output.publisher.publish(std::move(cdr));
+}
+
+NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph,
+                         ros::MessageSink* watchers)
+    : config_(config), participant_(participant), graph_(graph), watchers_(watchers) {
   odometry_ = open<ros::Odometry>(config.odometry, kReliable);
   pose_ = open<ros::PoseWithCovarianceStamped>(config.pose, kLatched);
   if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>("/tf", kTransforms);
@@ -49,6 +62,24 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, Gra
   if (config.plan) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
   health_ = open<ros::String>(config.health, kLatched);
   events_ = open<ros::String>(config.events, kEvents);
+  if (watchers_ == nullptr) return;
+  const auto watch_images = [this](const std::string& topic) {
+    const std::string name = config_.topic(topic);
+    return watchers_->add(config_.is_compressed ? ros::topic_of<ros::CompressedImage>(name)
+                                                : ros::topic_of<ros::Image>(name));
+  };
+  left_ = watch_images(config.left);
+  if (config.has_right()) right_ = watch_images(config.right);
+}
+
+void NodeOutputs::tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right) {
+  stamp_ = stamp;
+  const auto tell = [&](const std::optional<ros::MessageSink::TopicId>& topic, std::span<const std::byte> image) {
+    if (!topic || image.empty() || !watchers_->is_wanted(*topic)) return;
+    watchers_->put(*topic, stamp, {image.begin(), image.end()});
+  };
+  tell(left_, left);
+  tell(right_, right);
 }
 
 ros::Header NodeOutputs::in_map(const ros::Header& image) const {
@@ -101,7 +132,7 @@ void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report
     send(pose_, pose_message(in_map(image), *map_from_body, report.covariance));
   }
   tell_transforms(image, frames);
-  if (health_ && health_->has_subscribers()) send_text(health_, health_line(report, map_from_body));
+  if (is_wanted(health_)) send_text(health_, health_line(report, map_from_body));
   tell_events(report);
   ++frames_;
 }
@@ -109,7 +140,7 @@ void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report
 void NodeOutputs::tell_cameras(const Calibration& calibration, const std::string& left_frame,
                                const std::string& right_frame) {
   if (!tf_static_) return;
-  const ros::Header header{wall_time(), config_.base_frame};
+  const ros::Header header{ros::to_time(wall_time()), config_.base_frame};
   ros::TFMessage message;
   const auto add = [&](const std::string& frame, const Pose& base_from_camera) {
     if (!frame.empty() && frame != config_.base_frame) {
@@ -124,7 +155,7 @@ void NodeOutputs::tell_cameras(const Calibration& calibration, const std::string
 }
 
 void NodeOutputs::tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses) {
-  send(diagnostics_, ros::DiagnosticArray{{wall_time(), ""}, std::move(statuses)});
+  send(diagnostics_, ros::DiagnosticArray{{ros::to_time(wall_time()), ""}, std::move(statuses)});
 }
 
 void NodeOutputs::tell_answer(const std::string& asked, bool is_done, const std::string& answer) {
@@ -135,22 +166,22 @@ void NodeOutputs::tell_answer(const std::string& asked, bool is_done, const std:
 void NodeOutputs::tell_plan() {
   if (!grid_) return;
   ros::OccupancyGrid grid = grid_of(read_floor_plan(*config_.plan));
-  grid.header = {wall_time(), config_.map_frame};
+  grid.header = {ros::to_time(wall_time()), config_.map_frame};
   grid.info.map_load_time = grid.header.stamp;
   send(grid_, grid);
 }
 
 void NodeOutputs::tell_path(const SlamRunner& runner, Timestamp image_time) {
-  if (!path_ || !path_->has_subscribers()) return;
+  if (!is_wanted(path_)) return;
   const ros::Header header{ros::to_time(image_time), config_.map_frame};
   send(path_,
        path_message(header, runner.trajectory(), [&runner](const Pose& pose) { return runner.published(pose); }));
 }
 
 void NodeOutputs::tell_points(const SlamRunner& runner) {
-  if (!points_ || !points_->has_subscribers()) return;
+  if (!is_wanted(points_)) return;
   if (std::exchange(has_told_points_, true) && !runner.makes_a_map()) return;
-  send(points_, cloud_message({wall_time(), config_.map_frame}, runner.points()));
+  send(points_, cloud_message({ros::to_time(wall_time()), config_.map_frame}, runner.points()));
 }
 
 }  // namespace byre

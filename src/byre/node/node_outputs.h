@@ -6,10 +6,11 @@
 #include "byre/node/node_config.h"
 #include "byre/node/pose_frames.h"
 #include "byre/node/slam_runner.h"
-#include "byre/ros/message_writer.h"
+#include "byre/ros/message_sink.h"
 #include "byre/ros/messages.h"
 
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -19,12 +20,15 @@ namespace byre {
 // What a node tells, and how. Topics that are left out are not there.
 class NodeOutputs {
  public:
-  NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
+  // watchers: where everything is told as well; null for nowhere. All but the settings outlive this.
+  NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
   // Everything about a frame. image: of its left image; map_from_body: pose in the map frame that is published.
   void tell_frame(const ros::Header& image, const FrameReport& report, const std::optional<Pose>& map_from_body,
                   const PoseFrames& frames);
   void tell_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
+  // Images as they came, to watchers alone.
+  void tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
   void tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
   void tell_answer(const std::string& asked, bool is_done, const std::string& answer);
   void tell_plan();
@@ -34,24 +38,35 @@ class NodeOutputs {
   void forget_points() { has_told_points_ = false; }  // another map is loaded
 
  private:
-  using Output = std::optional<Publisher>;
+  // A topic that is told, to readers of DDS and to watchers.
+  struct Output {
+    Publisher publisher;
+    std::optional<ros::MessageSink::TopicId> watched;
+  };
+  using OptionalOutput = std::optional<Output>;  // empty: it is left out
 
   template <ros::Message T>
-  Output open(const std::string& topic, const TopicQos& qos);
+  OptionalOutput open(const std::string& topic, const TopicQos& qos);
+  bool is_wanted(const OptionalOutput& output) const;
   template <ros::Message T>
-  void send(Output& output, const T& message) {
-    if (output) output->publish(ros::write_message(message, ros::Encoding::cdr));
+  void send(OptionalOutput& output, const T& message) {
+    if (output) send_bytes(*output, ros::write_message(message, ros::Encoding::cdr));
   }
-  void send_text(Output& output, const std::string& text) { send(output, ros::String{text}); }
+  void send_bytes(Output& output, std::vector<std::byte> cdr);
+  void send_text(OptionalOutput& output, const std::string& text) { send(output, ros::String{text}); }
   void tell_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base);
   void tell_transforms(const ros::Header& image, const PoseFrames& frames);
   void tell_events(const FrameReport& report);
+  static Timestamp wall_time();
   ros::Header in_map(const ros::Header& image) const;
 
-  NodeConfig config_;         // constant after construction
-  Participant& participant_;  // outlives this
-  GraphAnnouncement& graph_;  // outlives this
-  Output odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
+  NodeConfig config_;                                      // constant after construction
+  Participant& participant_;                               // outlives this
+  GraphAnnouncement& graph_;                               // outlives this
+  ros::MessageSink* watchers_;                             // outlives this; null without watchers
+  std::optional<ros::MessageSink::TopicId> left_, right_;  // images as watchers see them
+  Timestamp stamp_ = wall_time();                          // stamp of the last image, or of the beginning
+  OptionalOutput odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
   struct LastPose {
     Timestamp time{};
     Pose odom_from_base;

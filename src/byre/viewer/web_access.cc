@@ -21,6 +21,27 @@ bool is_own_page(const WebOrigin& from) {
   return from.origin.empty() || (from.origin.starts_with(kScheme) && from.origin.substr(kScheme.size()) == from.host);
 }
 
+// The name of the machine in "http://name:port" or "https://name".
+std::string_view machine_of(std::string_view origin) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (origin.starts_with(scheme)) return name_in(origin.substr(scheme.size()));
+  }
+  return {};
+}
+
+bool is_application_of_foxglove(std::string_view origin) {
+  constexpr std::array<std::string_view, 3> kPages = {"https://app.foxglove.dev", "https://studio.foxglove.dev",
+                                                      "file://"};
+  constexpr std::array<std::string_view, 3> kOwnNames = {"localhost", "127.0.0.1", "[::1]"};
+  return std::ranges::find(kPages, origin) != kPages.end() ||
+         std::ranges::find(kOwnNames, machine_of(origin)) != kOwnNames.end();
+}
+
+bool may_ask(const WebAccess& access, const WebOrigin& from) {
+  if (is_own_page(from)) return true;
+  return from.is_foxglove && (!access.token.empty() || is_application_of_foxglove(from.origin));
+}
+
 bool equal_in_constant_time(std::string_view given, std::string_view secret) {
   unsigned difference = given.size() == secret.size() ? 0 : 1;
   for (std::size_t i = 0; i < secret.size(); ++i) {
@@ -58,7 +79,7 @@ std::string make_token() {
 std::string_view refusal(const WebAccess& access, const WebOrigin& from) {
   if (!access.host_names.empty() && std::ranges::find(access.host_names, name_in(from.host)) == access.host_names.end())
     return "byre answers on this machine only, by the name localhost";
-  if (!is_own_page(from)) return "byre answers its own page only";
+  if (!may_ask(access, from)) return "byre answers its own page only";
   if (!access.token.empty() && !equal_in_constant_time(query_value(from.target, "token"), access.token))
     return "the token is missing or wrong: open the address that byre printed when it started";
   return {};

@@ -24,11 +24,15 @@ std::string make_token();
 
 // What a request says of where it comes from; header fields are empty when they are missing.
 struct WebOrigin {
-  std::string_view host;    // header Host
-  std::string_view origin;  // header Origin: sent by browsers, names the page that asks
-  std::string_view target;  // path and query
+  std::string_view host;     // header Host
+  std::string_view origin;   // header Origin: sent by browsers, names the page that asks
+  std::string_view target;   // path and query
+  bool is_foxglove = false;  // whether it asks to speak Foxglove's protocol
 };
 
+// A page that asks must be byre's own. Foxglove's protocol is also spoken with the applications that know it: those of
+// Foxglove and those that this machine serves or has as files; through the network with whoever has the token.
+//
 // Why a request is refused, for whoever reads it in a browser; empty when it is not. Tokens are compared in a time that
 // tells nothing of them.
 std::string_view refusal(const WebAccess& access, const WebOrigin& from);

@@ -26,6 +26,25 @@ TEST(WebAccess, IsForTheOwnPageOnly) {
   EXPECT_THAT(refusal(access, {"localhost:8017", "null", "/"}), Not(IsEmpty()));
 }
 
+TEST(WebAccess, LetsApplicationsOfFoxgloveSpeakTheirProtocolAlone) {
+  const WebAccess access = access_to("127.0.0.1");
+  for (const char* page : {"", "https://app.foxglove.dev", "file://", "http://localhost:8080", "https://[::1]"}) {
+    EXPECT_THAT(refusal(access, {"localhost:8017", page, "/", true}), IsEmpty()) << page;
+  }
+  for (const char* page : {"https://elsewhere.example", "https://app.foxglove.dev.elsewhere.example", "null",
+                           "http://localhost.elsewhere.example", "http://127.0.0.1.elsewhere.example"}) {
+    EXPECT_THAT(refusal(access, {"localhost:8017", page, "/", true}), Not(IsEmpty())) << page;
+  }
+  EXPECT_THAT(refusal(access, {"localhost:8017", "https://app.foxglove.dev", "/", false}), Not(IsEmpty()));
+}
+
+TEST(WebAccess, ThroughTheNetworkFoxgloveNeedsTheTokenWhateverItsPage) {
+  const WebAccess access = access_to("192.0.2.7");
+  const std::string with_token = "/?token=" + access.token;
+  EXPECT_THAT(refusal(access, {"barn.example", "https://own.example", with_token, true}), IsEmpty());
+  EXPECT_THAT(refusal(access, {"barn.example", "https://app.foxglove.dev", "/", true}), Not(IsEmpty()));
+}
+
 TEST(WebAccess, ThroughTheNetworkNeedsTheToken) {
   const WebAccess access = access_to("192.0.2.7");
   EXPECT_THAT(access.token, SizeIs(32));

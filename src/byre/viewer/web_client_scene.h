@@ -58,9 +58,23 @@ class WebClient {
 // A page that listens. Throws boost::system::system_error when it is refused, and when the connection ends.
 class LiveClient {
  public:
-  explicit LiveClient(int port, const std::string& target = "/live")
+  // headers: those of its request, beside what a WebSocket needs
+  explicit LiveClient(int port, const std::string& target = "/live", const WebClient::Headers& headers = {})
       : stream_(WebClient::connected(context_, static_cast<std::uint16_t>(port))) {
-    stream_.handshake("localhost:" + std::to_string(port), target);
+    namespace websocket = boost::beast::websocket;
+    stream_.set_option(websocket::stream_base::decorator([headers](websocket::request_type& request) {
+      for (const auto& [name, value] : headers) request.set(name, value);
+    }));
+    websocket::response_type response;
+    stream_.handshake(response, "localhost:" + std::to_string(port), target);
+    protocol_ = std::string(response[boost::beast::http::field::sec_websocket_protocol]);
+  }
+
+  const std::string& protocol() const { return protocol_; }  // sub-protocol that the server chose
+
+  void say(const std::string& bytes, bool is_binary = false) {
+    stream_.binary(is_binary);
+    stream_.write(boost::asio::buffer(bytes));
   }
 
   struct Message {
@@ -79,6 +93,7 @@ class LiveClient {
  private:
   boost::asio::io_context context_;
   boost::beast::websocket::stream<boost::asio::ip::tcp::socket> stream_;
+  std::string protocol_;
 };
 
 }  // namespace byre

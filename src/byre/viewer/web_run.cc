@@ -140,7 +140,8 @@ RunViewer::RunViewer(RunDescription description, const RunViewerOptions& options
     : map_interval_(options.map_interval),
       last_time_(description.last_time),
       mailbox_(std::make_shared<RunMailbox>()),
-      server_(options.server, std::make_unique<RunSite>(description, options, mailbox_)) {}
+      topics_(std::make_shared<LiveTopics>()),
+      server_(options.server, std::make_unique<RunSite>(description, options, mailbox_), topics_) {}
 
 void RunViewer::show(const Image& recorded_left, const FrameReport& report, const Session& session) {
   const Map& online = session.map().online();

@@ -47,6 +47,10 @@ class RunViewer {
   // Call it after each frame, from the thread that runs the session.
   void show(const Image& recorded_left, const FrameReport& report, const Session& session);
 
+  // Where messages of the run go for those who watch by Foxglove's protocol. Put what is known of a frame there before
+  // it is shown.
+  ros::MessageSink& messages() { return *topics_; }
+
   // No more frames will come.
   void end_run();
 
@@ -57,6 +61,7 @@ class RunViewer {
   std::chrono::milliseconds map_interval_;
   Timestamp last_time_;
   std::shared_ptr<RunMailbox> mailbox_;
+  std::shared_ptr<LiveTopics> topics_;
   WebServer server_;
 
   // Owned by the calling thread.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/viewer/live_topics.h"
 #include "byre/viewer/web_guests.h"
 #include "byre/viewer/web_site.h"
 
@@ -21,7 +22,9 @@ struct WebServerOptions {
 class WebServer {
  public:
   // Throws InputError when the address is none of this machine's or the port is in use or not allowed.
-  WebServer(const WebServerOptions& options, std::unique_ptr<WebSite> site);
+  // topics: told to whoever speaks Foxglove's protocol, at any path; without them nobody is.
+  WebServer(const WebServerOptions& options, std::unique_ptr<WebSite> site,
+            std::shared_ptr<LiveTopics> topics = nullptr);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
@@ -31,7 +34,8 @@ class WebServer {
   const std::vector<std::string>& urls() const;
   int port() const;
 
-  // Has the site refreshed and listeners told what is new, soon and in the server's thread. May be called from any.
+  // Has the site refreshed, messages of the topics taken and listeners told what is new, soon and in the server's
+  // thread. May be called from any.
   void wake();
 
  private:

@@ -101,19 +101,20 @@ class EventFile {
   bool has_failed_ = false;
 };
 
-MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options, RunViewer* viewer,
-                   EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
+MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options,
+                   WatchedRunViewer* viewer, EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
-  if (viewer != nullptr) hooks.look = shown_in(*viewer);
-  if (record.is_wanted()) {
-    hooks.look = [&record, show = hooks.look](const RunView& view) {
-      if (show) show(view);
+  if (viewer != nullptr || record.is_wanted()) {
+    hooks.look = [&record, viewer](const RunView& view) {
+      if (viewer != nullptr) viewer->note(view);
       record.note(view);
     };
   }
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
-    if (!frame.report) record.note_unread(frame);
+    if (frame.report) return;
+    record.note_unread(frame);
+    if (viewer != nullptr) viewer->note_unread(frame);
   };
   return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
 }
@@ -155,16 +156,18 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
 
   limit_image_threads(1);
   if (!options.quiet) show_check(std::cerr, *opened.recording);
-  const std::unique_ptr<RunViewer> viewer =
-      options.view.is_wanted
-          ? start_viewer(options.view, {options.recording, *opened.recording, options.map, protocol.options.offline})
-          : nullptr;
+  std::optional<WatchedRunViewer> viewer;
+  if (options.view.is_wanted) {
+    viewer.emplace(options.view,
+                   WatchedRun{options.recording, *opened.recording, options.map, protocol.options.offline});
+  }
   const InterruptCatcher interrupt(options.outputs());
   EventFile events(options.events);
   RecordFile record(options.record, opened.recording->calibration(), options.record_images);
-  MapRun run = run_and_log(*opened.recording, protocol, options, viewer.get(), events, record, interrupt);
+  MapRun run =
+      run_and_log(*opened.recording, protocol, options, viewer ? &*viewer : nullptr, events, record, interrupt);
   record.finish(run);
-  if (viewer) viewer->end_run();
+  if (viewer) viewer->finish(run);
   if (options.online_map && run.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();

@@ -41,6 +41,13 @@ bool has_terminal() {
   return isatty(STDIN_FILENO) != 0 || isatty(STDOUT_FILENO) != 0;
 }
 
+RunViewer start_viewer(const ViewOptions& options, const WatchedRun& run) {
+  RunViewerOptions viewer_options;
+  viewer_options.server = options.server;
+  allow_many_descriptors();
+  return RunViewer(describe(options, run), viewer_options);
+}
+
 std::string describe_stay(double stay_s, bool is_asked_for) {
   if (stay_s == std::numeric_limits<double>::infinity()) return "goes on until Ctrl-C";
   if (stay_s > 0.0) return formatted("goes on for %g s, or until Ctrl-C", stay_s);
@@ -49,17 +56,24 @@ std::string describe_stay(double stay_s, bool is_asked_for) {
 
 }  // namespace
 
-std::unique_ptr<RunViewer> start_viewer(const ViewOptions& options, const WatchedRun& run) {
-  RunViewerOptions viewer_options;
-  viewer_options.server = options.server;
-  allow_many_descriptors();
-  auto viewer = std::make_unique<RunViewer>(describe(options, run), viewer_options);
-  announce(viewer->urls());
-  return viewer;
+WatchedRunViewer::WatchedRunViewer(const ViewOptions& options, const WatchedRun& run)
+    : viewer_(start_viewer(options, run)),
+      messages_(viewer_.messages(), run.opened.calibration(), {.with_images = true, .is_watched = true}) {
+  announce(viewer_.urls());
 }
 
-std::function<void(const RunView& view)> shown_in(RunViewer& viewer) {
-  return [&viewer](const RunView& view) { viewer.show(view.images.left, *view.frame.report, view.session); };
+void WatchedRunViewer::note(const RunView& view) {
+  messages_.note(view);
+  viewer_.show(view.images.left, *view.frame.report, view.session);
+}
+
+void WatchedRunViewer::note_unread(const MappedFrame& frame) {
+  messages_.note_unread(frame);
+}
+
+void WatchedRunViewer::finish(const MapRun& run) {
+  messages_.finish(run);
+  viewer_.end_run();
 }
 
 void announce(const std::vector<std::string>& urls) {

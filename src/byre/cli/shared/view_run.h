@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/assessment/run_messages.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/view_options.h"
 #include "byre/playback/map_run.h"
@@ -20,12 +21,23 @@ struct WatchedRun {
   std::shared_ptr<const OfflineMap> offline;  // what is in it
 };
 
-// Tells its addresses on the standard error stream, quiet or not. Throws InputError when the port cannot be had or the
-// plan cannot be read, and when the map was not registered on a plan.
-std::unique_ptr<RunViewer> start_viewer(const ViewOptions& options, const WatchedRun& run);
+// A run that is watched: in the viewer, and as messages of ROS by whoever speaks Foxglove's protocol.
+class WatchedRunViewer {
+ public:
+  // Tells its addresses on the standard error stream, quiet or not. Throws InputError when the port cannot be had or
+  // the plan cannot be read, and when the map was not registered on a plan.
+  WatchedRunViewer(const ViewOptions& options, const WatchedRun& run);
 
-// What hands each frame to the viewer.
-std::function<void(const RunView& view)> shown_in(RunViewer& viewer);
+  // One of both after each frame, in order.
+  void note(const RunView& view);              // where its images could be read
+  void note_unread(const MappedFrame& frame);  // where they could not
+
+  void finish(const MapRun& run);  // no more frames will come
+
+ private:
+  RunViewer viewer_;
+  RunMessages messages_;  // put where the viewer says
+};
 
 // Tells at which addresses a viewer can be opened, on the standard error stream.
 void announce(const std::vector<std::string>& urls);

@@ -1,0 +1,80 @@
+#include "byre/viewer/live_topics.h"
+
+#include "byre/ros/messages.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class LiveTopicsTest : public testing::Test {
+ protected:
+  // The times of what is taken.
+  static std::vector<int> taken(LiveTopics& topics) {
+    std::vector<int> times;
+    for (const LiveMessage& message : topics.take()) times.push_back(static_cast<int>(message.time.count()));
+    return times;
+  }
+  static std::vector<std::byte> bytes(std::size_t count) { return std::vector<std::byte>(count); }
+
+  LiveTopics topics_{100};
+  LiveTopics::TopicId passing_ = topics_.add(ros::topic_of<ros::String>("/passing"));
+  LiveTopics::TopicId kept_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::kept));
+};
+
+TEST_F(LiveTopicsTest, TakeMessagesOnlyWhileSomebodyWants) {
+  EXPECT_FALSE(topics_.is_wanted(passing_));
+  topics_.put(passing_, Timestamp(1), bytes(4));
+  topics_.subscribe(passing_);
+  EXPECT_TRUE(topics_.is_wanted(passing_));
+  EXPECT_FALSE(topics_.is_wanted(kept_));
+  topics_.put(passing_, Timestamp(2), bytes(4));
+  EXPECT_THAT(taken(topics_), ElementsAre(2));
+  EXPECT_THAT(taken(topics_), IsEmpty());
+  topics_.unsubscribe(passing_);
+  topics_.put(passing_, Timestamp(3), bytes(4));
+  EXPECT_THAT(taken(topics_), IsEmpty());
+}
+
+TEST_F(LiveTopicsTest, KeepTheLastMessageOfTopicsThatSaySo) {
+  EXPECT_FALSE(topics_.kept(kept_));
+  topics_.put(kept_, Timestamp(1), bytes(4));
+  topics_.put(kept_, Timestamp(2), bytes(4));
+  topics_.take();
+  ASSERT_TRUE(topics_.kept(kept_));
+  EXPECT_EQ(topics_.kept(kept_)->time, Timestamp(2));
+  EXPECT_FALSE(topics_.kept(passing_));
+}
+
+TEST_F(LiveTopicsTest, LeaveOutTheOldestWhereNobodyTakes) {
+  topics_.subscribe(passing_);
+  for (int time = 1; time <= 5; ++time) topics_.put(passing_, Timestamp(time), bytes(40));
+  EXPECT_THAT(taken(topics_), ElementsAre(4, 5));
+}
+
+TEST_F(LiveTopicsTest, NeverLeaveOutTheLastMessageOfATopicThatKeepsIt) {
+  topics_.subscribe(passing_);
+  topics_.put(kept_, Timestamp(1), bytes(40));
+  topics_.put(kept_, Timestamp(2), bytes(40));
+  topics_.put(passing_, Timestamp(3), bytes(40));
+  topics_.put(passing_, Timestamp(4), bytes(40));
+  EXPECT_THAT(taken(topics_), ElementsAre(2, 4));
+}
+
+TEST_F(LiveTopicsTest, TellTopicsFromANumberOn) {
+  ASSERT_EQ(topics_.topics_from(1).size(), 1u);
+  EXPECT_EQ(topics_.topics_from(1)[0].name, "/kept");
+  EXPECT_THAT(topics_.topics_from(2), IsEmpty());
+  EXPECT_THAT(topics_.topics_from(3), IsEmpty());
+  EXPECT_TRUE(topics_.is_known(1));
+  EXPECT_FALSE(topics_.is_known(2));
+}
+
+}  // namespace
+}  // namespace byre
