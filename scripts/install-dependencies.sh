@@ -13,8 +13,9 @@ packages=(
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # the program
   libcli11-dev python3
-  # byre node, and the test with another DDS, whose types are made by a program in Java
-  cyclonedds-dev libsystemd-dev
+  # byre node, and the tests with a broker of MQTT and with another DDS, whose types are made by a program in Java
+  cyclonedds-dev libsystemd-dev libmosquitto-dev
+  mosquitto
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
   # the package for Python
   pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-wheel

@@ -26,7 +26,7 @@ FLOORS = [
     {"system"},
     {"playback"},
     {"archive"},
-    {"assessment", "viewer"},
+    {"assessment", "viewer", "fleet"},
     {"benchmark"},
     {"demo", "node"},
     {"cli"},
@@ -50,7 +50,7 @@ EVERY_ROOM = frozenset(FLOOR)
 # Headers that only some rooms may include. Tests are free to.
 KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "workers", "simulation", "mapping", "playback", "viewer", "cli"},
+        "workers", "simulation", "mapping", "playback", "viewer", "fleet", "cli"},
     r"mutex|shared_mutex": {"workers", "viewer"},
     r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
                             "archive", "viewer", "benchmark", "demo", "node", "cli"},
@@ -62,7 +62,8 @@ KEPT_IN = {
     r"opencv2/.*": {"features", "dataset", "simulation", "viewer", "node"},
     r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},
-    r"nlohmann/.*": {"assessment", "viewer", "benchmark", "node", "cli"},
+    r"nlohmann/.*": {"assessment", "viewer", "fleet", "benchmark", "node", "cli"},
+    r"mosquitto\.h": {"fleet"},
     r"systemd/.*": {"node"},
 }
 

@@ -63,6 +63,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
   graph_.tell();
+  if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
   if (config.http_port) {
     web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
                         std::make_unique<StatusSite>(board_), watchers_);
@@ -115,6 +116,7 @@ void Node::answer(const std::string& asked, const std::function<std::string()>& 
 
 void Node::begin_anew() {
   pose_frames_.begin_anew();
+  if (fleet_) fleet_->begin_anew();
   outputs_.forget_points();
   map_from_body_.reset();
   last_report_.reset();
@@ -197,6 +199,7 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   map_from_body_ = report.map_from_body ? std::optional(runner_.published(*report.map_from_body)) : std::nullopt;
   pose_frames_.note(report, map_from_body_);
   outputs_.tell_frame(left.header, report, map_from_body_, pose_frames_);
+  if (fleet_) fleet_->note(report, map_from_body_, steady_now(), advice_for(report.health.doubt));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
   note_events(report);
   last_report_ = report;
@@ -250,6 +253,12 @@ void Node::tell_state(Timestamp now) {
   arrived_at_last_sign_ = watch_.arrived();
 }
 
+void Node::tell_fleet(Timestamp now) {
+  if (!fleet_) return;
+  if (const auto news = fleet_->news()) log_("mqtt: " + *news);
+  fleet_->tell({runner_.map_name(), config_.fleet.map_description}, now);
+}
+
 void Node::run(const std::function<bool()>& should_stop) {
   log_("node " + config_.full_name() + " is ready");
   manager_.ready();
@@ -263,6 +272,7 @@ void Node::run(const std::function<bool()>& should_stop) {
       if (const auto pair = pairs_.next(now)) process(*pair);
     }
     tell_state(steady_now());
+    tell_fleet(steady_now());
     if (web_server_) web_server_->wake();
   }
   manager_.stopping();

@@ -2,6 +2,7 @@
 
 #include "byre/dds/participant.h"
 #include "byre/dds/ros_graph.h"
+#include "byre/fleet/fleet_link.h"
 #include "byre/node/calibration_source.h"
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_message.h"
@@ -48,6 +49,7 @@ class Node {
   void publish(const ReceivedImage& left, const FrameReport& report);
   void note_events(const FrameReport& report);
   void tell_state(Timestamp now);
+  void tell_fleet(Timestamp now);
   void tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
   ros::DiagnosticStatus localisation() const;
   void begin_anew();
@@ -67,6 +69,7 @@ class Node {
   PoseFrames pose_frames_;
   ServiceManager manager_;
   std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
+  std::optional<FleetLink> fleet_;       // where a fleet is told
   std::optional<WebServer> web_server_;  // reads the board, and serves watchers
 
   std::optional<Calibration> calibration_;  // once it is known

@@ -22,8 +22,14 @@ std::string remedy_for_unknown(std::string_view name) {
 }
 
 // Files that are named with a path from the file of settings.
-std::array<std::optional<fs::path>*, 6> paths_of(NodeConfig& config) {
-  return {&config.map, &config.save, &config.options, &config.vocabulary, &config.plan, &config.calibration};
+std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
+  return {&config.map,
+          &config.save,
+          &config.options,
+          &config.vocabulary,
+          &config.plan,
+          &config.calibration,
+          &config.fleet.password_file};
 }
 
 // Settings that go together only in some ways; told at the line of the first one that the file has.
@@ -35,8 +41,9 @@ class Consistency {
   void require(bool holds, std::string_view setting, std::string_view reason, std::string_view remedy) {
     if (holds) return;
     const auto found = std::ranges::find(given_, setting, &Setting::name);
-    const std::string place = path_.string() + (found == given_.end() ? "" : ":" + std::to_string(found->line));
-    faults_.emplace_back(place, std::string(setting) + " " + std::string(reason), remedy);
+    std::string place = path_.string();
+    if (found != given_.end()) place.append(":").append(std::to_string(found->line));
+    faults_.emplace_back(place, std::string(setting).append(" ").append(reason), remedy);
   }
 
  private:
@@ -44,6 +51,19 @@ class Consistency {
   const std::vector<Setting>& given_;
   std::vector<InputError>& faults_;
 };
+
+void check_fleet(const FleetSettings& fleet, Consistency& consistency) {
+  const char* const remedy = "use letters, digits and _ . : -";
+  const auto require_sound = [&](const char* name, const std::string& text) {
+    const std::string_view fault = fault_in_identity(text);
+    consistency.require(fault.empty(), name, fault, remedy);
+  };
+  require_sound("mqtt.interface", fleet.interface_name);
+  require_sound("mqtt.manufacturer", fleet.manufacturer);
+  if (!fleet.serial_number.empty()) require_sound("mqtt.serial_number", fleet.serial_number);
+  consistency.require(!fleet.password_file || !fleet.user.empty(), "mqtt.password_file", "is of no use without a user",
+                      "set mqtt.user, or leave it empty");
+}
 
 void check(const NodeConfig& config, Consistency consistency) {
   const bool is_mission = config.task == NodeTask::mission;
@@ -70,6 +90,7 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "needs a map that lies on it, and frames.in_plan", "set both, or leave slam.plan empty");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the kept map, which a mission leaves as it is", "name another file");
+  check_fleet(config.fleet, consistency);
   consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is no name of a node",
                       "use letters, digits and underscores");
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/fleet/fleet_link.h"
 #include "byre/input_error.h"
 #include "byre/slam.h"
 
@@ -23,6 +24,19 @@ enum class NodeTask : std::uint8_t { mission, extend, map };
 //   tf      as /tf_static says, from the base frame to the frame of the left images
 //   camera  in the origin of the base frame, which is the camera's own: x right, y down, z forward
 enum class Mounting : std::uint8_t { file, tf, camera };
+
+// How a fleet is told where the robot is, docs/integration.md.
+struct FleetSettings {
+  std::string host;  // broker of MQTT; empty: nobody is told
+  int port = 1883;
+  std::string user;                                    // empty: none
+  std::optional<std::filesystem::path> password_file;  // file with the user's password as its first line
+  std::string interface_name = "uagv";
+  std::string manufacturer = "byre";
+  std::string serial_number;    // empty: the node's name
+  std::string map_description;  // may be empty
+  double rate = 2.0;            // messages a second
+};
 
 // What `byre node` is told. Topics that do not begin with a slash are within the node: "/byre/odometry". An empty one
 // is left out. Paths can be opened as they are.
@@ -73,6 +87,8 @@ struct NodeConfig {
   std::string http_address = "127.0.0.1";  // address of this computer that /healthz and /metrics are served at
   std::optional<int> http_port;            // empty: they are not served
 
+  FleetSettings fleet;
+
   Mounting used_mounting() const { return mounting.value_or(calibration ? Mounting::file : Mounting::tf); }
   bool has_right() const { return !right.empty(); }
   std::string full_name() const { return name_space + (name_space == "/" ? "" : "/") + name; }
@@ -101,6 +117,9 @@ NodeConfigReading read_node_config(const std::filesystem::path& path);
 
 // What is wrong with the files that a sound configuration names: each is opened as the node would.
 std::vector<InputError> faults_in_files(const NodeConfig& config);
+
+// How the settings have the fleet told; empty: not at all. Throws InputError when the password cannot be read.
+std::optional<FleetOptions> fleet_options(const NodeConfig& config);
 
 // Throws InputError where the calibration file lacks a camera whose images are named.
 void require_cameras(const Calibration& calibration, const NodeConfig& config);

@@ -71,6 +71,27 @@ TEST_F(NodeConfigFile, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 
+TEST_F(NodeConfigFile, TellsWhatAFleetCannotUse) {
+  const std::string sound = "slam:\n  map: m\nmqtt:\n  host: broker\n";
+  EXPECT_THAT(faults(sound + "  port: 0\n"), HasSubstr("robot.yaml:5: mqtt.port is '0'"));
+  EXPECT_THAT(faults(sound + "  rate: 100\n"), HasSubstr("robot.yaml:5: mqtt.rate is '100'"));
+  EXPECT_THAT(faults(sound + "  serial_number: robot 7\n"), HasSubstr("robot.yaml:5: mqtt.serial_number holds other"));
+  EXPECT_THAT(faults(sound + "  manufacturer: a/b\n"), HasSubstr("robot.yaml:5: mqtt.manufacturer holds other"));
+  EXPECT_THAT(faults(sound + "  password_file: p\n"), HasSubstr("mqtt.password_file is of no use without a user"));
+  EXPECT_THAT(faults(sound), IsEmpty());
+}
+
+TEST_F(NodeConfigFile, HasFleetsToldOnlyWhereThereIsABroker) {
+  EXPECT_FALSE(fleet_options(read("slam:\n  map: m\n").config));
+  std::ofstream(folder_ / "password") << "secret\nmore\n";
+  const std::string text = "slam:\n  map: m\nnode:\n  name: eyes\nmqtt:\n  host: broker\n  user: me\n  password_file: ";
+  const auto options = fleet_options(read(text + "password\n").config);
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->broker.password, "secret");
+  EXPECT_EQ(options->identity.serial_number, "eyes");
+  EXPECT_THROW(fleet_options(read(text + "absent\n").config), InputError);
+}
+
 TEST_F(NodeConfigFile, IsReadAgainAsItIsPrinted) {
   NodeConfig config =
       read("slam:\n  map: /m\n  workers: repeatable\nimages:\n  right: ''\nframes:\n  mounting: tf\n").config;

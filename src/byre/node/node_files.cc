@@ -6,6 +6,7 @@
 #include "byre/node/slam_runner.h"
 #include "byre/system/stored_map.h"
 
+#include <fstream>
 #include <functional>
 
 namespace byre {
@@ -26,8 +27,27 @@ std::vector<InputError> faults_in_files(const NodeConfig& config) {
     if (config.map) load_for_mapping(*config.map, vocabulary);
     require_plan_of_map(config);
   });
+  look([&] { fleet_options(config); });
   if (config.calibration) look([&] { require_cameras(read_calibration(*config.calibration), config); });
   return faults;
+}
+
+std::optional<FleetOptions> fleet_options(const NodeConfig& config) {
+  const FleetSettings& fleet = config.fleet;
+  if (fleet.host.empty()) return std::nullopt;
+  FleetOptions options;
+  options.broker = {fleet.host, fleet.port, fleet.user, "", ""};
+  if (fleet.password_file) {
+    std::ifstream file(*fleet.password_file);
+    if (!std::getline(file, options.broker.password)) {
+      throw InputError(fleet.password_file->string(), "holds no password that can be read",
+                       "write it into the first line, and let byre read the file");
+    }
+  }
+  options.identity = {fleet.interface_name, fleet.manufacturer,
+                      fleet.serial_number.empty() ? config.name : fleet.serial_number};
+  options.rate = fleet.rate;
+  return options;
 }
 
 void require_plan_of_map(const NodeConfig& config) {

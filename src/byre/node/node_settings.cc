@@ -24,6 +24,15 @@ NodeSetting text(const char* name, Place place, const char* meaning) {
 }
 
 template <typename Place>
+NodeSetting any_text(const char* name, Place place, const char* meaning) {
+  return {name, "text or empty", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
+          [=](NodeConfig& config, std::string_view value) {
+            place(config) = value;
+            return true;
+          }};
+}
+
+template <typename Place>
 NodeSetting topic(const char* name, Place place, const char* meaning) {
   return {name, "topic or empty", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
           [=](NodeConfig& config, std::string_view value) {
@@ -190,18 +199,65 @@ void add_topics(Table& table) {
       "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "poses given by hand"));
 }
 
+std::optional<int> parse_port(std::string_view value) {
+  const auto number = parse_number(value);
+  if (!number || !(*number >= 1.0 && *number <= 65535.0 && *number == std::floor(*number))) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
 void add_http(Table& table) {
   table.push_back(text(
-      "http.address", [](auto& c) -> auto& { return c.http_address; }, "address of /healthz and /metrics"));
+      "http.address", [](auto& c) -> auto& { return c.http_address; },
+      "address of /healthz, /metrics and Foxglove's protocol"));
   const auto get = [](const NodeConfig& config) { return config.http_port ? std::to_string(*config.http_port) : ""; };
   const auto set = [](NodeConfig& config, std::string_view value) {
-    const auto number = parse_number(value);
-    const bool is_port = number && *number >= 1.0 && *number <= 65535.0 && *number == std::floor(*number);
-    if (!is_port && !value.empty()) return false;
-    config.http_port = is_port ? std::optional(static_cast<int>(*number)) : std::nullopt;
+    const std::optional<int> port = parse_port(value);
+    if (!port && !value.empty()) return false;
+    config.http_port = port;
     return true;
   };
-  table.push_back({"http.port", "1 to 65535 or empty", "port of /healthz and /metrics; empty: none", get, set});
+  table.push_back(
+      {"http.port", "1 to 65535 or empty", "port of /healthz, /metrics and Foxglove; empty: none", get, set});
+}
+
+void add_broker(Table& table) {
+  table.push_back(any_text(
+      "mqtt.host", [](auto& c) -> auto& { return c.fleet.host; },
+      "broker of MQTT that a fleet hears of the robot by, as VDA 5050 has it; empty: none"));
+  const auto set_port = [](NodeConfig& config, std::string_view value) {
+    const std::optional<int> port = parse_port(value);
+    if (port) config.fleet.port = *port;
+    return port.has_value();
+  };
+  table.push_back({"mqtt.port", "1 to 65535", "port of the broker",
+                   [](const NodeConfig& config) { return std::to_string(config.fleet.port); }, set_port});
+  table.push_back(any_text(
+      "mqtt.user", [](auto& c) -> auto& { return c.fleet.user; }, "user that the broker knows; empty: none"));
+  table.push_back(file(
+      "mqtt.password_file", [](auto& c) -> auto& { return c.fleet.password_file; },
+      "file whose first line is the user's password"));
+}
+
+void add_fleet(Table& table) {
+  add_broker(table);
+  table.push_back(text(
+      "mqtt.interface", [](auto& c) -> auto& { return c.fleet.interface_name; }, "first part of the topics' names"));
+  table.push_back(text(
+      "mqtt.manufacturer", [](auto& c) -> auto& { return c.fleet.manufacturer; }, "manufacturer of the robot"));
+  table.push_back(any_text(
+      "mqtt.serial_number", [](auto& c) -> auto& { return c.fleet.serial_number; },
+      "serial number of the robot; empty: the node's name"));
+  table.push_back(any_text(
+      "mqtt.map_description", [](auto& c) -> auto& { return c.fleet.map_description; },
+      "description of the map, for people"));
+  const auto set_rate = [](NodeConfig& config, std::string_view value) {
+    const auto number = parse_number(value);
+    if (!number || !(*number >= 0.1 && *number <= 20.0)) return false;
+    config.fleet.rate = *number;
+    return true;
+  };
+  table.push_back({"mqtt.rate", "0.1 to 20", "most messages a second on a topic",
+                   [](const NodeConfig& config) { return formatted("%g", config.fleet.rate); }, set_rate});
 }
 
 Table make_table() {
@@ -211,6 +267,7 @@ Table make_table() {
   add_frames(table);
   add_topics(table);
   add_http(table);
+  add_fleet(table);
   return table;
 }
 

@@ -78,6 +78,11 @@ Pose SlamRunner::published(const Pose& map_from_body) const {
   return on_plan.value_or(map_from_body);
 }
 
+std::string SlamRunner::map_name() const {
+  const std::optional<fs::path>& file = map_ ? map_ : config_.save;
+  return file ? file->stem().string() : "";
+}
+
 std::vector<Eigen::Vector3f> SlamRunner::points() const {
   if (!makes_a_map()) return points_of(*map_, config_.in_plan);
   const Pose published_from_map = published(Pose{});

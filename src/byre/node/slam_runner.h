@@ -29,6 +29,8 @@ class SlamRunner {
   // Points of the map that is made, or of the kept map that a mission is on, as they are published. Of a mission the
   // file is read once more, which takes as long as loading it.
   std::vector<Eigen::Vector3f> points() const;
+  // Name of the map that the poses are in: that of its file, without folder and ending.
+  std::string map_name() const;
   bool makes_a_map() const { return config_.task != NodeTask::mission; }
 
   // Each throws InputError for what cannot be done, and leaves everything as it was then.

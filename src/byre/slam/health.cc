@@ -6,6 +6,14 @@ namespace {
 constexpr int kManyOfflinePoints = 80;     // offline points in view, from which some must be found
 constexpr double kMinOfflineShare = 0.04;  // share of those; fewer agree by chance where a building repeats itself
 
+double drift_of(const Health& health, const HealthOptions& options) {
+  return options.drift_share * health.distance_since_offline;
+}
+
+double uncertainty_of(const Health& health, const HealthOptions& options) {
+  return options.sigmas * health.position_sigma;
+}
+
 // What is wrong with the input, which may be why nothing is found; none when nothing is known to be.
 Doubt fault_of_input(const HealthEvidence& evidence) {
   if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
@@ -33,10 +41,8 @@ Doubt reason_against(const Health& health, const HealthEvidence& evidence, const
   if (evidence.input.frozen_seconds > options.max_frozen) return Doubt::frozen;
   if (evidence.is_miscalibrated) return Doubt::calibration;
   if (!evidence.confirmed) return Doubt::unconfirmed;
-  const double drift = options.drift_share * health.distance_since_offline;
-  const double uncertainty = options.sigmas * health.position_sigma;
-  if (uncertainty + drift > options.trusted_error) {
-    return drift > uncertainty ? Doubt::off_the_map : Doubt::uncertain;
+  if (position_error(health, options) > options.trusted_error) {
+    return drift_of(health, options) > uncertainty_of(health, options) ? Doubt::off_the_map : Doubt::uncertain;
   }
   return Doubt::none;
 }
@@ -118,6 +124,10 @@ std::string_view to_string(Doubt doubt) {
       return "bridged by wheels or a gyroscope";
   }
   return "";
+}
+
+double position_error(const Health& measured, const HealthOptions& options) {
+  return uncertainty_of(measured, options) + drift_of(measured, options);
 }
 
 Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {

@@ -37,6 +37,9 @@ struct HealthEvidence {
   std::optional<Verdict> bridged_from{};
 };
 
+// By how much the position may be off, metres: sigmas of the pose and drift together.
+double position_error(const Health& measured, const HealthOptions& options);
+
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose
 // is degraded while few, clustered or contradicting points hold it.
 Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options);

@@ -1,0 +1,134 @@
+#include "byre/fleet/mqtt_client.h"
+
+#include "byre/input/formatted.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include <mosquitto.h>
+
+namespace byre {
+namespace {
+
+using std::chrono_literals::operator""ms;
+
+constexpr int kKeepAlive = 15;         // seconds without a message, after which broker and client ask each other
+constexpr auto kRetry = 1000ms;        // pause before a broker is asked anew
+constexpr auto kStep = 20ms;           // least time between looks at what is waited for
+constexpr auto kMostFarewell = 500ms;  // time for the last message to leave
+constexpr int kLoopWait = 100;         // milliseconds
+constexpr int kMostUnderWay = 8;       // messages
+
+// The library is set up once, and stays so.
+void set_up_library() {
+  static const int result = mosquitto_lib_init();
+  if (result != MOSQ_ERR_SUCCESS) throw std::runtime_error("MQTT: the library cannot be set up");
+}
+
+void require_done(int code, const char* doing) {
+  if (code != MOSQ_ERR_SUCCESS) {
+    throw std::runtime_error(std::string("MQTT: cannot ") + doing + ": " + mosquitto_strerror(code));
+  }
+}
+
+int qos_of(const MqttMessage& message) {
+  return message.is_acknowledged ? 1 : 0;
+}
+
+template <typename Condition>
+void wait_at_most(std::chrono::milliseconds most, Condition is_over) {
+  const auto end = std::chrono::steady_clock::now() + most;
+  while (!is_over() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kStep);
+}
+
+}  // namespace
+
+void MqttClient::Deleter::operator()(mosquitto* client) const {
+  mosquitto_destroy(client);
+}
+
+MqttClient::MqttClient(const MqttOptions& options, Presence presence)
+    : options_(options), presence_(std::move(presence)) {
+  set_up_library();
+  client_.reset(mosquitto_new(options_.client_id.c_str(), true, this));
+  if (!client_) throw std::runtime_error("MQTT: no client can be made of the name " + options_.client_id);
+  mosquitto* const client = client_.get();
+  require_done(mosquitto_threaded_set(client, true), "use a thread");
+  mosquitto_connect_callback_set(client, note_connect);
+  mosquitto_disconnect_callback_set(client, note_disconnect);
+  mosquitto_publish_callback_set(client, note_published);
+  const MqttMessage& will = presence_.will;
+  require_done(mosquitto_will_set(client, will.topic.c_str(), static_cast<int>(will.text.size()), will.text.data(),
+                                  qos_of(will), will.is_retained),
+               "leave a will");
+  if (!options_.user.empty()) {
+    require_done(mosquitto_username_pw_set(client, options_.user.c_str(), options_.password.c_str()), "tell the user");
+  }
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+MqttClient::~MqttClient() {
+  if (is_connected_) {
+    send(presence_.farewell());
+    wait_at_most(kMostFarewell, [this] { return under_way_ == 0 || !is_connected_; });
+    mosquitto_disconnect(client_.get());
+    wait_at_most(kMostFarewell, [this] { return !is_connected_; });
+  }
+  thread_.request_stop();
+  thread_.join();
+}
+
+void MqttClient::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    int code = mosquitto_connect_async(client_.get(), options_.host.c_str(), options_.port, kKeepAlive);
+    while (code == MOSQ_ERR_SUCCESS && !stop.stop_requested()) code = mosquitto_loop(client_.get(), kLoopWait, 1);
+    is_connected_ = false;
+    under_way_ = 0;
+    fault_ = code;
+    wait_at_most(kRetry, [&stop] { return stop.stop_requested(); });
+  }
+}
+
+void MqttClient::send(const MqttMessage& message) {
+  ++under_way_;
+  const int code =
+      mosquitto_publish(client_.get(), nullptr, message.topic.c_str(), static_cast<int>(message.text.size()),
+                        message.text.data(), qos_of(message), message.is_retained);
+  if (code != MOSQ_ERR_SUCCESS) note_published(nullptr, this, 0);
+}
+
+void MqttClient::publish(const MqttMessage& message) {
+  if (is_connected_ && under_way_ < kMostUnderWay) send(message);
+}
+
+void MqttClient::note_connect(mosquitto* /*client*/, void* self, int code) {
+  auto& mine = *static_cast<MqttClient*>(self);
+  mine.refusal_ = code;
+  if (code != 0) return;
+  mine.send(mine.presence_.greeting());
+  ++mine.connections_;
+  mine.is_connected_ = true;
+}
+
+void MqttClient::note_disconnect(mosquitto* /*client*/, void* self, int /*code*/) {
+  static_cast<MqttClient*>(self)->is_connected_ = false;
+}
+
+// Messages of an earlier connection may be acknowledged now, and are not counted.
+void MqttClient::note_published(mosquitto* /*client*/, void* self, int /*id*/) {
+  std::atomic<int>& under_way = static_cast<MqttClient*>(self)->under_way_;
+  int count = under_way;
+  while (count > 0 && !under_way.compare_exchange_weak(count, count - 1)) {
+  }
+}
+
+std::string MqttClient::state() const {
+  const std::string broker = formatted("%s:%d", options_.host.c_str(), options_.port);
+  if (is_connected_) return "connected to " + broker;
+  if (refusal_ != 0) return broker + " refuses the connection: " + mosquitto_connack_string(refusal_);
+  if (fault_ != 0) return broker + " cannot be reached: " + mosquitto_strerror(fault_);
+  return "connecting to " + broker;
+}
+
+}  // namespace byre
