@@ -27,7 +27,7 @@ FLOORS = [
     {"playback"},
     {"archive"},
     {"assessment", "viewer", "fleet"},
-    {"benchmark"},
+    {"benchmark", "camera"},
     {"demo", "node"},
     {"cli"},
 ]
@@ -50,21 +50,22 @@ EVERY_ROOM = frozenset(FLOOR)
 # Headers that only some rooms may include. Tests are free to.
 KEPT_IN = {
     r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "workers", "simulation", "mapping", "playback", "viewer", "fleet", "cli"},
+        "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
     r"mutex|shared_mutex": {"workers", "viewer"},
     r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
-                            "archive", "viewer", "benchmark", "demo", "node", "cli"},
+                            "archive", "viewer", "benchmark", "camera", "demo", "node", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
     r"boost/.*": {"dataset", "viewer"},
     r"dds/.*": {"dds"},
-    r"opencv2/.*": {"features", "dataset", "simulation", "viewer", "node"},
+    r"opencv2/.*": {"features", "dataset", "simulation", "viewer", "camera", "node"},
     r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},
     r"nlohmann/.*": {"assessment", "viewer", "fleet", "benchmark", "node", "cli"},
     r"mosquitto\.h": {"fleet"},
     r"systemd/.*": {"node"},
+    r"linux/videodev2\.h|poll\.h|sys/(ioctl|poll)\.h": {"camera"},
 }
 
 

@@ -1,0 +1,113 @@
+#include "byre/camera/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+// Light that comes from a point of a scene, one for what fills a pixel in one millisecond.
+using Scene = std::function<double(int x, int y)>;
+
+bool is_dark_square(int x, int y) {
+  return (x / 10 + y / 10) % 2 == 0;
+}
+
+Scene squares(double light) {
+  return [=](int x, int y) { return light * (is_dark_square(x, y) ? 0.4 : 1.0); };
+}
+
+// A camera whose pixels fill up.
+Image taken(const Scene& scene, const Exposure& exposure) {
+  Image image{kWidth, kHeight, {}};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const double filled = std::min(1.0, scene(x, y) * exposure.light() / 1e-3);
+      image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * filled)));
+    }
+  }
+  return image;
+}
+
+Exposure settled(const Scene& scene, Exposure exposure, const ExposureLimits& limits) {
+  for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_gamma(taken(scene, exposure)), limits);
+  return exposure;
+}
+
+double mean_of(const Image& image) {
+  double sum = 0.0;
+  for (const std::uint8_t pixel : image.pixels) sum += pixel;
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+TEST(Exposure, BecomesMoreWhereItIsTooDarkAndLessWhereItIsTooBright) {
+  const ExposureLimits limits{.max_seconds = 0.02};
+  const Exposure now{2e-3, 1.0};
+  EXPECT_GT(next_exposure(now, 1.0 / 1.9, limits).light(), 1.1 * now.light());
+  EXPECT_LT(next_exposure(now, 1.5, limits).light(), 0.9 * now.light());
+  EXPECT_DOUBLE_EQ(next_exposure(now, 1.0, limits).light(), now.light());
+}
+
+TEST(Exposure, NeverExceedsItsLimits) {
+  const ExposureLimits limits{.min_seconds = 1e-4, .max_seconds = 5e-3, .max_gain = 4.0};
+  Exposure exposure{1e-3, 1.0};
+  for (int i = 0; i < 100; ++i) {
+    exposure = next_exposure(exposure, 0.3, limits);
+    EXPECT_LE(exposure.seconds, limits.max_seconds);
+    EXPECT_LE(exposure.gain, limits.max_gain);
+  }
+  EXPECT_DOUBLE_EQ(exposure.seconds, limits.max_seconds);
+  EXPECT_DOUBLE_EQ(exposure.gain, limits.max_gain);
+  for (int i = 0; i < 100; ++i) exposure = next_exposure(exposure, 3.0, limits);
+  EXPECT_DOUBLE_EQ(exposure.seconds, limits.min_seconds);
+  EXPECT_DOUBLE_EQ(exposure.gain, 1.0);
+}
+
+TEST(Exposure, UsesTimeBeforeGain) {
+  const ExposureLimits limits{.max_seconds = 5e-3, .max_gain = 8.0};
+  EXPECT_DOUBLE_EQ(next_exposure({2e-3, 1.0}, 0.5, limits).gain, 1.0);
+  EXPECT_GT(next_exposure({5e-3, 1.0}, 0.5, limits).gain, 1.2);
+  const Exposure darker = next_exposure({5e-3, 4.0}, 1.5, limits);
+  EXPECT_DOUBLE_EQ(darker.seconds, 5e-3) << "gain is what is taken back first, as it only adds noise";
+  EXPECT_LT(darker.gain, 3.0);
+}
+
+TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
+  const ExposureLimits limits{.max_seconds = 0.05};
+  for (const double light : {0.1, 1.0, 8.0}) {
+    const Scene scene = squares(light);
+    for (const double start : {2e-4, 4e-2}) {
+      const Exposure exposure = settled(scene, {start, 1.0}, limits);
+      const double mean = mean_of(taken(scene, exposure));
+      EXPECT_GT(mean, 60.0) << light << " from " << start;
+      EXPECT_LT(mean, 230.0) << light << " from " << start;
+      EXPECT_GE(gradient_information(taken(scene, exposure), 1.0),
+                gradient_information(taken(scene, {start, 1.0}), 1.0));
+    }
+  }
+}
+
+// A window without anything to see takes half of the image: its mean says nothing of the wall beside it.
+TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
+  const Scene scene = [](int x, int y) { return x < kWidth / 2 ? 5.0 : 0.15 * squares(1.0)(x, y); };
+  const Exposure exposure = settled(scene, {2e-4, 1.0}, {.max_seconds = 0.05});
+  const Image image = taken(scene, exposure);
+  const Image by_mean = taken(scene, {0.19e-3, 1.0});  // mean of 128
+  EXPECT_NEAR(mean_of(by_mean), 128.0, 10.0);
+  EXPECT_GT(mean_of(image), 150.0) << "the window may be white";
+  EXPECT_GT(gradient_information(image, 1.0), 2.0 * gradient_information(by_mean, 1.0));
+}
+
+TEST(Exposure, StaysWhereThereIsNothingToSee) {
+  const Exposure exposure = settled([](int, int) { return 0.5; }, {1e-3, 1.0}, {});
+  EXPECT_DOUBLE_EQ(exposure.light(), 1e-3);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,193 @@
+#include "byre/camera/live_cameras.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr int kExposureInterval = 6;  // frames from one change to the next: a change is seen some frames later
+
+Timestamp monotonic_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+void require_sense(const LiveCameraOptions& options) {
+  if (options.devices.empty() || options.devices.size() > 2) {
+    throw InputError("cameras", "are one device or two", "name the left one, or the left and the right one");
+  }
+  if (options.side_by_side && options.devices.size() == 2) {
+    throw InputError(options.devices[1].string(), "is a second device beside one whose images hold both cameras",
+                     "name one device");
+  }
+}
+
+std::string describe(const DeviceReport& device) {
+  const CaptureCounts& counts = device.counts;
+  std::string text = device.path + ", " + describe(device.mode) + formatted(": %d images", counts.images);
+  if (counts.lost > 0) text += formatted(", %d lost", counts.lost);
+  if (counts.damaged > 0) text += formatted(", %d damaged", counts.damaged);
+  if (counts.out_of_order > 0) text += formatted(", %d out of order", counts.out_of_order);
+  if (device.times_away > 0) text += formatted("; away %d times for %.1f s", device.times_away, device.seconds_away);
+  if (device.exposure) {
+    text += formatted("; exposure %.1f ms, gain %.1f", 1e3 * device.exposure->seconds, device.exposure->gain);
+  }
+  return text;
+}
+
+std::string describe_stamps(const LiveCameraReport& report) {
+  const std::string moment(to_string(report.devices.front().moment));
+  if (!report.clock) return "none came";
+  switch (*report.clock) {
+    case CameraClock::monotonic:
+      return moment + ", by the kernel's clock, told as UTC";
+    case CameraClock::utc:
+      return moment + ", UTC";
+    case CameraClock::own:
+      return moment + ", by a clock of the device's own";
+  }
+  return moment;
+}
+
+}  // namespace
+
+LiveCameras::LiveCameras(const LiveCameraOptions& options) : options_(options), pairing_(options.pairing) {
+  require_sense(options);
+  for (const std::filesystem::path& path : options.devices) {
+    devices_.push_back(
+        std::make_unique<WatchedDevice>(path, options.request, options.exposure_limit_s, monotonic_now()));
+  }
+  const PixelLayout& left = devices_.front()->report().mode.layout;
+  const PixelLayout& right = devices_.back()->report().mode.layout;
+  if (options.side_by_side && left.width % 2 != 0) {
+    throw InputError(options.devices.front().string(),
+                     formatted("has images %d pixels wide, which are no two halves", left.width));
+  }
+  if (left.width != right.width || left.height != right.height) {
+    throw InputError(options.devices.back().string(), "has images of another size than the left camera's",
+                     "ask for one size of both (--size)");
+  }
+  exposure_ = devices_.front()->report().exposure;
+}
+
+int LiveCameras::width() const {
+  const int width = devices_.front()->report().mode.layout.width;
+  return options_.side_by_side ? width / 2 : width;
+}
+
+int LiveCameras::height() const {
+  return devices_.front()->report().mode.layout.height;
+}
+
+void LiveCameras::note_clock(Timestamp stamp) {
+  const MachineTime machine = machine_time();
+  const CameraClock clock = clock_of(stamp, machine);
+  if (!clock_) {
+    clock_ = clock;
+    utc_offset_ = byre::utc_offset(clock, machine);
+  } else if (*clock_ != clock) {
+    throw InputError(options_.devices.back().string(),
+                     "has time stamps by another clock than the left camera's, so that no pairs can be told",
+                     "take cameras of one driver");
+  }
+}
+
+void LiveCameras::note_difference() {
+  constexpr int kEnough = 20;  // left images without a right one, until that is told
+  const StampPairCounts& counts = pairing_.counts();
+  if (has_told_difference_ || counts.left_alone < kEnough || counts.left_alone < counts.pairs) return;
+  if (!pairing_.last_difference()) return;  // there are no right images at all
+  has_told_difference_ = true;
+  notes_.push_back(
+      formatted("left and right images are %.1f ms apart, which is no pair; have both cameras triggered "
+                "together, or raise --pair-limit and accept worse poses",
+                1e3 * std::abs(to_seconds(*pairing_.last_difference()))));
+}
+
+void LiveCameras::control_exposure(const Image& left) {
+  const auto limits = devices_.front()->exposure_limits();
+  if (!exposure_ || !limits || ++frames_since_exposure_ < kExposureInterval) return;
+  frames_since_exposure_ = 0;
+  exposure_ = next_exposure(*exposure_, best_gamma(left), *limits);
+  for (const auto& device : devices_) device->set_exposure(*exposure_);
+}
+
+std::vector<ImageFrame> LiveCameras::frames_of(std::vector<StampedImage> lefts, std::vector<StampedImage> rights,
+                                               Timestamp now) {
+  std::vector<ImageFrame> frames;
+  if (devices_.size() == 1) {
+    for (StampedImage& left : lefts) {
+      ImageFrame& frame = frames.emplace_back(ImageFrame{left.stamp + utc_offset_, {}, {}});
+      if (options_.side_by_side) {
+        ImageHalves halves = halves_of(left.image);
+        frame.left = std::move(halves.left);
+        frame.right = std::move(halves.right);
+      } else {
+        frame.left = std::move(left.image);
+      }
+    }
+    return frames;
+  }
+  for (StampedImage& left : lefts) pairing_.add_left(std::move(left), now);
+  for (StampedImage& right : rights) pairing_.add_right(std::move(right));
+  while (auto pair = pairing_.next(now)) {
+    ImageFrame& frame =
+        frames.emplace_back(ImageFrame{pair->left.stamp + utc_offset_, std::move(pair->left.image), {}});
+    if (pair->right) frame.right = std::move(pair->right->image);
+  }
+  note_difference();
+  return frames;
+}
+
+std::vector<ImageFrame> LiveCameras::wait(int milliseconds) {
+  std::vector<int> descriptors;
+  for (const auto& device : devices_) descriptors.push_back(device->descriptor());
+  wait_for_any(descriptors, milliseconds);
+  const Timestamp now = monotonic_now();
+  std::vector<std::vector<StampedImage>> images(2);
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const bool is_first = devices_[i]->report().counts.images == 0;
+    images[i] = devices_[i]->take(now);
+    if (is_first && !images[i].empty()) note_clock(images[i].front().stamp);
+  }
+  std::vector<ImageFrame> frames = frames_of(std::move(images[0]), std::move(images[1]), now);
+  if (!frames.empty()) control_exposure(frames.back().left);
+  return frames;
+}
+
+std::vector<std::string> LiveCameras::take_notes() {
+  std::vector<std::string> notes = std::exchange(notes_, {});
+  for (const auto& device : devices_) std::ranges::move(device->take_notes(), std::back_inserter(notes));
+  return notes;
+}
+
+LiveCameraReport LiveCameras::report() const {
+  LiveCameraReport report;
+  for (const auto& device : devices_) report.devices.push_back(device->report());
+  report.clock = clock_;
+  if (devices_.size() > 1) report.pairs = pairing_.counts();
+  report.last_difference = pairing_.last_difference();
+  return report;
+}
+
+std::string to_text(const LiveCameraReport& report) {
+  std::string text;
+  for (const DeviceReport& device : report.devices) text += row("camera", describe(device));
+  text += row("stamps", describe_stamps(report));
+  if (report.pairs) {
+    text += row("pairs", formatted("%d; %d left images and %d right ones alone", report.pairs->pairs,
+                                   report.pairs->left_alone, report.pairs->right_alone) +
+                             (report.last_difference
+                                  ? formatted("; the last %.2f ms apart", 1e3 * to_seconds(*report.last_difference))
+                                  : std::string()));
+  }
+  return text;
+}
+
+}  // namespace byre

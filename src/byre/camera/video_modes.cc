@@ -1,0 +1,182 @@
+#include "byre/camera/video_modes.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <linux/videodev2.h>
+
+namespace byre {
+namespace {
+
+constexpr int kMostListed = 256;  // entries, for drivers that never come to an end
+constexpr const char* kSeeList = "\"byre camera list\" tells what it offers";
+
+double rate_of(const v4l2_fract& interval) {
+  return interval.numerator > 0 ? double{1.0} * interval.denominator / interval.numerator : 0.0;
+}
+
+std::vector<double> rates_of(const VideoDescriptor& descriptor, std::uint32_t code, int width, int height) {
+  std::vector<double> rates;
+  for (int i = 0; i < kMostListed; ++i) {
+    v4l2_frmivalenum interval{};
+    interval.index = static_cast<std::uint32_t>(i);
+    interval.pixel_format = code;
+    interval.width = static_cast<std::uint32_t>(width);
+    interval.height = static_cast<std::uint32_t>(height);
+    if (!descriptor.call(VIDIOC_ENUM_FRAMEINTERVALS, &interval)) break;
+    if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) {
+      rates.push_back(rate_of(interval.stepwise.min));
+      break;
+    }
+    rates.push_back(rate_of(interval.discrete));
+  }
+  return rates;
+}
+
+std::vector<VideoFormats::Size> sizes_of(const VideoDescriptor& descriptor, std::uint32_t code) {
+  std::vector<VideoFormats::Size> sizes;
+  for (int i = 0; i < kMostListed; ++i) {
+    v4l2_frmsizeenum size{};
+    size.index = static_cast<std::uint32_t>(i);
+    size.pixel_format = code;
+    if (!descriptor.call(VIDIOC_ENUM_FRAMESIZES, &size)) break;
+    const bool is_range = size.type != V4L2_FRMSIZE_TYPE_DISCRETE;
+    const int width = static_cast<int>(is_range ? size.stepwise.max_width : size.discrete.width);
+    const int height = static_cast<int>(is_range ? size.stepwise.max_height : size.discrete.height);
+    sizes.push_back({width, height, is_range, rates_of(descriptor, code, width, height)});
+    if (is_range) break;
+  }
+  return sizes;
+}
+
+v4l2_capability capability_of(const VideoDescriptor& descriptor, const std::string& place) {
+  v4l2_capability capability{};
+  if (!descriptor.call(VIDIOC_QUERYCAP, &capability)) {
+    throw InputError(place, "is no camera", "\"byre camera list\" tells which devices are");
+  }
+  const bool tells_device = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const std::uint32_t does = tells_device ? capability.device_caps : capability.capabilities;
+  if ((does & V4L2_CAP_VIDEO_CAPTURE) == 0 || (does & V4L2_CAP_STREAMING) == 0) {
+    throw InputError(place, "hands out no images by memory that is shared",
+                     "name the camera's other device: \"byre camera list\" tells which are there");
+  }
+  return capability;
+}
+
+std::vector<std::uint32_t> offered_formats(const VideoDescriptor& descriptor) {
+  std::vector<std::uint32_t> codes;
+  for (int i = 0; i < kMostListed; ++i) {
+    v4l2_fmtdesc format{};
+    format.index = static_cast<std::uint32_t>(i);
+    format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    if (!descriptor.call(VIDIOC_ENUM_FMT, &format)) break;
+    codes.push_back(format.pixelformat);
+  }
+  return codes;
+}
+
+// Formats to try, the best first. Throws InputError when there is none.
+std::vector<std::uint32_t> formats_to_try(const VideoDescriptor& descriptor, const VideoRequest& request,
+                                          const std::string& place) {
+  if (request.format && !is_readable(*request.format)) {
+    throw InputError(place, "is asked for " + four_characters(*request.format) + ", which byre does not read",
+                     "take one of " + readable_formats());
+  }
+  if (request.format) return {*request.format};
+  std::vector<std::uint32_t> codes = offered_formats(descriptor);
+  std::string offered;
+  for (const std::uint32_t code : codes) offered += (offered.empty() ? "" : ", ") + four_characters(code);
+  std::erase_if(codes, [](std::uint32_t code) { return !is_readable(code); });
+  if (codes.empty()) {
+    throw InputError(place, "offers no format that byre reads, but " + (offered.empty() ? "none" : offered),
+                     "have its driver give one of " + readable_formats());
+  }
+  std::ranges::sort(codes, {}, [](std::uint32_t code) { return *preference_of(code); });
+  return codes;
+}
+
+double set_rate(const VideoDescriptor& descriptor, const std::optional<double>& rate_hz) {
+  v4l2_streamparm parameters{};
+  parameters.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  if (!descriptor.call(VIDIOC_G_PARM, &parameters)) return 0.0;
+  if (rate_hz) {
+    constexpr std::uint32_t kThousand = 1000;
+    parameters.parm.capture.timeperframe = {kThousand, static_cast<std::uint32_t>(*rate_hz * kThousand + 0.5)};
+    descriptor.call(VIDIOC_S_PARM, &parameters);  // what came of it is seen below
+  }
+  return rate_of(parameters.parm.capture.timeperframe);
+}
+
+// What the device does when it is asked for that. Empty when it refuses.
+std::optional<VideoMode> try_mode(const VideoDescriptor& descriptor, const VideoRequest& request, std::uint32_t code) {
+  v4l2_format format{};
+  format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  if (!descriptor.call(VIDIOC_G_FMT, &format)) return std::nullopt;
+  v4l2_pix_format& pixels = format.fmt.pix;
+  pixels.pixelformat = code;
+  pixels.field = V4L2_FIELD_NONE;
+  pixels.bytesperline = 0;
+  pixels.sizeimage = 0;
+  if (request.width) pixels.width = static_cast<std::uint32_t>(*request.width);
+  if (request.height) pixels.height = static_cast<std::uint32_t>(*request.height);
+  if (!descriptor.call(VIDIOC_S_FMT, &format) || pixels.pixelformat != code) return std::nullopt;
+  VideoMode mode;
+  mode.layout = {code, static_cast<int>(pixels.width), static_cast<int>(pixels.height), pixels.bytesperline};
+  mode.rate_hz = set_rate(descriptor, request.rate_hz);
+  return mode;
+}
+
+bool is_as_asked(const VideoMode& mode, const VideoRequest& request) {
+  constexpr double kNearly = 0.98;  // 29.97 Hz are as good as 30
+  const bool has_size = mode.layout.width == request.width.value_or(mode.layout.width) &&
+                        mode.layout.height == request.height.value_or(mode.layout.height);
+  return has_size && (!request.rate_hz || mode.rate_hz >= kNearly * *request.rate_hz);
+}
+
+}  // namespace
+
+std::string describe(const VideoMode& mode) {
+  const PixelLayout& layout = mode.layout;
+  const std::string text = formatted("%d x %d ", layout.width, layout.height) + four_characters(layout.code);
+  return mode.rate_hz > 0.0 ? text + formatted(" at %g Hz", mode.rate_hz) : text;
+}
+
+VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& place) {
+  const v4l2_capability capability = capability_of(descriptor, place);
+  VideoFormats formats;
+  formats.name = reinterpret_cast<const char*>(capability.card);
+  formats.bus = reinterpret_cast<const char*>(capability.bus_info);
+  for (int i = 0; i < kMostListed; ++i) {
+    v4l2_fmtdesc format{};
+    format.index = static_cast<std::uint32_t>(i);
+    format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    if (!descriptor.call(VIDIOC_ENUM_FMT, &format)) break;
+    formats.formats.push_back({format.pixelformat, reinterpret_cast<const char*>(format.description),
+                               sizes_of(descriptor, format.pixelformat)});
+  }
+  return formats;
+}
+
+VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& request, const std::string& place) {
+  capability_of(descriptor, place);
+  std::string tried;
+  for (const std::uint32_t code : formats_to_try(descriptor, request, place)) {
+    errno = 0;
+    const auto mode = try_mode(descriptor, request, code);
+    if (mode && is_as_asked(*mode, request)) return *mode;
+    if (!mode && errno == EBUSY) {
+      throw InputError(place, "is used by another program", "end that one first");
+    }
+    tried += (tried.empty() ? "" : ", ") + (mode ? describe(*mode) : four_characters(code) + " not at all");
+  }
+  std::string asked;
+  if (request.width && request.height) asked += formatted(" of %d x %d pixels", *request.width, *request.height);
+  if (request.rate_hz) asked += formatted(" at %g Hz", *request.rate_hz);
+  throw InputError(place, "gives no images" + asked + ", but " + tried, kSeeList);
+}
+
+}  // namespace byre
