@@ -1,5 +1,6 @@
 #include "byre/camera/capture_thread.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -8,14 +9,24 @@ namespace {
 
 constexpr std::size_t kMostNotes = 100;
 
+std::size_t capacity_for(KeptFrames kept, const LiveCameras& cameras) {
+  if (kept == KeptFrames::newest) return 1;
+  constexpr std::size_t kMostBytes = 256u << 20;
+  constexpr std::size_t kFewest = 8;
+  const std::size_t bytes = static_cast<std::size_t>(cameras.width()) * static_cast<std::size_t>(cameras.height()) *
+                            (cameras.has_right() ? 2 : 1);
+  return std::max(kFewest, kMostBytes / bytes);
+}
+
 }  // namespace
 
-CaptureThread::CaptureThread(const LiveCameraOptions& options, std::size_t kept)
+CaptureThread::CaptureThread(const LiveCameraOptions& options, KeptFrames kept)
     : cameras_(options),
       has_right_(cameras_.has_right()),
       width_(cameras_.width()),
       height_(cameras_.height()),
-      frames_(kept),
+      rate_hz_(cameras_.report().devices.front().mode.rate_hz),
+      frames_(capacity_for(kept, cameras_)),
       notes_(kMostNotes),
       thread_([this](const std::stop_token& stop) { capture(stop); }) {}
 

@@ -3,6 +3,7 @@
 #include "byre/camera/live_cameras.h"
 #include "byre/workers/newest_queue.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <thread>
@@ -10,12 +11,16 @@
 
 namespace byre {
 
+// What becomes of frames that nobody has taken yet.
+//   newest  the newest alone is kept: for who must not fall behind
+//   all     all are, as far as memory goes: for who must not miss any
+enum class KeptFrames : std::uint8_t { newest, all };
+
 // Takes what cameras give, in a thread of its own, so that no image waits in a driver. Whoever is slow misses the
 // oldest frames beyond those that are kept.
 class CaptureThread {
  public:
-  // kept: the most frames that wait; with one, the newest frame wins. Throws InputError as LiveCameras does.
-  CaptureThread(const LiveCameraOptions& options, std::size_t kept);
+  CaptureThread(const LiveCameraOptions& options, KeptFrames kept);  // throws InputError as LiveCameras does
   ~CaptureThread();
   CaptureThread(const CaptureThread&) = delete;
   CaptureThread& operator=(const CaptureThread&) = delete;
@@ -24,6 +29,7 @@ class CaptureThread {
   bool has_right() const { return has_right_; }
   int width() const { return width_; }
   int height() const { return height_; }
+  double rate_hz() const { return rate_hz_; }  // zero: not told
 
   // The next frame, waited for at most so long. Throws InputError when the cameras turned out to be of no use.
   std::optional<ImageFrame> next(std::chrono::milliseconds at_most);
@@ -41,6 +47,7 @@ class CaptureThread {
   const bool has_right_;
   const int width_;
   const int height_;
+  const double rate_hz_;
   NewestQueue<ImageFrame> frames_;
   NewestQueue<std::string> notes_;
   std::jthread thread_;  // the last member: it uses the others

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numeric>
 
 namespace byre {
 namespace {
@@ -31,40 +32,47 @@ std::array<float, 256> information_table() {
   return table;
 }
 
-std::array<std::uint8_t, 256> gamma_curve(double gamma) {
-  std::array<std::uint8_t, 256> curve{};
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    curve[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::pow(static_cast<double>(i) / 255.0, gamma)));
+constexpr std::uint8_t kFull = 251;  // grey value from which on a pixel tells nothing
+constexpr int kNoise = 4;            // grey values: smaller gradients are none, however much more light there were
+
+// Grey values as they would be with so many times the light.
+std::array<std::uint8_t, 256> values_with(double factor) {
+  std::array<std::uint8_t, 256> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = i >= kFull ? 255.0 : std::min(255.0, factor * static_cast<double>(i));
+    values[i] = static_cast<std::uint8_t>(std::lround(value));
   }
-  return curve;
+  return values;
 }
 
-// Where nothing is to be seen, no curve tells the way, but pixels that are full, or empty, do.
-double gamma_of_blank(const Image& image) {
-  constexpr std::uint8_t kEmpty = 4, kFull = 251;
-  constexpr double kMuchBrighter = 0.5, kMuchDarker = 2.0;
-  const auto full = std::ranges::count_if(image.pixels, [](std::uint8_t pixel) { return pixel >= kFull; });
-  const auto empty = std::ranges::count_if(image.pixels, [](std::uint8_t pixel) { return pixel <= kEmpty; });
-  const auto half = static_cast<std::ptrdiff_t>(image.pixels.size() / 2);
-  if (full > half) return kMuchDarker;
-  return empty > half ? kMuchBrighter : 1.0;
+// Where nothing is to be seen, no gradient tells the way, but an image that is nearly black, or white, does.
+double factor_of_blank(const Image& image) {
+  constexpr double kMuch = 2.0;
+  constexpr double kDark = 32.0, kBright = 223.0;  // mean grey values
+  const double mean = std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) /
+                      static_cast<double>(std::max<std::size_t>(1, image.pixels.size()));
+  if (mean > kBright) return 1.0 / kMuch;
+  return mean < kDark ? kMuch : 1.0;
 }
 
 }  // namespace
 
-double gradient_information(const Image& image, double gamma) {
+double corner_information(const Image& image, double factor) {
   static const std::array<float, 256> information = information_table();
-  const std::array<std::uint8_t, 256> curve = gamma_curve(gamma);
+  const std::array<std::uint8_t, 256> values = values_with(factor);
   std::array<double, kGridColumns * kGridRows> sums{};
-  const auto value = [&](int x, int y) {
-    return int{curve[image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                  static_cast<std::size_t>(x)]]};
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+  };
+  const auto gradient = [&](std::uint8_t a, std::uint8_t b) {
+    return std::abs(int{a} - int{b}) < kNoise ? 0 : std::abs(int{values[a]} - int{values[b]});
   };
   for (int y = 0; y + kStep < image.height; y += kStep) {
     const int row = y * kGridRows / image.height;
     for (int x = 0; x + kStep < image.width; x += kStep) {
-      const int here = value(x, y);
-      const int steepest = std::max(std::abs(value(x + kStep, y) - here), std::abs(value(x, y + kStep) - here));
+      const std::uint8_t here = image.pixels[index(x, y)];
+      const int steepest = std::max(gradient(here, image.pixels[index(x + kStep, y)]),
+                                    gradient(here, image.pixels[index(x, y + kStep)]));
       sums[static_cast<std::size_t>(row * kGridColumns + x * kGridColumns / image.width)] +=
           information[static_cast<std::size_t>(steepest)];
     }
@@ -74,28 +82,26 @@ double gradient_information(const Image& image, double gamma) {
   return total;
 }
 
-double best_gamma(const Image& image) {
-  constexpr std::array kGammas = {1.0, 1.0 / 1.2, 1.2, 1.0 / 1.5, 1.5, 1.0 / 1.9, 1.9, 1.0 / 2.6, 2.6};
-  constexpr double kClearly = 1.002;  // a curve that is hardly better is no reason to change anything
-  double best = kGammas.front();
-  double most = kClearly * gradient_information(image, best);
-  for (const double gamma : kGammas) {
-    const double information = gradient_information(image, gamma);
+double best_light_factor(const Image& image) {
+  constexpr std::array kFactors = {1.0, 1.0 / 1.1, 1.1, 1.0 / 1.3, 1.3, 1.0 / 1.7, 1.7, 1.0 / 2.3, 2.3, 4.0, 8.0};
+  constexpr double kClearly = 1.003;  // what is hardly better is no reason to change anything
+  constexpr double kNothing = 1.0;
+  double best = kFactors.front();
+  double most = kClearly * corner_information(image, best);
+  for (const double factor : kFactors) {
+    const double information = corner_information(image, factor);
     if (information <= most) continue;
     most = information;
-    best = gamma;
+    best = factor;
   }
-  constexpr double kNothing = 1.0;
-  return most < kNothing ? gamma_of_blank(image) : best;
+  return most < kNothing ? factor_of_blank(image) : best;
 }
 
-Exposure next_exposure(const Exposure& now, double gamma, const ExposureLimits& limits) {
-  constexpr double kBrighter = 0.5;  // share of the way that the curve asks for: too bright is harder to come back from
-  constexpr double kDarker = 1.0;
-  constexpr double kMostFactor = 2.0;
-  const double change = 1.0 - gamma;  // above zero: brighter
-  const double factor = std::clamp(1.0 + (change > 0.0 ? kBrighter : kDarker) * change, 1.0 / kMostFactor, kMostFactor);
-  const double light = std::max(now.light(), limits.min_seconds) * factor;
+Exposure next_exposure(const Exposure& now, double factor, const ExposureLimits& limits) {
+  constexpr double kShare = 0.7;  // share of the way, of the logarithm
+  constexpr double kMost = 2.0;
+  const double change = std::clamp(std::pow(factor, kShare), 1.0 / kMost, kMost);
+  const double light = std::max(now.light(), limits.min_seconds) * change;
   Exposure next;
   next.seconds = std::clamp(light, limits.min_seconds, limits.max_seconds);
   next.gain = std::clamp(light / next.seconds, 1.0, std::max(1.0, limits.max_gain));

@@ -18,18 +18,20 @@ struct ExposureLimits {
   double max_gain = 1.0;      // factor
 };
 
-// How much of a scene's corners an image shows, if it were as much brighter or darker as a gamma makes it: gradients
-// of the image put through that curve (Shim, Lee and Kweon 2014, "Auto-adjusting camera exposure for outdoor robotics
-// using gradient information"), summed within the cells of a grid. A cell counts by the logarithm, so that corners all
-// over the image count for more than many in one place. Gamma below one is brighter.
-double gradient_information(const Image& image, double gamma);
+// How much of a scene's corners an image would show if it had taken so many times the light: gradients between pixels
+// as they then would be, each counted by the curve of Shim, Lee and Kweon 2014 ("Auto-adjusting camera exposure for
+// outdoor robotics using gradient information"), summed within the cells of a grid. Pixels follow the light until they
+// are full, as in Zhang, Forster and Scaramuzza 2017 ("Active exposure control for robust visual odometry in HDR
+// environments"); one that is full now may be as full with less. A cell counts by the logarithm, so that corners all
+// over the image count for more than many in one place.
+double corner_information(const Image& image, double factor);
 
-// The gamma at which an image would show most, of several that are tried; above one where it is too bright. Of an image
-// that shows nothing at all it tells whether that is for too much light or too little.
-double best_gamma(const Image& image);
+// How many times the light an image would show most with, of some factors that are tried. Of an image that shows
+// nothing at all it tells whether that is for too much light or too little.
+double best_light_factor(const Image& image);
 
-// What to take next after an image taken so has that best gamma. The light follows the gamma, in steps of at most a
-// factor of two. Time comes first, up to its limit; the gain makes up for the rest.
-Exposure next_exposure(const Exposure& now, double gamma, const ExposureLimits& limits);
+// What to take next after an image taken so has that best factor: a part of the way, at most a factor of two, so that
+// it settles. Time comes first, up to its limit; the gain makes up for the rest.
+Exposure next_exposure(const Exposure& now, double factor, const ExposureLimits& limits);
 
 }  // namespace byre

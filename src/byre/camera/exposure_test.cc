@@ -36,7 +36,7 @@ Image taken(const Scene& scene, const Exposure& exposure) {
 }
 
 Exposure settled(const Scene& scene, Exposure exposure, const ExposureLimits& limits) {
-  for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_gamma(taken(scene, exposure)), limits);
+  for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
   return exposure;
 }
 
@@ -49,8 +49,8 @@ double mean_of(const Image& image) {
 TEST(Exposure, BecomesMoreWhereItIsTooDarkAndLessWhereItIsTooBright) {
   const ExposureLimits limits{.max_seconds = 0.02};
   const Exposure now{2e-3, 1.0};
-  EXPECT_GT(next_exposure(now, 1.0 / 1.9, limits).light(), 1.1 * now.light());
-  EXPECT_LT(next_exposure(now, 1.5, limits).light(), 0.9 * now.light());
+  EXPECT_GT(next_exposure(now, 1.7, limits).light(), 1.1 * now.light());
+  EXPECT_LT(next_exposure(now, 0.6, limits).light(), 0.9 * now.light());
   EXPECT_DOUBLE_EQ(next_exposure(now, 1.0, limits).light(), now.light());
 }
 
@@ -58,22 +58,22 @@ TEST(Exposure, NeverExceedsItsLimits) {
   const ExposureLimits limits{.min_seconds = 1e-4, .max_seconds = 5e-3, .max_gain = 4.0};
   Exposure exposure{1e-3, 1.0};
   for (int i = 0; i < 100; ++i) {
-    exposure = next_exposure(exposure, 0.3, limits);
+    exposure = next_exposure(exposure, 3.0, limits);
     EXPECT_LE(exposure.seconds, limits.max_seconds);
     EXPECT_LE(exposure.gain, limits.max_gain);
   }
   EXPECT_DOUBLE_EQ(exposure.seconds, limits.max_seconds);
   EXPECT_DOUBLE_EQ(exposure.gain, limits.max_gain);
-  for (int i = 0; i < 100; ++i) exposure = next_exposure(exposure, 3.0, limits);
+  for (int i = 0; i < 100; ++i) exposure = next_exposure(exposure, 0.3, limits);
   EXPECT_DOUBLE_EQ(exposure.seconds, limits.min_seconds);
   EXPECT_DOUBLE_EQ(exposure.gain, 1.0);
 }
 
 TEST(Exposure, UsesTimeBeforeGain) {
   const ExposureLimits limits{.max_seconds = 5e-3, .max_gain = 8.0};
-  EXPECT_DOUBLE_EQ(next_exposure({2e-3, 1.0}, 0.5, limits).gain, 1.0);
-  EXPECT_GT(next_exposure({5e-3, 1.0}, 0.5, limits).gain, 1.2);
-  const Exposure darker = next_exposure({5e-3, 4.0}, 1.5, limits);
+  EXPECT_DOUBLE_EQ(next_exposure({2e-3, 1.0}, 1.7, limits).gain, 1.0);
+  EXPECT_GT(next_exposure({5e-3, 1.0}, 1.7, limits).gain, 1.2);
+  const Exposure darker = next_exposure({5e-3, 4.0}, 0.6, limits);
   EXPECT_DOUBLE_EQ(darker.seconds, 5e-3) << "gain is what is taken back first, as it only adds noise";
   EXPECT_LT(darker.gain, 3.0);
 }
@@ -87,8 +87,7 @@ TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
       const double mean = mean_of(taken(scene, exposure));
       EXPECT_GT(mean, 60.0) << light << " from " << start;
       EXPECT_LT(mean, 230.0) << light << " from " << start;
-      EXPECT_GE(gradient_information(taken(scene, exposure), 1.0),
-                gradient_information(taken(scene, {start, 1.0}), 1.0));
+      EXPECT_GE(corner_information(taken(scene, exposure), 1.0), corner_information(taken(scene, {start, 1.0}), 1.0));
     }
   }
 }
@@ -101,7 +100,17 @@ TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
   const Image by_mean = taken(scene, {0.19e-3, 1.0});  // mean of 128
   EXPECT_NEAR(mean_of(by_mean), 128.0, 10.0);
   EXPECT_GT(mean_of(image), 150.0) << "the window may be white";
-  EXPECT_GT(gradient_information(image, 1.0), 2.0 * gradient_information(by_mean, 1.0));
+  EXPECT_GT(corner_information(image, 1.0), 2.0 * corner_information(by_mean, 1.0));
+}
+
+TEST(Exposure, Settles) {
+  const ExposureLimits limits{.max_seconds = 0.05};
+  const Scene scene = squares(1.0);
+  const Exposure settling = settled(scene, {2e-4, 1.0}, limits);
+  for (Exposure exposure = settling; const int step : {1, 2, 3}) {
+    exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
+    EXPECT_NEAR(exposure.light() / settling.light(), 1.0, 0.1) << step;
+  }
 }
 
 TEST(Exposure, StaysWhereThereIsNothingToSee) {

@@ -114,7 +114,7 @@ void LiveCameras::control_exposure(const Image& left) {
   const auto limits = devices_.front()->exposure_limits();
   if (!exposure_ || !limits || ++frames_since_exposure_ < kExposureInterval) return;
   frames_since_exposure_ = 0;
-  exposure_ = next_exposure(*exposure_, best_gamma(left), *limits);
+  exposure_ = next_exposure(*exposure_, best_light_factor(left), *limits);
   for (const auto& device : devices_) device->set_exposure(*exposure_);
 }
 

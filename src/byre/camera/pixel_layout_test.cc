@@ -1,5 +1,7 @@
 #include "byre/camera/pixel_layout.h"
 
+#include "byre/camera/still_image.h"
+
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -77,6 +79,7 @@ TEST(PixelLayout, PartsImagesThatHoldBothCameras) {
   EXPECT_EQ(halves.right.height, 2);
   EXPECT_THAT(halves.left.pixels, ElementsAre(1, 2, 5, 6));
   EXPECT_THAT(halves.right.pixels, ElementsAre(3, 4, 7, 8));
+  EXPECT_THAT(side_by_side(halves.left, halves.right).pixels, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
 }
 
 }  // namespace

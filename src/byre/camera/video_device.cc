@@ -28,11 +28,6 @@ Timestamp stamp_of(const v4l2_buffer& buffer) {
   return std::chrono::seconds(buffer.timestamp.tv_sec) + std::chrono::microseconds(buffer.timestamp.tv_usec);
 }
 
-StampMoment moment_of(const v4l2_buffer& buffer) {
-  const bool is_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
-  return is_start ? StampMoment::exposure_start : StampMoment::frame_end;
-}
-
 [[noreturn]] void refuse(const std::filesystem::path& path, const char* what) {
   const int error = errno;
   throw InputError(path.string(), std::string(what) + ": " + std::strerror(error),
@@ -40,10 +35,6 @@ StampMoment moment_of(const v4l2_buffer& buffer) {
 }
 
 }  // namespace
-
-std::string_view to_string(StampMoment moment) {
-  return moment == StampMoment::exposure_start ? "start of exposure" : "end of frame";
-}
 
 VideoDevice::VideoDevice(const std::filesystem::path& path, const VideoRequest& request)
     : path_(path), descriptor_(path), mode_(set_mode(descriptor_, request, path.string())) {
@@ -95,7 +86,7 @@ void VideoDevice::stop() {
 VideoDevice::Taken VideoDevice::take() {
   v4l2_buffer buffer = buffer_at(0);
   if (!descriptor_.call(VIDIOC_DQBUF, &buffer)) return {errno == EAGAIN ? Outcome::nothing : Outcome::gone};
-  Taken taken{Outcome::damaged, buffer.sequence, moment_of(buffer)};
+  Taken taken{Outcome::damaged, buffer.sequence, moment_of(buffer.flags)};
   if ((buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && buffer.index < buffers_.size()) {
     const std::span<const std::uint8_t> memory = buffers_[buffer.index];
     if (auto grey = grey_of(mode_.layout, memory.first(std::min<std::size_t>(buffer.bytesused, memory.size())))) {

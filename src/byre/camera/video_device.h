@@ -7,15 +7,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace byre {
-
-// When the driver reads the clock for an image's stamp.
-enum class StampMoment : std::uint8_t { exposure_start, frame_end };
-
-std::string_view to_string(StampMoment moment);
 
 // A camera that Linux knows by V4L2, streaming into memory that it shares with the driver.
 class VideoDevice {

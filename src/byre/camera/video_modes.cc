@@ -137,7 +137,32 @@ bool is_as_asked(const VideoMode& mode, const VideoRequest& request) {
   return has_size && (!request.rate_hz || mode.rate_hz >= kNearly * *request.rate_hz);
 }
 
+// Drivers tell it with the first buffer that they give.
+std::optional<StampMoment> told_moment(const VideoDescriptor& descriptor) {
+  v4l2_requestbuffers wanted{};
+  wanted.count = 1;
+  wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  wanted.memory = V4L2_MEMORY_MMAP;
+  if (!descriptor.call(VIDIOC_REQBUFS, &wanted)) return std::nullopt;
+  v4l2_buffer buffer{};
+  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  buffer.memory = V4L2_MEMORY_MMAP;
+  const bool is_told = descriptor.call(VIDIOC_QUERYBUF, &buffer);
+  wanted.count = 0;
+  descriptor.call(VIDIOC_REQBUFS, &wanted);  // gives the buffer back
+  return is_told ? std::optional(moment_of(buffer.flags)) : std::nullopt;
+}
+
 }  // namespace
+
+std::string_view to_string(StampMoment moment) {
+  return moment == StampMoment::exposure_start ? "start of exposure" : "end of frame";
+}
+
+StampMoment moment_of(std::uint32_t flags) {
+  const bool is_start = (flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+  return is_start ? StampMoment::exposure_start : StampMoment::frame_end;
+}
 
 std::string describe(const VideoMode& mode) {
   const PixelLayout& layout = mode.layout;
@@ -158,6 +183,7 @@ VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& pl
     formats.formats.push_back({format.pixelformat, reinterpret_cast<const char*>(format.description),
                                sizes_of(descriptor, format.pixelformat)});
   }
+  formats.moment = told_moment(descriptor);
   return formats;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace byre {
@@ -27,6 +28,14 @@ struct VideoMode {
 // "752 x 480 GREY at 20 Hz".
 std::string describe(const VideoMode& mode);
 
+// When the driver reads the clock for an image's stamp.
+enum class StampMoment : std::uint8_t { exposure_start, frame_end };
+
+std::string_view to_string(StampMoment moment);
+
+// By the flags of a buffer (linux/videodev2.h).
+StampMoment moment_of(std::uint32_t flags);
+
 // What a device says of itself.
 struct VideoFormats {
   struct Size {
@@ -43,6 +52,7 @@ struct VideoFormats {
   std::string name;
   std::string bus;  // where it is plugged in: the same after it was unplugged and plugged in again
   std::vector<Format> formats{};
+  std::optional<StampMoment> moment{};  // empty where it is not told, as while another program uses the device
 };
 
 // Throws InputError for what is no camera.

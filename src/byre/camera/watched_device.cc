@@ -13,6 +13,7 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
 constexpr Timestamp kRetryInterval = 200ms;
+constexpr int kMostAtOnce = 8;  // images, so that another device has its turn
 
 // Cameras need a while from when they start to their first image.
 Timestamp patience_for(const VideoMode& mode) {
@@ -85,7 +86,7 @@ std::string WatchedDevice::why_silent() const {
 std::vector<StampedImage> WatchedDevice::take(Timestamp now) {
   std::vector<StampedImage> images;
   if (!device_) open_again(now);
-  while (device_) {
+  for (int i = 0; device_ && i < kMostAtOnce; ++i) {
     VideoDevice::Taken taken = device_->take();
     if (taken.outcome == VideoDevice::Outcome::nothing) break;
     if (taken.outcome == VideoDevice::Outcome::gone) {

@@ -33,7 +33,7 @@ class WatchedDevice {
 
   // To wait for; -1 while it is away.
   int descriptor() const { return device_ ? device_->descriptor().number() : -1; }
-  // The images that are waiting, in order.
+  // Images that are waiting, in order; not so many that others would have to wait.
   std::vector<StampedImage> take(Timestamp now);
   // Takes the same exposure as other devices do; no more than its limit.
   void set_exposure(const Exposure& exposure);

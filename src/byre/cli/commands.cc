@@ -20,6 +20,7 @@ constexpr std::array kCommands = {
     Command{"demo", "Show all of it on a simulated cowshed, as a page to look at", declare_demo},
     Command{"check", "Say what of a recording would spoil a mission, and what to do about it", declare_check},
     Command{"bag", "Tell what a bag of ROS holds", declare_bag},
+    Command{"camera", "Tell which cameras there are, look at what they give, record them", declare_camera},
     Command{"map", "Turn a recording into a map and a trajectory", declare_map},
     Command{"run", "Run a mission on a map: track, map what is new, say how far to trust it", declare_run},
 #ifdef BYRE_WITH_NODE

@@ -25,6 +25,7 @@ Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
 Action declare_bag(CLI::App& command);
+Action declare_camera(CLI::App& command);
 Action declare_check(CLI::App& command);
 Action declare_calibrate(CLI::App& command);
 Action declare_refine(CLI::App& command);

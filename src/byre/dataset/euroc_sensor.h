@@ -3,6 +3,7 @@
 #include "byre/calibration.h"
 
 #include <filesystem>
+#include <string>
 
 namespace byre {
 
@@ -16,5 +17,8 @@ struct EurocSensor {
 // no rigid transform, focal lengths that are not positive, a principal point outside the image, an unknown model, a
 // wrong number of coefficients.
 EurocSensor read_euroc_sensor(const std::filesystem::path& path);
+
+// The text of such a file. comment: in its head, a word on where the images are from.
+std::string write_euroc_sensor(const EurocSensor& sensor, double rate_hz, const std::string& comment);
 
 }  // namespace byre

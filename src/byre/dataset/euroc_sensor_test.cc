@@ -50,6 +50,17 @@ TEST_F(EurocSensorFile, GivesTheCameraAndItsPlaceInTheBody) {
   EXPECT_LT((point_in_body - Eigen::Vector3d(0.5, 0.75, 2.0)).norm(), 1e-12);
 }
 
+TEST_F(EurocSensorFile, IsReadAgainAsItWasWritten) {
+  EurocSensor sensor = read("radial-tangential", "equidistant");
+  sensor.readout_time = 0.0125;
+  write("written.yaml", write_euroc_sensor(sensor, 20.0, "recorded"));
+  const EurocSensor again = read_euroc_sensor(folder_ / "written.yaml");
+  EXPECT_EQ(again.camera, sensor.camera);
+  EXPECT_EQ(again.readout_time, sensor.readout_time);
+  EXPECT_LT((again.body_from_camera.translation - sensor.body_from_camera.translation).norm(), 1e-15);
+  EXPECT_LT(again.body_from_camera.rotation.angularDistance(sensor.body_from_camera.rotation), 1e-12);
+}
+
 TEST_F(EurocSensorFile, MayBeginWithTheDirectiveOfOpenCv) {
   EXPECT_EQ(read("# General sensor definitions.", "%YAML:1.0").camera.width, 752);
   EXPECT_EQ(read("# General sensor definitions.", "%YAML:1.0\r\n---").camera.width, 752);

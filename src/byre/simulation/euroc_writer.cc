@@ -2,6 +2,7 @@
 
 #include "byre/simulation/euroc_writer.h"
 
+#include "byre/dataset/euroc_sensor.h"
 #include "byre/input_error.h"
 #include "byre/trajectory_file.h"
 
@@ -32,29 +33,6 @@ void close(std::ofstream& file, const fs::path& path) {
   if (!file) throw InputError(path.string(), "could not be written to its end", "check that the disk is not full");
 }
 
-void write_matrix(std::ofstream& file, const Pose& pose) {
-  const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-  file << "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) file << rotation(row, column) << ", ";
-    file << pose.translation[row] << ",\n         ";
-  }
-  file << "0.0, 0.0, 0.0, 1.0]\n";
-}
-
-void write_lens(std::ofstream& file, const Camera& camera) {
-  const auto& d = camera.distortion;
-  const bool is_fisheye = camera.model == CameraModel::equidistant;
-  const std::size_t count = camera.model == CameraModel::radial_tangential && d[4] != 0.0 ? 5 : 4;
-  file << "camera_model: pinhole\n";
-  file << "intrinsics: [" << camera.fx << ", " << camera.fy << ", " << camera.cx << ", " << camera.cy
-       << "] #fu, fv, cu, cv\n";
-  file << "distortion_model: " << (is_fisheye ? "equidistant" : "radial-tangential") << "\n";
-  file << "distortion_coefficients: [" << d[0];
-  for (std::size_t i = 1; i < count; ++i) file << ", " << d[i];
-  file << "]\n";
-}
-
 // Precondition: it is the calibration of a pair.
 Pose body_from_right(const Calibration& calibration) {
   return calibration.body_from_left * inverse(calibration.right->right_from_left);
@@ -67,11 +45,7 @@ double mean_rate_hz(const std::vector<Timestamp>& times) {
 
 void write_sensor(const fs::path& path, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
   std::ofstream file = create(path);
-  file << "sensor_type: camera\ncomment: rendered\n\n# Sensor extrinsics wrt. the body-frame.\n";
-  write_matrix(file, body_from_camera);
-  file << "\n# Camera specific definitions.\nrate_hz: " << rate_hz << "\nresolution: [" << camera.width << ", "
-       << camera.height << "]\n";
-  write_lens(file, camera);
+  file << write_euroc_sensor({camera, body_from_camera}, rate_hz, "rendered");
   close(file, path);
 }
 

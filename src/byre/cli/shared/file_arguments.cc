@@ -35,6 +35,7 @@ constexpr std::array kOutputs = {std::pair(Output::map, "writes map"),
                                  std::pair(Output::calibration, "writes calibration"),
                                  std::pair(Output::vocabulary, "writes vocabulary"),
                                  std::pair(Output::colmap_model, "writes model"),
+                                 std::pair(Output::recording, "writes recording"),
                                  std::pair(Output::folder, "writes folder")};
 
 template <typename Kind, std::size_t n>
@@ -75,6 +76,11 @@ std::vector<CLI::App*> given_commands(CLI::App& command) {
   return commands;
 }
 
+Output kind_of(Output output, const fs::path& path) {
+  if (output != Output::recording) return output;
+  return path.extension() == ".mcap" ? Output::mcap : Output::folder;
+}
+
 Arguments arguments_of(CLI::App& command) {
   Arguments arguments;
   for (CLI::App* const given : given_commands(command)) {
@@ -83,7 +89,7 @@ Arguments arguments_of(CLI::App& command) {
       const auto output = output_of(*option);
       for (const std::string& path : option->results()) {
         if (input) arguments.inputs.push_back({*input, option->get_name(), path});
-        if (output) arguments.outputs.push_back({*output, option->get_name(), path});
+        if (output) arguments.outputs.push_back({kind_of(*output, path), option->get_name(), path});
       }
     }
   }

@@ -147,7 +147,7 @@ class FileArguments : public ProgramTest {
 
   // A path that an output may be given, which is the file by another name.
   std::string alias(const fs::path& file, Output output, const std::string& name) const {
-    if (output == Output::folder || fs::is_directory(file)) return file.string();
+    if (output == Output::folder || output == Output::recording || fs::is_directory(file)) return file.string();
     fs::path link = folder_ / (name + extension_of(output));
     fs::path path = link;
     if (output == Output::colmap_model) link = path / "images.bin";
@@ -300,7 +300,8 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
     CLI::App& command = listed.command(names);
     for (CLI::Option* const output : options_that(command, is_output)) {
       start_over();
-      const bool is_in_folder = output_of(*output) == Output::colmap_model || output_of(*output) == Output::folder;
+      const bool is_folder = output_of(*output) == Output::folder || output_of(*output) == Output::recording;
+      const bool is_in_folder = output_of(*output) == Output::colmap_model || is_folder;
       const std::string path = "there" + extension_of(*output_of(*output));
       const std::string file = is_in_folder ? path + "/cameras.bin" : path;
       if (is_in_folder) fs::create_directories(folder_ / path);
@@ -314,7 +315,7 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
       const bool is_map = output->get_type_name() == "MAP" || names == std::vector<std::string>{"import-colmap"};
       if (is_map) write(file, "\x89PNG\r\n is how an image begins");
       EXPECT_THAT(CommandLine().fault_of(keeping), HasSubstr("--no-overwrite keeps what is")) << joined(line);
-      if (output_of(*output) == Output::folder) continue;  // what is in it is the command's own
+      if (is_folder) continue;  // what is in it is the command's own
       if (output_of(*output) == Output::colmap_model) continue;
       EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("is there and is no ")) << joined(line);
       write(file, "");

@@ -73,6 +73,7 @@ std::vector<fs::path> files_of(const Read& read) {
 std::vector<fs::path> files_of(const Written& written) {
   std::vector<fs::path> files;
   switch (written.output) {
+    case Output::recording:
     case Output::folder:
       return {};
     case Output::colmap_model:
@@ -182,6 +183,7 @@ std::string_view kind_of(const Written& written, const fs::path& file) {
     case Output::vocabulary:
       return "vocabulary";
     case Output::colmap_model:
+    case Output::recording:
     case Output::folder:
       break;
   }
@@ -213,6 +215,7 @@ bool may_replace(const Written& written, const fs::path& file, FileContent conte
     case Output::vocabulary:
       return content == FileContent::vocabulary;
     case Output::colmap_model:
+    case Output::recording:
     case Output::folder:
       break;
   }

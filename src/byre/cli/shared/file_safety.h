@@ -33,6 +33,7 @@ enum class Output : std::uint8_t {
   calibration,
   vocabulary,
   colmap_model,
+  recording,  // as its name ends: an .mcap file, else a folder
   folder,
 };
 

@@ -1,0 +1,37 @@
+#include "byre/camera/camera_fit.h"
+
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+
+namespace byre {
+namespace {
+
+void require_size(const Camera& camera, const CaptureThread& capture, const std::string& place) {
+  if (camera.width == capture.width() && camera.height == capture.height()) return;
+  throw InputError(place,
+                   formatted("is of images of %d x %d pixels, but the camera gives %d x %d", camera.width,
+                             camera.height, capture.width(), capture.height()),
+                   "ask the camera for that size (--size), or calibrate it with this one");
+}
+
+}  // namespace
+
+void ask_for_size(const Calibration& calibration, LiveCameraOptions& options) {
+  if (options.request.width) return;
+  options.request.width = calibration.left.width * (options.side_by_side ? 2 : 1);
+  options.request.height = calibration.left.height;
+}
+
+void require_fit(const Calibration& calibration, const CaptureThread& capture, const std::string& place) {
+  if (calibration.right && !capture.has_right()) {
+    throw InputError(place, "is of a pair, but there is one camera",
+                     "name the right camera's device too, or say --side-by-side where its images hold both");
+  }
+  if (!calibration.right && capture.has_right()) {
+    throw InputError(place, "is of one camera, but there are two", "name the calibration of the pair");
+  }
+  require_size(calibration.left, capture, place);
+  if (calibration.right) require_size(calibration.right->camera, capture, place);
+}
+
+}  // namespace byre

@@ -1,0 +1,32 @@
+#include "byre/camera/still_image.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace byre {
+
+std::vector<std::uint8_t> png_of(const Image& image) {
+  // OpenCV knows no constant pixels.
+  const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
+  constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
+  return bytes;
+}
+
+Image side_by_side(const Image& left, const Image& right) {
+  assert(left.height == right.height);
+  Image both{left.width + right.width, left.height, {}};
+  both.pixels.reserve(left.pixels.size() + right.pixels.size());
+  for (int y = 0; y < left.height; ++y) {
+    for (const Image* const image : {&left, &right}) {
+      const auto row = image->pixels.begin() + std::ptrdiff_t{y} * image->width;
+      both.pixels.insert(both.pixels.end(), row, row + image->width);
+    }
+  }
+  return both;
+}
+
+}  // namespace byre

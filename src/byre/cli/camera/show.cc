@@ -1,0 +1,131 @@
+#include "byre/camera/camera_measure.h"
+#include "byre/camera/capture_thread.h"
+#include "byre/camera/still_image.h"
+#include "byre/cli/camera/commands.h"
+#include "byre/cli/shared/camera_options.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/image_condition.h"
+#include "byre/input/binary_file.h"
+#include "byre/input/formatted.h"
+#include "byre/workers/stopwatch.h"
+
+#include <iostream>
+#include <memory>
+#include <span>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct ShowOptions {
+  CameraOptions cameras;
+  double duration_s = 3.0;
+  std::optional<std::filesystem::path> still;
+};
+
+// What was seen of the cameras.
+struct Shown {
+  std::vector<Timestamp> stamps;
+  std::optional<ImageFrame> newest;
+};
+
+constexpr const char* kShowFooter = R"(Examples:
+  byre camera show /dev/video0
+  byre camera show /dev/video0 -o still.png --size 1280x720 --rate 30
+  byre camera show /dev/video0 /dev/video2 --duration 10 --exposure-limit 5
+
+Looks at the camera for a while and tells what it really gives: rate and how even it is, which moment the stamps are of,
+images that were lost, and of the newest image brightness, contrast, sharpness and how many corners there are in which
+part of it. Parts without corners hold no poses. Of two cameras it tells how far their images are apart in time.
+
+Exit codes: 0 done, 1 no image came, 3 the camera cannot be had.)";
+
+std::string describe_intervals(const std::vector<Timestamp>& stamps) {
+  const auto intervals = measure_intervals(stamps);
+  if (!intervals) return formatted("%zu frames: too few to tell a rate", stamps.size());
+  return formatted("%.2f Hz over %zu frames; intervals deviate by %.2f ms, the longest is %.1f ms", intervals->rate_hz,
+                   stamps.size(), 1e3 * intervals->deviation_s, 1e3 * intervals->longest_s);
+}
+
+std::string describe(const char* name, const Image& image) {
+  const ImageCondition condition = measure_condition(image);
+  const ImageFault fault = fault_of(condition, {});
+  std::string text =
+      row(name, formatted("brightness %.0f and contrast %.0f grey values, sharpness %.2f, %.0f %% black or white",
+                          condition.brightness, condition.contrast, condition.sharpness, 100.0 * condition.clipped) +
+                    (fault == ImageFault::none ? "" : "; " + std::string(to_string(fault))));
+  const CornerGrid grid = count_corners(image);
+  text += row("corners", formatted("%d; %d of %d parts without any:", grid.total(), grid.cells_without(),
+                                   static_cast<int>(grid.corners.size())));
+  for (int y = 0; y < CornerGrid::kRows; ++y) {
+    std::string line;
+    for (int x = 0; x < CornerGrid::kColumns; ++x) {
+      line += formatted("%6d", grid.corners[static_cast<std::size_t>(y * CornerGrid::kColumns + x)]);
+    }
+    text += row("", line);
+  }
+  return text;
+}
+
+Shown look(CaptureThread& capture, double duration_s, const InterruptCatcher& interrupt) {
+  Shown shown;
+  const Stopwatch watch;
+  while (!interrupt.caught() && watch.seconds() < duration_s) {
+    auto frame = capture.next(std::chrono::milliseconds(50));
+    for (const std::string& note : capture.take_notes()) show_warnings(std::cerr, {note});
+    if (!frame) continue;
+    shown.stamps.push_back(frame->time);
+    shown.newest = std::move(frame);
+  }
+  capture.stop();
+  return shown;
+}
+
+ExitCode run_show(const ShowOptions& options, std::ostream& result) {
+  const InterruptCatcher interrupt;
+  CaptureThread capture(options.cameras.live(), KeptFrames::all);
+  const Shown shown = look(capture, options.duration_s, interrupt);
+  result << to_text(capture.report());
+  if (!shown.newest) {
+    if (interrupt.caught()) return ExitCode::interrupted;
+    throw std::runtime_error(options.cameras.name() + " gave no image");
+  }
+  result << row("rate", describe_intervals(shown.stamps));
+  result << describe(shown.newest->right ? "left" : "image", shown.newest->left);
+  if (shown.newest->right) result << describe("right", *shown.newest->right);
+  if (options.still) {
+    const ImageFrame& frame = *shown.newest;
+    const std::vector<std::uint8_t> png = png_of(frame.right ? side_by_side(frame.left, *frame.right) : frame.left);
+    replace_file(*options.still, std::as_bytes(std::span(png)));
+    result << row("written", options.still->string());
+  }
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_camera_show(CLI::App& command) {
+  const auto options = std::make_shared<ShowOptions>();
+  CLI::Option* const devices =
+      add_text(command, "DEVICE", options->cameras.devices, kDevicesHelp)->type_name("DEVICE")->required();
+  add_output(command, Output::picture, "-o,--output", options->still, "The newest image, of a pair both side by side")
+      ->type_name("FILE.png");
+  command.add_option("--duration", options->duration_s, "How long to look")
+      ->type_name("SECONDS")
+      ->check(between(0.1, 1e6))
+      ->capture_default_str();
+  declare_camera_options(command, options->cameras, devices);
+  check_when_parsed(command, [options] {
+    if (!options->still || options->still->extension() == ".png") return;
+    throw CLI::ValidationError("--output", "names a picture that is no PNG: let it end in .png");
+  });
+  command.footer(kShowFooter);
+  return [options](std::ostream& result) { return run_show(*options, result); };
+}
+
+}  // namespace byre::cli

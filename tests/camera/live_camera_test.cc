@@ -1,0 +1,211 @@
+// Commands on live cameras, which a stand-in for V4L2 plays: made-up images always, real ones where they are at hand.
+
+#include "byre/calibration_file.h"
+#include "byre/cli/shared/program_fixture.h"
+#include "byre/recording.h"
+#include "byre/simulation/rendered_fixture.h"
+#include "byre/trajectory_file.h"
+#include "mapped_recording.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+const std::string kLeft = "/dev/video-stand-in-left";
+const std::string kRight = "/dev/video-stand-in-right";
+const std::string kBoth = "/dev/video-stand-in-both";
+
+const fs::path& room() {
+  static const RenderedFixture rendered("byre_live_room", 40, 20.0);
+  return rendered.folder();
+}
+
+class LiveCamera : public ProgramTest {
+ protected:
+  using Settings = std::map<std::string, std::string>;
+
+  ~LiveCamera() override {
+    unsetenv("LD_PRELOAD");
+    for (const auto& [name, value] : settings_) unsetenv(("BYRE_STAND_IN_" + name).c_str());
+  }
+
+  // What the made-up cameras do from now on, and the calibration they have, as calibration.yaml.
+  void plug_in(const fs::path& recording, Settings settings) {
+    settings["RECORDING"] = recording.string();
+    for (const auto& [name, value] : settings) setenv(("BYRE_STAND_IN_" + name).c_str(), value.c_str(), 1);
+    settings_ = settings;
+    write("calibration.yaml", write_calibration(open_recording(recording, {})->calibration()));
+    setenv("LD_PRELOAD", BYRE_STAND_IN, 1);
+  }
+
+  // Frames of the recording that the program wrote, against those that were played, which stamps of V4L2 know to the
+  // microsecond.
+  void expect_same(const fs::path& written, const fs::path& played, int first, int count) const {
+    unsetenv("LD_PRELOAD");
+    const auto recorded = open_recording(folder_ / written, {});
+    const auto given = open_recording(played, {});
+    ASSERT_THAT(recorded->times(), SizeIs(count)) << written;
+    for (int i = 0; i < count; ++i) {
+      const auto frame = recorded->read(i), other = given->read(first + i);
+      ASSERT_TRUE(frame && frame->right && other) << written << " " << i;
+      EXPECT_EQ(frame->time / std::chrono::microseconds(1), other->time / std::chrono::microseconds(1));
+      EXPECT_EQ(frame->left.pixels, other->left.pixels) << i;
+      EXPECT_EQ(frame->right->pixels, other->right->pixels) << i;
+    }
+    setenv("LD_PRELOAD", BYRE_STAND_IN, 1);
+  }
+
+  Settings settings_;
+};
+
+std::string times_that_it_says(const std::string& text, const std::string& what) {
+  int count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return std::to_string(count);
+}
+
+TEST_F(LiveCamera, IsListedWithWhatItOffers) {
+  plug_in(room(), {});
+  const Outcome outcome = run("camera list " + kLeft);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr(kLeft + ": Stand-in"), HasSubstr("188 x 120 at 20 Hz"),
+                                    HasSubstr("of the start of exposure"), HasSubstr("H.264; byre does not read it")));
+}
+
+TEST_F(LiveCamera, ThatIsNoneIsRefused) {
+  plug_in(room(), {});
+  for (const std::string device : {"/dev/video-stand-in-none", "/dev/null", "/dev"}) {
+    const Outcome outcome = run("camera show " + device);
+    EXPECT_EQ(outcome.exit_code, 3) << device;
+    EXPECT_THAT(outcome.errors, HasSubstr("byre: error: " + device + ": ")) << device;
+  }
+  EXPECT_THAT(run("camera show " + kLeft + " --size 640x480").errors, HasSubstr("gives no images of 640 x 480 pixels"));
+  EXPECT_THAT(run("camera show " + kLeft + " --rate 90").errors, HasSubstr("at 90 Hz, but 188 x 120 GREY at 20 Hz"));
+  EXPECT_THAT(run("camera show " + kLeft + " " + kLeft).errors, HasSubstr("end the other program"));
+}
+
+TEST_F(LiveCamera, IsLookedAt) {
+  plug_in(room(), {{"SPEED", "2"}});
+  const Outcome outcome = run("camera show " + kLeft + " " + kRight + " --duration 0.8 -o still.png");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("start of exposure"), HasSubstr("rate "), HasSubstr("sharpness"),
+                                    HasSubstr("corners "), HasSubstr("still.png")));
+  EXPECT_EQ(run("camera show " + kLeft + " -o still.jpg").exit_code, 2);
+}
+
+TEST_F(LiveCamera, IsRecordedPixelByPixel) {
+  plug_in(room(), {{"SPEED", "0"}});
+  for (const std::string& devices : {kLeft + " " + kRight, kBoth + " --side-by-side"}) {
+    for (const std::string output : {"walk", "walk.mcap"}) {
+      fs::remove_all(folder_ / output);
+      const Outcome outcome =
+          run("camera record " + devices + " -o " + output + " --frames 40 --calibration calibration.yaml");
+      ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+      EXPECT_THAT(outcome.output, AllOf(HasSubstr("40, 40 of them pairs"), Not(HasSubstr(" lost"))));
+      expect_same(output, room(), 0, 40);
+    }
+  }
+  EXPECT_EQ(run("camera record " + kLeft + " -o walk --frames 1").exit_code, 3) << "there is a recording in it";
+}
+
+TEST_F(LiveCamera, IsRecordedInFormatsOfOtherCameras) {
+  for (const char* const format : {"YUYV", "MJPG"}) {
+    plug_in(room(), {{"SPEED", "0"}, {"FORMAT", format}});
+    const std::string output = std::string("walk_") + format;
+    const Outcome outcome =
+        run("camera record " + kLeft + " " + kRight + " -o " + output + " --frames 5 --calibration calibration.yaml");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr(std::string("188 x 120 ") + format));
+    if (format == std::string("YUYV")) expect_same(output, room(), 0, 5);
+  }
+}
+
+TEST_F(LiveCamera, IsRecordedAsRealCamerasTookIt) {
+  const fs::path name = "euroc/MH_01_easy";
+  const auto recording = find_recording(name);
+  if (!recording) GTEST_SKIP() << missing(name);
+  plug_in(*recording, {{"SPEED", "0"}, {"FRAMES", "100:60"}});
+  const Outcome outcome =
+      run("camera record " + kLeft + " " + kRight + " -o walk --frames 60 --calibration calibration.yaml");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  expect_same("walk", *recording, 100, 60);
+}
+
+TEST_F(LiveCamera, TellsWhatWasLostAndDamaged) {
+  plug_in(room(), {{"SPEED", "0"}, {"LOSE", "left:5,left:6,right:20"}, {"DAMAGE", "left:30"}});
+  const Outcome outcome =
+      run("camera record " + kLeft + " " + kRight + " -o walk --frames 37 --calibration calibration.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("37, 36 of them pairs"));
+  EXPECT_THAT(outcome.output, HasSubstr("37 images, 2 lost, 1 damaged"));
+  EXPECT_THAT(outcome.output, HasSubstr("39 images, 1 lost"));
+  EXPECT_THAT(outcome.output, HasSubstr("36; 1 left images and 3 right ones alone"));
+}
+
+TEST_F(LiveCamera, PairsStampsWithinTheLimitAlone) {
+  plug_in(room(), {{"SPEED", "0"}, {"SKEW", "right:4000"}});
+  EXPECT_THAT(run("camera record " + kLeft + " " + kRight + " -o near --frames 30").output,
+              HasSubstr("30, 30 of them pairs"));
+  const Outcome far = run("camera record " + kLeft + " " + kRight + " -o far --frames 30 --pair-limit 3");
+  EXPECT_THAT(far.output, HasSubstr("30, 0 of them pairs"));
+  EXPECT_THAT(far.errors, HasSubstr("left and right images are 4.0 ms apart"));
+}
+
+TEST_F(LiveCamera, GoesOnAfterItWasUnplugged) {
+  plug_in(room(), {{"SPEED", "1"}, {"UNPLUG", "right:8:400"}});
+  const Outcome outcome =
+      run("camera record " + kLeft + " " + kRight + " -o walk --duration 1.9 --calibration calibration.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": was unplugged"), "1") << outcome.errors;
+  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": is back after"), "1") << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("away 1 times"));
+  unsetenv("LD_PRELOAD");
+  const auto recorded = open_recording(folder_ / "walk", {});
+  std::string pairs;
+  for (int i = 0; i < recorded->size(); ++i) pairs += recorded->read(i)->right ? 'p' : '.';
+  EXPECT_THAT(pairs, testing::MatchesRegex("[.p]*p[.]{3,}[.p]*p[.p]*")) << "left images go on alone";
+}
+
+TEST_F(LiveCamera, HasItsStampsInUtc) {
+  plug_in(room(), {{"SPEED", "0"}, {"STAMPS", "monotonic"}});
+  const auto before = std::chrono::system_clock::now().time_since_epoch();
+  const Outcome outcome = run("camera record " + kLeft + " -o walk --frames 10");
+  EXPECT_THAT(outcome.output, HasSubstr("by the kernel's clock, told as UTC"));
+  unsetenv("LD_PRELOAD");
+  OpenOptions options;
+  options.calibration = folder_ / "calibration.yaml";
+  options.camera = CameraChoice::left;
+  const auto recorded = open_recording(folder_ / "walk", {}, options);
+  ASSERT_THAT(recorded->times(), SizeIs(10));
+  EXPECT_GT(recorded->times().front(), before - std::chrono::seconds(5));
+  EXPECT_LT(recorded->times().front(), before + std::chrono::seconds(60));
+}
+
+TEST_F(LiveCamera, IsExposedWithinTheLimit) {
+  plug_in(room(), {{"SPEED", "0"}});
+  const Outcome outcome = run("camera show " + kLeft + " --duration 1.5 --exposure-limit 6");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const std::size_t at = outcome.output.find("exposure ");
+  ASSERT_NE(at, std::string::npos) << outcome.output;
+  const double ms = std::strtod(outcome.output.c_str() + at + std::string("exposure ").size(), nullptr);
+  EXPECT_GT(ms, 0.0) << outcome.output;
+  EXPECT_LE(ms, 6.0) << outcome.output;
+}
+
+}  // namespace
+}  // namespace byre::cli
