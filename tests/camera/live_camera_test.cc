@@ -207,5 +207,63 @@ TEST_F(LiveCamera, IsExposedWithinTheLimit) {
   EXPECT_LE(ms, 6.0) << outcome.output;
 }
 
+// Positions on a map, of a run on live cameras and of the recording that they play.
+void expect_same_path(const Trajectory& live, const Trajectory& played, double tolerance) {
+  ASSERT_GE(live.size(), 5u) << "however slow the machine is";
+  double worst = 0.0;
+  int compared = 0;
+  for (const StampedPose& sample : live) {
+    const auto other = pose_at(played, sample.time, std::chrono::milliseconds(200));
+    if (!other) continue;
+    worst = std::max(worst, (sample.world_from_body.translation - other->translation).norm());
+    ++compared;
+  }
+  EXPECT_GE(compared, static_cast<int>(live.size()) * 9 / 10);
+  EXPECT_LT(worst, tolerance);
+}
+
+TEST_F(LiveCamera, IsTrackedOnAMapAsItsRecordingIs) {
+  const fs::path name = "euroc/MH_01_easy";
+  const auto real = find_recording(name);
+  const fs::path played = real ? *real : room();
+  SCOPED_TRACE(real ? "real images" : "made-up images: " + missing(name));
+  const std::string range = real ? "0:60" : "0:40";
+  ASSERT_EQ(
+      run("map " + played.string() + " --frames " + range + " -o map.byre --trajectory map.txt --quiet").exit_code, 0);
+  plug_in(played, {{"SPEED", "0.5"}, {"FRAMES", real ? "0:60" : "0:40"}, {"UNPLUG", "right:12:600"}});
+  const Outcome outcome = run("run --live " + kLeft + " " + kRight + " --calibration calibration.yaml --map map.byre " +
+                              "--duration " + (real ? "6" : "4") + " --trajectory live.txt --stats stats.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("was unplugged"));
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("passed over"), HasSubstr("away 1 times")));
+  EXPECT_THAT(read("stats.json"), HasSubstr("\"format\": \"live\""));
+  expect_same_path(read_trajectory(folder_ / "live.txt"), read_trajectory(folder_ / "map.txt"), real ? 0.02 : 0.05);
+}
+
+TEST_F(LiveCamera, IsMappedUntilCtrlC) {
+  plug_in(room(), {{"SPEED", "1"}});
+  const pid_t process =
+      start({"map", "--live", kBoth, "--side-by-side", "--calibration", (folder_ / "calibration.yaml").string(), "-o",
+             (folder_ / "room.byre").string(), "--trajectory", (folder_ / "room.txt").string()});
+  ASSERT_GT(process, 0);
+  EXPECT_TRUE(appears("1 frames", "stderr.txt")) << read("stderr.txt");
+  kill(process, SIGINT);
+  EXPECT_EQ(exit_code_of(process), 130);
+  EXPECT_GE(read_trajectory(folder_ / "room.txt").size(), 1u);
+  EXPECT_TRUE(fs::exists(folder_ / "room.byre"));
+  EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out"));
+}
+
+TEST_F(LiveCamera, NeedsTheCalibrationOfItself) {
+  plug_in(room(), {});
+  EXPECT_EQ(run("run --live " + kLeft).exit_code, 2);
+  EXPECT_EQ(run("run").exit_code, 2);
+  EXPECT_EQ(run("run " + room().string() + " --live " + kLeft + " --calibration calibration.yaml").exit_code, 2);
+  EXPECT_EQ(run("run --live " + kLeft + " --calibration calibration.yaml --fps 3").exit_code, 2);
+  const Outcome alone = run("run --live " + kLeft + " --calibration calibration.yaml");
+  EXPECT_EQ(alone.exit_code, 3);
+  EXPECT_THAT(alone.errors, HasSubstr("is of a pair, but there is one camera"));
+}
+
 }  // namespace
 }  // namespace byre::cli

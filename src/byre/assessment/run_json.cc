@@ -53,7 +53,7 @@ Json protocol_json(const MapProtocol& protocol) {
   Json json = {{"program", protocol.program},
                {"version", BYRE_VERSION},
                {"recording", protocol.recording},
-               {"format", to_string(protocol.format)},
+               {"format", protocol.format ? to_string(*protocol.format) : "live"},
                {"camera", to_string(protocol.camera)},
                {"scale", protocol.is_metric ? "metric" : "unknown"},
                {"range",

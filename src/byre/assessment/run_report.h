@@ -13,7 +13,7 @@ namespace byre {
 // How a run was made; without it its figures cannot be compared with others.
 struct MapProtocol {
   std::string recording;
-  RecordingFormat format = RecordingFormat::euroc;
+  std::optional<RecordingFormat> format = RecordingFormat::euroc;  // empty: live cameras
   CameraChoice camera = CameraChoice::stereo;
   FrameRange range;
   int frames_in_range = 0;

@@ -35,6 +35,7 @@ std::string describe(const DeviceReport& device) {
   if (counts.damaged > 0) text += formatted(", %d damaged", counts.damaged);
   if (counts.out_of_order > 0) text += formatted(", %d out of order", counts.out_of_order);
   if (device.times_away > 0) text += formatted("; away %d times for %.1f s", device.times_away, device.seconds_away);
+  if (device.is_away) text += ", and still";
   if (device.exposure) {
     text += formatted("; exposure %.1f ms, gain %.1f", 1e3 * device.exposure->seconds, device.exposure->gain);
   }
@@ -102,12 +103,14 @@ void LiveCameras::note_difference() {
   constexpr int kEnough = 20;  // left images without a right one, until that is told
   const StampPairCounts& counts = pairing_.counts();
   if (has_told_difference_ || counts.left_alone < kEnough || counts.left_alone < counts.pairs) return;
-  if (!pairing_.last_difference()) return;  // there are no right images at all
+  const auto difference = pairing_.last_difference();
+  const bool is_apart = difference && std::chrono::abs(*difference) > options_.pairing.tolerance;
+  if (!is_apart) return;  // right images stay away
   has_told_difference_ = true;
   notes_.push_back(
       formatted("left and right images are %.1f ms apart, which is no pair; have both cameras triggered "
                 "together, or raise --pair-limit and accept worse poses",
-                1e3 * std::abs(to_seconds(*pairing_.last_difference()))));
+                1e3 * std::abs(to_seconds(*difference))));
 }
 
 void LiveCameras::control_exposure(const Image& left) {

@@ -47,10 +47,12 @@ TEST(LiveCameraReport, TellsOnlyWhatHappened) {
   report.devices.front().times_away = 1;
   report.devices.front().seconds_away = 2.5;
   report.devices.front().exposure = Exposure{0.005, 2.0};
+  report.devices.front().is_away = true;
   report.pairs = StampPairCounts{190, 10, 4};
   report.last_difference = 1500us;
-  EXPECT_THAT(to_text(report), AllOf(HasSubstr("200 images, 3 lost; away 1 times for 2.5 s; exposure 5.0 ms, gain 2.0"),
-                                     HasSubstr("190; 10 left images and 4 right ones alone; the last 1.50 ms apart")));
+  EXPECT_THAT(to_text(report),
+              AllOf(HasSubstr("200 images, 3 lost; away 1 times for 2.5 s, and still; exposure 5.0 ms, gain 2.0"),
+                    HasSubstr("190; 10 left images and 4 right ones alone; the last 1.50 ms apart")));
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ void WatchedDevice::lose(const std::string& why, Timestamp now) {
   last_attempt_ = now;
   if (away_since_) return;
   away_since_ = now;
+  report_.is_away = true;
   ++report_.times_away;
   notes_.push_back(path_.string() + ": " + why + "; it is taken again when it is back");
 }
@@ -73,6 +74,7 @@ void WatchedDevice::note_image(Timestamp now) {
   const double seconds = to_seconds(now - *away_since_);
   report_.seconds_away += seconds;
   away_since_.reset();
+  report_.is_away = false;
   notes_.push_back(path_.string() + formatted(": is back after %.1f s", seconds));
 }
 

@@ -18,8 +18,9 @@ struct DeviceReport {
   VideoMode mode;
   StampMoment moment = StampMoment::frame_end;  // moment of the last image's stamp
   CaptureCounts counts;
-  int times_away = 0;  // times that it was unplugged, or gave no image for long, and had to be opened anew
-  double seconds_away = 0.0;
+  int times_away = 0;         // times that it was unplugged, or gave no image for long, and had to be opened anew
+  double seconds_away = 0.0;  // without those since it went last, where it is away
+  bool is_away = false;
   std::optional<Exposure> exposure{};  // where it is controlled
 };
 

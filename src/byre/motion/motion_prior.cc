@@ -46,6 +46,20 @@ Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
   return covariance;
 }
 
+// Whether wheels turned otherwise than the gyroscope says, as where one spins or is lifted.
+bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
+  constexpr double kRate = 0.1;   // radians per second
+  constexpr double kShare = 0.2;  // share of the turn
+  return angle_between(by_wheels, by_gyroscope) > kRate * seconds + kShare * rotation_log(by_gyroscope).norm();
+}
+
+// What spinning wheels tell of the way may be wrong by all of it.
+void forget_way(BodyMotion& motion) {
+  constexpr double kLeast = 0.01;  // lengths of the map
+  const double sigma = motion.last_from_body.translation.norm() + kLeast;
+  motion.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+}
+
 }  // namespace
 
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
@@ -145,6 +159,7 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
   const auto turn = turn_by_gyroscope(earlier, later);
   if (!turn) return motion;
   if (motion) {
+    if (is_slip(motion->last_from_body.rotation, *turn, to_seconds(later - earlier))) forget_way(*motion);
     Pose base = mounting_->base_from_body;
     base.translation /= mounting_->metres_per_unit;
     Pose base_motion = base * motion->last_from_body * inverse(base);

@@ -23,6 +23,7 @@ struct Told {
   bool gyroscope = false;
   double slip_from = 1e9;  // seconds, from when on the wheels spin
   double slip_to = 1e9;    // seconds
+  double slip_turn = 0.0;  // radians that they seem to turn then, each time that they tell
 };
 
 // A prior that has followed a drive: seen until dark, told until the end.
@@ -34,7 +35,10 @@ MotionPrior followed(const Drive& drive, const Told& told, double dark, double e
     const double t = step * 0.01;
     if (told.wheels && step % 2 == 0) {
       Pose motion = inverse(Drive::world_from_base(t - 0.02)) * Drive::world_from_base(t);
-      if (t > told.slip_from && t < told.slip_to) motion.translation.x() += 0.02;
+      if (t > told.slip_from && t < told.slip_to) {
+        motion.translation.x() += 0.02;
+        motion.rotation = motion.rotation * rotation_exp({0.0, 0.0, told.slip_turn});
+      }
       wheels = wheels * motion;
       prior.add(StampedPose{from_seconds(t + drive.wheel_delay), wheels});
     }
@@ -101,6 +105,26 @@ TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
   EXPECT_LT(error.head<3>().norm(), 0.1);
   EXPECT_LT(error.tail<3>().norm(), 0.01);
   EXPECT_FALSE(prior.between(from_seconds(65.0), from_seconds(65.05)));
+}
+
+TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const Told lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
+  const BodyMotion told = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
+  const BodyMotion sound = over(followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0), 60.0, 70.0);
+  const double told_variance = told.covariance.topLeftCorner<3, 3>().trace();
+  const double sound_variance = sound.covariance.topLeftCorner<3, 3>().trace();
+  EXPECT_GT(told_variance, 25.0 * sound_variance);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
+// A wheel in the air seems to turn the robot, which is no delay.
+TEST(MotionPrior, FindsTheDelayThoughAWheelWasLifted) {
+  const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.03, .noise = 0.001};
+  const MotionPrior prior = followed(drive, {.slip_from = 40.0, .slip_to = 43.0, .slip_turn = 0.03}, 60.0, 60.0);
+  EXPECT_NEAR(prior.time_offset(), 0.03, 0.01);
+  EXPECT_FALSE(prior.are_wheels_slipping());
 }
 
 TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {

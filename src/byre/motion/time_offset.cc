@@ -1,5 +1,6 @@
 #include "byre/motion/time_offset.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -10,8 +11,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Timestamp kStep = 20ms;
-constexpr int kSteps = 10;          // either way
-constexpr double kLeastTurn = 1.5;  // radians, all turns together
+constexpr int kSteps = 10;           // either way
+constexpr double kMostError = 0.03;  // radians that count: where a wheel slips, no offset makes up for it
+constexpr double kLeastTurn = 1.5;   // radians, all turns together
 
 double turn_of(const SeenMotion& motion, const Eigen::Vector3d& up) {
   return rotation_log(motion.body.rotation).dot(up);
@@ -25,7 +27,8 @@ std::optional<double> difference(const std::deque<SeenMotion>& seen, const Eigen
   for (const SeenMotion& motion : seen) {
     const auto told = wheels.between(motion.earlier + offset, motion.later + offset);
     if (!told) continue;
-    sum += std::pow(rotation_log(told->rotation).z() - turn_of(motion, up), 2);
+    const double error = std::abs(rotation_log(told->rotation).z() - turn_of(motion, up));
+    sum += std::pow(std::min(error, kMostError), 2);
     ++count;
   }
   return 2 * count > seen.size() ? std::optional(sum / static_cast<double>(count)) : std::nullopt;

@@ -1,11 +1,9 @@
 #include "byre/playback/map_run.h"
 
-#include "byre/playback/decode_ahead.h"
-#include "byre/playback/live_clock.h"
+#include "byre/playback/frame_source.h"
 #include "byre/system/resources.h"
 #include "byre/workers/stopwatch.h"
 
-#include <chrono>
 #include <utility>
 
 namespace byre {
@@ -35,11 +33,7 @@ MappedFrame mapped(Engine& engine, const DecodedFrame& decoded) {
 // Hands over what was told of the motion up to a frame, as it would have come on the robot.
 class MotionFeed {
  public:
-  MotionFeed(const MotionSamples& samples, Timestamp first_frame) : samples_(samples) {
-    constexpr Timestamp kBefore = std::chrono::seconds(1);
-    while (wheel_ < samples.wheels.size() && samples.wheels[wheel_].time < first_frame - kBefore) ++wheel_;
-    while (rate_ < samples.rates.size() && samples.rates[rate_].time < first_frame - kBefore) ++rate_;
-  }
+  explicit MotionFeed(const MotionSamples& samples) : samples_(samples) {}
 
   void feed(Engine& engine, Timestamp until) {
     for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
@@ -80,24 +74,25 @@ void take_over_result(const Engine& engine, MapRun& run) {
 
 MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
+  PlayedRecording frames(recording, options.pace == Pace::live);
+  return run_map(frames, options, hooks, std::move(before));
+}
+
+MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks, std::optional<Map> before) {
   const Stopwatch watch;
-  Engine engine(recording.calibration(), options, std::move(before));
-  DecodeAhead decoder(recording);
-  MotionFeed feed(recording.motion(), recording.times().front());
-  LiveClock clock;
+  Engine engine(frames.calibration(), options, std::move(before));
+  MotionFeed feed(frames.motion());
   MapRun run;
   bool is_begun = false;
-  while (std::optional<DecodedFrame> decoded = decoder.next()) {
-    if (options.pace == Pace::live) {
-      const double late = clock.wait_until_due(decoded->time, hooks.should_stop);
-      if (late > 0.0) run.lateness.push_back(late);
-    }
+  while (const auto frame = frames.next(hooks.should_stop)) {
+    if (frame->late_s > 0.0) run.lateness.push_back(frame->late_s);
     if (hooks.should_stop()) break;
-    run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
-    feed.feed(engine, decoded->time);
-    run.frames.push_back(mapped(engine, *decoded));
+    const DecodedFrame& decoded = frame->decoded;
+    run.warnings.insert(run.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
+    feed.feed(engine, decoded.time);
+    run.frames.push_back(mapped(engine, decoded));
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
-    if (hooks.look && decoded->images) hooks.look({*decoded->images, run.frames.back(), engine.session()});
+    if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
     is_begun = is_begun || has_pose(run.frames.back());
     if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.session().self_calibration());
   }

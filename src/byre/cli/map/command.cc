@@ -1,20 +1,17 @@
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/run_report.h"
-#include "byre/cli/check/report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/map/options.h"
 #include "byre/cli/map/posed_map.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/record_file.h"
-#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/autosave.h"
-#include "byre/playback/scaled_recording.h"
-#include "byre/playback/source_recording.h"
 #include "byre/slam/online_copy.h"
 #include "byre/system/stored_map.h"
 
@@ -43,7 +40,7 @@ void save(Map offline, const std::optional<RefinedCalibration>& calibration, con
   save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
 }
 
-MapRun run_and_autosave(Recording& recording, const EngineOptions& run_options, const MapOptions& options,
+MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, RecordFile& messages,
                         const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
@@ -60,7 +57,7 @@ MapRun run_and_autosave(Recording& recording, const EngineOptions& run_options, 
       autosave.offer(online, calibration);
     };
   }
-  MapRun run = run_with_progress(recording, run_options, hooks, interrupt, options.quiet, std::move(before));
+  MapRun run = input.run(run_options, hooks, interrupt, std::move(before));
   autosave.finish();
   run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
   return run;
@@ -99,13 +96,9 @@ MapRecord record_of(const MapOptions& options) {
   return record;
 }
 
-MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, const Recording& recording) {
+MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, const RunInput& input) {
   MapProtocol protocol;
-  protocol.recording = options.recording.string();
-  protocol.format = guess_format(options.recording);
-  protocol.camera = camera_of(recording, options.open);
-  protocol.range = options.range;
-  protocol.frames_in_range = recording.size();
+  input.describe(protocol);
   protocol.options = options.engine_options();
   protocol.options.known = record.about.recordings.back().refined;
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
@@ -119,26 +112,26 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
   MapRecord record = record_of(options);
-  const auto [recording, is_metric, body_from_camera] =
-      open_scaled(options.recording, options.range, options.open, options.extended.has_value());
-  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  RunInput input(
+      {options.recording, options.range, options.open, options.live, options.extended.has_value(), options.quiet});
   std::optional<Map> extended = take_extended(options, record);
-  record.about.recordings.push_back(describe_source(options.recording, *recording));
+  record.about.recordings.push_back(input.source());
   take_known_calibration(record.about.recordings);
-  record.about.scale = is_metric ? MapScale::metric : MapScale::unknown;
-  MapProtocol protocol = protocol_of(options, record, *recording);
-  protocol.is_metric = is_metric;
+  record.about.scale = input.scaled().is_metric ? MapScale::metric : MapScale::unknown;
+  MapProtocol protocol = protocol_of(options, record, input);
 
   limit_image_threads(1);
-  if (!options.quiet) show_check(std::cerr, *recording);
+  input.show_check();
   const InterruptCatcher interrupt(options.outputs());
-  RecordFile messages(options.record, recording->calibration(), options.record_images);
+  RecordFile messages(options.record, input.calibration(), options.record_images);
   const MapRun run =
-      run_and_autosave(*recording, protocol.options, options, record, std::move(extended), messages, interrupt);
+      run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
   const ResourceUse resources = resources_used_so_far();
+  input.note_times(run, record.about.recordings.back());
+  input.note_frames(run, protocol);
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep
   OutputWriter outputs;
   outputs.attempt([&] {
@@ -146,7 +139,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   });
   write_results(options, run, protocol, resources, outputs);
   outputs.require_written();
-  result << to_text(run, protocol, resources, names_of(options.outputs()));
+  result << to_text(run, protocol, resources, names_of(options.outputs())) << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   messages.require_written();
   require_poses(run, protocol);

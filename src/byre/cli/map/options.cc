@@ -28,17 +28,16 @@ constexpr const char* kMapFooter = R"(Examples:
   byre map images --calibration camchain.yaml --fps 20 -o barn.byre
   byre map walk.bag --calibration camchain.yaml -o barn.byre
   byre map rosbag2_2026_11_20 --left /cam0/image_raw --right /cam1/image_raw -o barn.byre --record mapping.mcap
+  byre map --live /dev/video0 /dev/video2 --calibration camchain.yaml -o barn.byre --duration 120
 
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
-live feeds the frames at their own time stamps, none is dropped. Trajectories are of the body: EuRoC's is the IMU,
+live feeds the frames at their own time stamps, none is dropped; of cameras (--live) it takes the newest one. Trajectories are of the body: EuRoC's is the IMU,
 KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
 points and redundant keyframes are removed. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
 writes all files, then the exit code is 130 or 143; "byre refine" makes up for it. A second one ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
-  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
-      ->type_name("FOLDER|VIDEO|BAG")
-      ->required();
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
   add_output(command, Output::map, "-o,--output", options.map,
              "The map, for \"byre localise\", \"byre inspect\" and later missions")
       ->type_name("MAP");
@@ -85,6 +84,10 @@ void require_consistent_extension(const MapOptions& options) {
 
 void require_consistent(const MapOptions& options) {
   require_sense(options.range);
+  require_one_input(options.recording, options.live, options.open);
+  if (options.live.is_wanted() && options.given_poses) {
+    throw CLI::ValidationError("--poses", "are those of a recording, so they go not with --live");
+  }
   if (!options.map && !options.trajectory) {
     throw CLI::ValidationError("--output",
                                "name a file for the map (-o barn.byre), the trajectory (--trajectory), or both");
@@ -113,6 +116,7 @@ std::vector<fs::path> MapOptions::outputs() const {
 
 EngineOptions MapOptions::engine_options() const {
   EngineOptions engine = read_engine_options(options_file);
+  if (live.is_wanted()) engine.pace = Pace::live;
   if (pace) engine.pace = *pace;
   if (refinement) engine.extract.refinement = *refinement;
   if (no_self_calibration) engine.self_calibrate = false;
@@ -125,6 +129,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_building(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
+  declare_live_options(command, options.live);
   declare_pace(command, options.pace);
   add_choice(command, "--refine", options.refinement, {Refinement::none, Refinement::stereo, Refinement::all},
              "Matches refined in the image; less than all is for comparison (all)");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/cli/shared/options_file.h"
+#include "byre/cli/shared/run_input.h"
 #include "byre/playback/map_run.h"
 #include "byre/trajectory_file.h"
 
@@ -17,7 +18,8 @@ namespace byre::cli {
 
 // The command line of "byre map".
 struct MapOptions {
-  std::filesystem::path recording;
+  std::filesystem::path recording;  // empty where cameras are live
+  LiveOptions live;
   std::optional<std::filesystem::path> map;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> causal_trajectory;

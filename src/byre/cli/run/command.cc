@@ -1,13 +1,12 @@
 #include "byre/assessment/event_log.h"
 #include "byre/assessment/mission_judge.h"
 #include "byre/assessment/run_report.h"
-#include "byre/cli/check/report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/run/options.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/record_file.h"
-#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/trajectory_input.h"
@@ -16,8 +15,6 @@
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
 #include "byre/playback/run_on_plan.h"
-#include "byre/playback/scaled_recording.h"
-#include "byre/playback/source_recording.h"
 #include "byre/system/stored_map.h"
 
 #include <cerrno>
@@ -51,14 +48,10 @@ std::optional<MissionTruth> load_truths(const RunOptions& options) {
   return truth;
 }
 
-MapProtocol protocol_of(const RunOptions& options, const Recording& recording) {
+MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   MapProtocol protocol;
   protocol.program = "byre run";
-  protocol.recording = options.recording.string();
-  protocol.format = guess_format(options.recording);
-  protocol.camera = camera_of(recording, options.open);
-  protocol.range = options.range;
-  protocol.frames_in_range = recording.size();
+  input.describe(protocol);
   protocol.options = options.engine_options();
   protocol.options.vocabulary = open_vocabulary(options.vocabulary);
   if (!options.map) return protocol;
@@ -101,8 +94,8 @@ class EventFile {
   bool has_failed_ = false;
 };
 
-MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunOptions& options,
-                   WatchedRunViewer* viewer, EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
+MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewer* viewer, EventFile& events,
+                   RecordFile& record, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
   if (viewer != nullptr || record.is_wanted()) {
     hooks.look = [&record, viewer](const RunView& view) {
@@ -116,15 +109,17 @@ MapRun run_and_log(Recording& recording, const MapProtocol& protocol, const RunO
     record.note_unread(frame);
     if (viewer != nullptr) viewer->note_unread(frame);
   };
-  return run_with_progress(recording, protocol.options, hooks, interrupt, options.quiet);
+  return input.run(protocol.options, hooks, interrupt);
 }
 
-void save_online_map(const MapRun& run, const RunOptions& options, const ScaledRecording& recording,
+void save_online_map(const MapRun& run, const RunOptions& options, const RunInput& input,
                      const Vocabulary& vocabulary) {
   StoredMap stored;
   stored.map = run.map;
-  stored.recordings = {describe_source(options.recording, *recording.recording, run.calibration)};
-  stored.scale = recording.is_metric ? MapScale::metric : MapScale::unknown;
+  stored.recordings = {input.source()};
+  input.note_times(run, stored.recordings.back());
+  stored.recordings.back().refined = run.calibration;
+  stored.scale = input.scaled().is_metric ? MapScale::metric : MapScale::unknown;
   save_for_use(std::move(stored), vocabulary, "", *options.online_map);
 }
 
@@ -148,24 +143,19 @@ void require_frames(const MissionStatistics& statistics) {
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
-  const ScaledRecording opened = open_scaled(options.recording, options.range, options.open, options.map.has_value());
-  if (!options.quiet) show_warnings(std::cerr, opened.recording->warnings());
+  RunInput input(
+      {options.recording, options.range, options.open, options.live, options.map.has_value(), options.quiet});
   const std::optional<MissionTruth> truth = load_truths(options);
-  MapProtocol protocol = protocol_of(options, *opened.recording);
-  protocol.is_metric = opened.is_metric;
+  MapProtocol protocol = protocol_of(options, input);
 
   limit_image_threads(1);
-  if (!options.quiet) show_check(std::cerr, *opened.recording);
+  input.show_check();
   std::optional<WatchedRunViewer> viewer;
-  if (options.view.is_wanted) {
-    viewer.emplace(options.view,
-                   WatchedRun{options.recording, *opened.recording, options.map, protocol.options.offline});
-  }
+  if (options.view.is_wanted) viewer.emplace(options.view, input.watched(options.map, protocol.options.offline));
   const InterruptCatcher interrupt(options.outputs());
   EventFile events(options.events);
-  RecordFile record(options.record, opened.recording->calibration(), options.record_images);
-  MapRun run =
-      run_and_log(*opened.recording, protocol, options, viewer ? &*viewer : nullptr, events, record, interrupt);
+  RecordFile record(options.record, input.calibration(), options.record_images);
+  MapRun run = run_and_log(input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
   record.finish(run);
   if (viewer) viewer->finish(run);
   if (options.online_map && run.map.keyframe_count() == 0) {
@@ -175,14 +165,15 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   OutputWriter outputs;
   outputs.attempt([&] {
-    if (options.online_map) save_online_map(run, options, opened, *protocol.options.vocabulary);
+    if (options.online_map) save_online_map(run, options, input, *protocol.options.vocabulary);
   });
   const ResourceUse resources = resources_used_so_far();
-  const MissionOutcome mission = judge_mission(run, protocol.options, truth, opened);
+  const MissionOutcome mission = judge_mission(run, protocol.options, truth, input.scaled());
+  input.note_frames(run, protocol);
   if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
   write_results(options, run, protocol, mission, resources, outputs);
   outputs.require_written();
-  result << to_text(run, protocol, resources, names_of(options.outputs()), mission);
+  result << to_text(run, protocol, resources, names_of(options.outputs()), mission) << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {
     result.flush();

@@ -29,6 +29,8 @@ constexpr const char* kRunFooter = R"(Examples:
   byre run evening.mcap --map barn.byre --left /front/left/image_raw --right /front/right/image_raw
   byre run evening_round --map barn.byre --record evening.mcap --record-images
   byre run evening_round --truth evening_round --stats without_map.json
+  byre run --live /dev/video0 /dev/video2 --calibration camchain.yaml --map barn.byre --trajectory map.txt
+  byre run --live /dev/video0 --side-by-side --calibration camchain.yaml --map barn.byre --exposure-limit 5 --view
 
 With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
 beside them, and says of each frame how far its pose may be trusted. The map's file is only read. Poses are in the map's
@@ -37,6 +39,8 @@ beside the map; with --frame plan poses in the map become poses on the floor pla
 Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+With --live the newest frame of the cameras is taken, and --pace live holds unless told otherwise; docs/cameras.md says
+more. The run goes on until --duration is over, or Ctrl-C.
 With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
 as long as --view-for says; docs/viewer.md says more.
 Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
@@ -44,9 +48,7 @@ when no frame got a pose, more than one frame in twenty could not be read, or ev
 describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
-  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)
-      ->type_name("FOLDER|VIDEO|BAG")
-      ->required();
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
   CLI::Option* const map =
       add_input(command, Input::file, "--map", options.map, "The offline map of the mission (none: plain SLAM)")
           ->type_name("MAP");
@@ -102,6 +104,10 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
 
 void require_consistent(const RunOptions& options) {
   require_sense(options.range);
+  require_one_input(options.recording, options.live, options.open);
+  if (options.live.is_wanted() && options.truth) {
+    throw CLI::ValidationError("--truth", "is of a recording: record the cameras (--record-images), then run on that");
+  }
   if (options.localise_only && options.online_map) {
     throw CLI::ValidationError("--localise-only", "maps nothing, so there is nothing to --save-online");
   }
@@ -130,6 +136,7 @@ std::vector<fs::path> RunOptions::outputs() const {
 
 EngineOptions RunOptions::engine_options() const {
   EngineOptions engine = read_engine_options(options_file);
+  if (live.is_wanted()) engine.pace = Pace::live;
   if (pace) engine.pace = *pace;
   if (offline_weight) engine.session.track.offline_weight = *offline_weight;
   if (offline_policy) engine.session.track.offline_policy = *offline_policy;
@@ -142,6 +149,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_outputs(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
+  declare_live_options(command, options.live);
   declare_pace(command, options.pace);
   declare_tracking(command, options);
   declare_watching(command, options.view);

@@ -2,6 +2,7 @@
 
 #include "byre/cli/shared/options_file.h"
 #include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_options.h"
 #include "byre/playback/map_run.h"
 #include "byre/trajectory_file.h"
@@ -18,7 +19,8 @@ namespace byre::cli {
 
 // The command line of "byre run".
 struct RunOptions {
-  std::filesystem::path recording;
+  std::filesystem::path recording;  // empty where cameras are live
+  LiveOptions live;
   std::optional<std::filesystem::path> map;  // the offline map; without it plain SLAM
   bool localise_only = false;
   PoseFrame frame = PoseFrame::map;

@@ -17,8 +17,9 @@ constexpr int kLineShares = 10;
 constexpr int kBarWidth = 24;  // characters
 
 std::string bar(int done, int total) {
+  if (total == 0) return "";
   const auto filled = static_cast<std::size_t>(static_cast<std::int64_t>(kBarWidth) * done / total);
-  return std::string(kBarWidth, '.').replace(0, filled, filled, '#');
+  return "[" + std::string(kBarWidth, '.').replace(0, filled, filled, '#') + "] ";
 }
 
 std::string_view colour_of(Tone tone) {
@@ -47,10 +48,12 @@ bool has_colours() {
 }
 
 std::string describe(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
-  std::string text = formatted("%d of %d %s", done, total, unit.c_str());
+  std::string text =
+      total == 0 ? formatted("%d %s", done, unit.c_str()) : formatted("%d of %d %s", done, total, unit.c_str());
   if (elapsed_s > 0.0) {
     const double rate = done / elapsed_s;
-    text += formatted(", %.1f %s/s, %s left", rate, unit.c_str(), format_duration((total - done) / rate).c_str());
+    text += formatted(", %.1f %s/s", rate, unit.c_str());
+    if (total > 0) text += formatted(", %s left", format_duration((total - done) / rate).c_str());
   }
   return text + ", " + std::string(state);
 }
@@ -69,7 +72,7 @@ bool Progress::is_due(int done, double elapsed_s) const {
   const double since_shown_s = elapsed_s - shown_elapsed_s_;
   if (style_ != ProgressStyle::lines) return since_shown_s >= kBarInterval_s;
   const auto share = [this](int frames) { return static_cast<std::int64_t>(kLineShares) * frames / total_; };
-  return share(done) > share(shown_done_) || since_shown_s >= kLineInterval_s;
+  return (total_ > 0 && share(done) > share(shown_done_)) || since_shown_s >= kLineInterval_s;
 }
 
 void Progress::update(int done, double elapsed_s, std::string_view state, Tone tone) {
@@ -80,7 +83,7 @@ void Progress::update(int done, double elapsed_s, std::string_view state, Tone t
     constexpr const char* kCutAtEdge = "\x1b[?7l";
     constexpr const char* kWrapAtEdge = "\x1b[?7h";
     constexpr const char* kClearToEnd = "\x1b[K";
-    stream_ << kCutAtEdge << "\r[" << bar(done, total_) << "] " << text << kClearToEnd << kWrapAtEdge << std::flush;
+    stream_ << kCutAtEdge << "\r" << bar(done, total_) << text << kClearToEnd << kWrapAtEdge << std::flush;
   } else {
     stream_ << text << std::endl;
   }

@@ -22,7 +22,8 @@ ProgressStyle progress_style(bool quiet);
 // Tells how far the frames, or other things, are, how fast they go, and for how long they still will.
 class Progress {
  public:
-  // unit: what is counted, in the plural. The stream must outlive it.
+  // total: zero where nobody knows how many there will be. unit: what is counted, in the plural. The stream must
+  // outlive it.
   Progress(std::ostream& stream, ProgressStyle style, int total, std::string unit = "frames")
       : stream_(stream), style_(style), total_(total), unit_(std::move(unit)) {}
 

@@ -12,9 +12,9 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string shown(ProgressStyle style, int total, double seconds_per_frame) {
+std::string shown(ProgressStyle style, int total, double seconds_per_frame, bool is_total_known = true) {
   std::ostringstream stream;
-  Progress progress(stream, style, total);
+  Progress progress(stream, style, is_total_known ? total : 0);
   for (int done = 1; done <= total; ++done) progress.update(done, done * seconds_per_frame, "tracking");
   progress.close();
   return stream.str();
@@ -40,6 +40,13 @@ TEST(Progress, RedrawsTheBarInOneLine) {
   EXPECT_THAT(
       text,
       EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\x1b[?7h\n"));
+}
+
+TEST(Progress, TellsNoEndWhereNobodyKnowsIt) {
+  EXPECT_EQ(shown(ProgressStyle::lines, 30, 1.0, false),
+            "1 frames, 1.0 frames/s, tracking\n11 frames, 1.0 frames/s, tracking\n21 frames, 1.0 frames/s, tracking\n");
+  const std::string text = shown(ProgressStyle::bar, 2, 1.0, false);
+  EXPECT_THAT(text, HasSubstr("\r2 frames, 1.0 frames/s, tracking"));
 }
 
 std::string end_of_bar(ProgressStyle style, Tone tone) {

@@ -40,9 +40,13 @@ FinishHooks finish_hooks(const InterruptCatcher& interrupt, bool quiet) {
   return hooks;
 }
 
-MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
-                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
-  Progress progress(std::cerr, progress_style(quiet), recording.size());
+namespace {
+
+// frames: how many will come; zero: not known.
+template <typename Source>
+MapRun run_source(Source& source, int frames, const EngineOptions& options, const MapRunHooks& more_hooks,
+                  const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+  Progress progress(std::cerr, progress_style(quiet), frames);
   const Stopwatch watch;
   const FinishHooks finishing = finish_hooks(interrupt, quiet);
   MapRunHooks hooks;
@@ -58,9 +62,21 @@ MapRun run_with_progress(Recording& recording, const EngineOptions& options, con
     progress.close();
     if (finishing.before_step) finishing.before_step(step);
   };
-  MapRun run = run_map(recording, options, hooks, std::move(before));
+  MapRun run = run_map(source, options, hooks, std::move(before));
   progress.close();
   return run;
+}
+
+}  // namespace
+
+MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
+                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+  return run_source(recording, recording.size(), options, more_hooks, interrupt, quiet, std::move(before));
+}
+
+MapRun run_with_progress(FrameSource& frames, const EngineOptions& options, const MapRunHooks& more_hooks,
+                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+  return run_source(frames, 0, options, more_hooks, interrupt, quiet, std::move(before));
 }
 
 }  // namespace byre::cli

@@ -20,10 +20,10 @@ namespace {
 
 RunDescription describe(const ViewOptions& options, const WatchedRun& run) {
   RunDescription description;
-  description.name = std::filesystem::absolute(run.recording).lexically_normal().filename().string();
-  description.calibration = run.opened.calibration();
-  description.frames = run.opened.size();
-  description.last_time = run.opened.times().back();
+  description.name = run.name;
+  description.calibration = run.calibration;
+  description.frames = run.frames;
+  description.last_time = run.last_time;
   if (run.map) {
     description.map_name = run.map->filename().string();
     description.offline = scene_of({&run.offline->map(), Map(Origin::online)});
@@ -58,7 +58,7 @@ std::string describe_stay(double stay_s, bool is_asked_for) {
 
 WatchedRunViewer::WatchedRunViewer(const ViewOptions& options, const WatchedRun& run)
     : viewer_(start_viewer(options, run)),
-      messages_(viewer_.messages(), run.opened.calibration(), {.with_images = true, .is_watched = true}) {
+      messages_(viewer_.messages(), run.calibration, {.with_images = true, .is_watched = true}) {
   announce(viewer_.urls());
 }
 

@@ -15,8 +15,10 @@ namespace byre::cli {
 
 // What the viewer tells of a run.
 struct WatchedRun {
-  std::filesystem::path recording;
-  const Recording& opened;
+  std::string name;
+  const Calibration& calibration;
+  int frames = 0;                             // zero: nobody knows how many there will be
+  Timestamp last_time{};                      // time of the last frame, where that is known
   std::optional<std::filesystem::path> map;   // the offline map's file
   std::shared_ptr<const OfflineMap> offline;  // what is in it
 };

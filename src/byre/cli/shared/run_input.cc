@@ -1,0 +1,131 @@
+#include "byre/cli/shared/run_input.h"
+
+#include "byre/calibration_file.h"
+#include "byre/cli/check/report.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/warnings.h"
+#include "byre/input/formatted.h"
+#include "byre/playback/source_recording.h"
+
+#include <iostream>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+constexpr const char* kLiveName = "live";
+
+// One camera that maps from nothing is itself the body, as open_scaled has it for recordings.
+Calibration scaled_calibration(Calibration calibration, bool has_metric_map, ScaledRecording& scaled) {
+  if (has_metric_map || calibration.tells_metres()) return calibration;
+  scaled.is_metric = false;
+  scaled.body_from_camera = calibration.body_from_left;
+  calibration.body_from_left = {};
+  return calibration;
+}
+
+}  // namespace
+
+void declare_live_options(CLI::App& command, LiveOptions& options) {
+  CLI::Option* const live = add_text(command, "--live", options.cameras.devices,
+                                     std::string("In place of a recording. ") + kDevicesHelp + ". Needs --calibration")
+                                ->type_name("DEVICE");
+  for (const char* const name :
+       {"RECORDING", "--camera", "--fps", "--left", "--right", "--start", "--end", "--frames", "--stride"}) {
+    live->excludes(command.get_option(name));
+  }
+  command.add_option("--duration", options.duration_s, "End so long after the first frame (Ctrl-C)")
+      ->type_name("SECONDS")
+      ->check(between(0.01, 1e9))
+      ->needs(live);
+  declare_camera_options(command, options.cameras, live);
+}
+
+void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open) {
+  if (recording.empty() && !live.is_wanted()) {
+    throw CLI::ValidationError("RECORDING", "name a recording, or cameras (--live /dev/video0)");
+  }
+  if (live.is_wanted() && !open.calibration) {
+    throw CLI::ValidationError("--live", "needs the calibration of the cameras (--calibration FILE)");
+  }
+}
+
+RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
+  if (!choice_.live.is_wanted()) {
+    scaled_ = open_scaled(choice_.recording, choice_.range, choice_.open, choice_.has_metric_map);
+    if (!choice_.quiet) show_warnings(std::cerr, scaled_.recording->warnings());
+    return;
+  }
+  const std::filesystem::path& file = *choice_.open.calibration;
+  const auto tell = [](const std::string& note) { show_warnings(std::cerr, {note}); };  // somebody is to see to it
+  live_ = std::make_unique<LiveFrames>(choice_.live.cameras.live(),
+                                       scaled_calibration(read_calibration(file), choice_.has_metric_map, scaled_),
+                                       file.string(), choice_.live.duration_s, tell);
+}
+
+const Calibration& RunInput::calibration() const {
+  return live_ ? live_->calibration() : scaled_.recording->calibration();
+}
+
+void RunInput::show_check() const {
+  if (!live_ && !choice_.quiet) byre::cli::show_check(std::cerr, *scaled_.recording);
+}
+
+void RunInput::describe(MapProtocol& protocol) const {
+  protocol.is_metric = scaled_.is_metric;
+  if (live_) {
+    protocol.recording = choice_.live.cameras.name();
+    protocol.format.reset();
+    protocol.camera = calibration().right ? CameraChoice::stereo : CameraChoice::left;
+    return;
+  }
+  protocol.recording = choice_.recording.string();
+  protocol.format = guess_format(choice_.recording);
+  protocol.camera = camera_of(*scaled_.recording, choice_.open);
+  protocol.range = choice_.range;
+  protocol.frames_in_range = scaled_.recording->size();
+}
+
+SourceRecording RunInput::source() const {
+  if (live_) return {kLiveName, calibration(), {}, {}, {}};
+  return describe_source(choice_.recording, *scaled_.recording);
+}
+
+WatchedRun RunInput::watched(const std::optional<std::filesystem::path>& map,
+                             std::shared_ptr<const OfflineMap> offline) const {
+  if (live_) return {kLiveName, calibration(), 0, {}, map, std::move(offline)};
+  return {std::filesystem::absolute(choice_.recording).lexically_normal().filename().string(),
+          calibration(),
+          scaled_.recording->size(),
+          scaled_.recording->times().back(),
+          map,
+          std::move(offline)};
+}
+
+void RunInput::note_times(const MapRun& run, SourceRecording& source) const {
+  if (!live_ || run.frames.empty()) return;
+  source.first_time = run.frames.front().time;
+  source.last_time = run.frames.back().time;
+}
+
+void RunInput::note_frames(const MapRun& run, MapProtocol& protocol) const {
+  if (live_) protocol.frames_in_range = static_cast<int>(run.frames.size());
+}
+
+MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, const InterruptCatcher& interrupt,
+                     std::optional<Map> before) {
+  if (live_) return run_with_progress(*live_, options, hooks, interrupt, choice_.quiet, std::move(before));
+  return run_with_progress(*scaled_.recording, options, hooks, interrupt, choice_.quiet, std::move(before));
+}
+
+std::string RunInput::report() {
+  if (!live_) return "";
+  const LiveCameraReport cameras = live_->finish();
+  return to_text(cameras) + row("passed over", formatted("%d frames, as newer ones were there", live_->passed_over()));
+}
+
+}  // namespace byre::cli

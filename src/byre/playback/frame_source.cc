@@ -1,0 +1,20 @@
+#include "byre/playback/frame_source.h"
+
+#include <utility>
+
+namespace byre {
+
+const MotionSamples& FrameSource::motion() const {
+  static const MotionSamples none;
+  return none;
+}
+
+std::optional<FrameSource::SourceFrame> PlayedRecording::next(const std::function<bool()>& should_stop) {
+  auto decoded = decoder_.next();
+  if (!decoded) return std::nullopt;
+  SourceFrame frame{std::move(*decoded)};
+  if (is_live_) frame.late_s = clock_.wait_until_due(frame.decoded.time, should_stop);
+  return frame;
+}
+
+}  // namespace byre
