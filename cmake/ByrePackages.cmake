@@ -64,12 +64,22 @@ if(BYRE_ARCH)
   set(processors "\nIt is made for processors with the instructions of ${BYRE_ARCH}.")
 endif()
 
+# Libraries that are loaded by the first use, which nothing is linked with.
+foreach(module imgcodecs videoio)
+  get_target_property(file opencv_${module} LOCATION)
+  execute_process(COMMAND dpkg-query --search ${file} OUTPUT_VARIABLE owner ERROR_QUIET)
+  if(owner MATCHES "^([^:]+):")
+    list(APPEND byre_loaded ${CMAKE_MATCH_1})
+  endif()
+endforeach()
+list(JOIN byre_loaded ", " byre_loaded)
+
 set(CPACK_COMPONENTS_ALL)
 byre_add_package(data PACKAGE byre-data SECTION science ARCHITECTURE all
   SUMMARY "visual SLAM for robots - data"
   DESCRIPTION "${about}\n.\nThis package holds the visual vocabulary by which places are recognised,\nand the protocols of benchmarks.")
 if(BYRE_BUILD_CLI)
-  byre_add_package(program PACKAGE byre SECTION science NEEDS data
+  byre_add_package(program PACKAGE byre SECTION science NEEDS data DEPENDS "${byre_loaded}"
     SUMMARY "visual SLAM for robots - program"
     DESCRIPTION "${about}${processors}\n.\nThis package holds the program, its manual pages, and completion for\nbash and zsh.")
 endif()
@@ -86,7 +96,7 @@ if(BYRE_BUILD_PYTHON)
   find_package(Python3 COMPONENTS Interpreter REQUIRED)
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   byre_add_package(python PACKAGE python3-byre SECTION python NEEDS data
-    DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy"
+    DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, ${byre_loaded}"
     SUMMARY "visual SLAM for robots - Python 3"
     DESCRIPTION "${about}${processors}\n.\nThis package holds the library for Python, with arrays of numpy in and out.")
 endif()

@@ -14,6 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 class Program : public ProgramTest {
@@ -89,6 +90,17 @@ TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
                               (folder_ / "estimate.txt").string() + "' --truth '" +
                               (folder_ / "estimate.txt").string() + "' >/dev/full 2>/dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+}
+
+// What decodes all kinds of images and videos takes most of the memory of a program that is linked with it.
+TEST_F(Program, IsNotLinkedWithWhatFewRunsNeed) {
+  const std::string list = (folder_ / "libraries.txt").string();
+  const std::string command = std::string("LD_TRACE_LOADED_OBJECTS=1 '") + BYRE_PROGRAM + "' > '" + list + "'";
+  ASSERT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+  const std::string libraries = read("libraries.txt");
+  EXPECT_THAT(libraries, HasSubstr("libopencv_core"));
+  EXPECT_THAT(libraries, Not(HasSubstr("libopencv_imgcodecs")));
+  EXPECT_THAT(libraries, Not(HasSubstr("libopencv_videoio")));
 }
 
 TEST_F(Program, EvaluatesAgainstTheTruthOfKitti) {

@@ -1,6 +1,7 @@
 #include "byre/dataset/image_file.h"
 
 #include "byre/dataset/grey_png.h"
+#include "byre/dataset/image_codec.h"
 #include "byre/dataset/image_size.h"
 #include "byre/dataset/png_chunks.h"
 
@@ -82,7 +83,7 @@ cv::Mat decode(const Bytes& bytes, int flags) {
     png = png_of_pixels(*chunks);
   }
   try {
-    return cv::imdecode(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
+    return decode_image(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
     return {};
   }

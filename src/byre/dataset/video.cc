@@ -2,6 +2,7 @@
 
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_names.h"
+#include "byre/dataset/video_codec.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -12,20 +13,19 @@
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
 
-cv::VideoCapture open_capture(const fs::path& file) {
+std::unique_ptr<cv::VideoCapture> open_capture(const fs::path& file) {
   // One decoder, so that the same video gives the same frames wherever others are installed.
-  cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
-  if (!capture.isOpened()) {
+  std::unique_ptr<cv::VideoCapture> capture = open_video_capture(file.string());
+  if (!capture->isOpened()) {
     throw InputError(file.string(), "cannot be opened as a video", "check that it is whole, or extract its images");
   }
-  capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);  // as the camera calibrated sees it, whichever way it was held
+  capture->set(cv::CAP_PROP_ORIENTATION_AUTO, 0);  // as the camera calibrated sees it, whichever way it was held
   return capture;
 }
 
@@ -33,9 +33,9 @@ cv::VideoCapture open_capture(const fs::path& file) {
 std::size_t frame_count(const fs::path& file, const cv::VideoCapture& opened) {
   const double stated = opened.get(cv::CAP_PROP_FRAME_COUNT);
   if (stated >= 1.0) return static_cast<std::size_t>(stated);
-  cv::VideoCapture capture = open_capture(file);
+  std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
   std::size_t count = 0;
-  while (capture.grab()) ++count;
+  while (capture->grab()) ++count;
   if (count == 0) throw InputError(file.string(), "holds no frame that can be decoded", "check that it is whole");
   return count;
 }
@@ -60,7 +60,8 @@ Image to_grey(const cv::Mat& frame) {
 
 class Video final : public Recording {
  public:
-  Video(fs::path file, cv::VideoCapture capture, Calibration calibration, std::vector<std::string> warnings)
+  Video(fs::path file, std::unique_ptr<cv::VideoCapture> capture, Calibration calibration,
+        std::vector<std::string> warnings)
       : file_(std::move(file)),
         calibration_(std::move(calibration)),
         warnings_(std::move(warnings)),
@@ -80,12 +81,12 @@ class Video final : public Recording {
  private:
   bool grab(std::size_t number);
 
-  fs::path file_;                      // constant after construction
-  Calibration calibration_;            // constant after construction
-  std::vector<std::size_t> numbers_;   // numbers in the file of the frames in range, constant after select
-  std::vector<Timestamp> times_;       // constant after select
-  std::vector<std::string> warnings_;  // grows with read
-  cv::VideoCapture capture_;           // stands before frame next_
+  fs::path file_;                              // constant after construction
+  Calibration calibration_;                    // constant after construction
+  std::vector<std::size_t> numbers_;           // numbers in the file of the frames in range, constant after select
+  std::vector<Timestamp> times_;               // constant after select
+  std::vector<std::string> warnings_;          // grows with read
+  std::unique_ptr<cv::VideoCapture> capture_;  // stands before frame next_
   std::size_t next_ = 0;
 };
 
@@ -97,7 +98,7 @@ bool Video::grab(std::size_t number) {
     next_ = 0;
   }
   while (next_ <= number) {
-    if (!capture_.grab()) return false;
+    if (!capture_->grab()) return false;
     ++next_;
   }
   return true;
@@ -107,7 +108,7 @@ std::optional<ImageFrame> Video::read(int index) {
   assert(index >= 0 && index < size());
   const std::size_t number = numbers_[static_cast<std::size_t>(index)];
   cv::Mat frame;
-  if (grab(number) && capture_.retrieve(frame) && !frame.empty()) {
+  if (grab(number) && capture_->retrieve(frame) && !frame.empty()) {
     return ImageFrame{times_[static_cast<std::size_t>(index)], to_grey(frame), std::nullopt};
   }
   warnings_.push_back(file_.string() + ": frame " + std::to_string(number) + " cannot be decoded");
@@ -125,16 +126,16 @@ bool is_video_file(const fs::path& path) {
 }
 
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {
-  cv::VideoCapture capture = open_capture(file);
+  std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
   const PlacedCalibration calibration =
       choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
-  require_calibrated_size(static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
-                          static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
+  require_calibrated_size(static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
+                          static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
                           calibration.left_size);
-  const std::optional<double> rate = options.frame_rate_hz ? options.frame_rate_hz : stated_frame_rate(capture);
+  const std::optional<double> rate = options.frame_rate_hz ? options.frame_rate_hz : stated_frame_rate(*capture);
   std::vector<std::string> warnings;
   if (!rate) warnings.push_back(file.string() + ": does not say its frame rate, so 30 frames a second are assumed");
-  const std::vector<Timestamp> times = steady_times(frame_count(file, capture), rate.value_or(kAssumedFrameRate));
+  const std::vector<Timestamp> times = steady_times(frame_count(file, *capture), rate.value_or(kAssumedFrameRate));
   auto video = std::make_unique<Video>(file, std::move(capture), calibration.cameras, std::move(warnings));
   video->select(frames_in_range(times, range, file), times);
   return video;

@@ -1,5 +1,6 @@
 #include "byre/simulation/camera_imperfection.h"
 
+#include "byre/dataset/image_codec.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -77,9 +78,8 @@ Image jpeg_kept(const Image& image, int quality) {
   assert(quality >= 1 && quality <= 100);
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", pixels, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-  const cv::Mat decoded = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+  const std::vector<std::uint8_t> bytes = encode_image(".jpg", pixels, {cv::IMWRITE_JPEG_QUALITY, quality});
+  const cv::Mat decoded = decode_image(bytes, cv::IMREAD_GRAYSCALE);
   return {decoded.cols, decoded.rows, std::vector<std::uint8_t>(decoded.datastart, decoded.dataend)};
 }
 

@@ -1,5 +1,6 @@
 #include "byre/simulation/cowshed_plan.h"
 
+#include "byre/dataset/image_codec.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <fstream>
 #include <iomanip>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
@@ -32,7 +32,7 @@ void write_text(const fs::path& path, Write write) {
 void write_image(const fs::path& path, const Image& image) {
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
-  if (cv::imwrite(path.string(), pixels)) return;
+  if (write_image_file(path, pixels)) return;
   throw InputError(path.string(), "cannot be written", "check that its folder may be written to");
 }
 

@@ -3,6 +3,7 @@
 #include "byre/simulation/euroc_writer.h"
 
 #include "byre/dataset/euroc_sensor.h"
+#include "byre/dataset/image_codec.h"
 #include "byre/input_error.h"
 #include "byre/trajectory_file.h"
 
@@ -74,7 +75,7 @@ void write_image(const fs::path& folder, const Image& image, Timestamp time) {
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
   constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
-  if (cv::imwrite(path.string(), pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest})) return;
+  if (write_image_file(path, pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest})) return;
   throw InputError(path.string(), "cannot be written", "check that its folder may be written and the disk is not full");
 }
 

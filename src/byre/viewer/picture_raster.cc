@@ -1,12 +1,12 @@
 // A picture as pixels: drawn at twice its size and halved, so that lines and small letters stay sharp.
 
+#include "byre/dataset/image_codec.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
@@ -213,10 +213,9 @@ cv::Mat rasterised(const Picture& picture) {
 }
 
 std::vector<std::byte> to_png(const Picture& picture) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", rasterised(picture), bytes);
+  const std::vector<std::uint8_t> bytes = encode_image(".png", rasterised(picture));
   std::vector<std::byte> png(bytes.size());
-  std::ranges::transform(bytes, png.begin(), [](unsigned char byte) { return std::byte(byte); });
+  std::ranges::transform(bytes, png.begin(), [](std::uint8_t byte) { return std::byte(byte); });
   return png;
 }
 

@@ -1,5 +1,6 @@
 // A picture as SVG. Thousands of equal symbols are one path, so that a map of a building stays a small file.
 
+#include "byre/dataset/image_codec.h"
 #include "byre/input/markup.h"
 #include "byre/viewer/fixed_point.h"
 #include "byre/viewer/picture_shapes.h"
@@ -86,10 +87,8 @@ string base64(const std::vector<unsigned char>& bytes) {
 string data_address(const Image& image) {
   constexpr int kJpegQuality = 90;
   const cv::Mat pixels(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
-  std::vector<unsigned char> png;
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".png", pixels, png);
-  cv::imencode(".jpg", pixels, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  const std::vector<std::uint8_t> png = encode_image(".png", pixels);
+  const std::vector<std::uint8_t> jpeg = encode_image(".jpg", pixels, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   const bool is_drawing = png.size() <= jpeg.size();
   return joined({"data:image/", is_drawing ? "png" : "jpeg", ";base64,", base64(is_drawing ? png : jpeg)});
 }

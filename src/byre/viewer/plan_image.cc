@@ -1,5 +1,6 @@
 #include "byre/viewer/plan_image.h"
 
+#include "byre/dataset/image_codec.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -11,15 +12,14 @@
 namespace byre {
 
 std::string plan_png(const FloorPlan& plan, int max_side) {
-  cv::Mat image = cv::imread(plan.image.string(), cv::IMREAD_COLOR);
+  cv::Mat image = decode_image_file(plan.image, cv::IMREAD_COLOR);
   if (image.empty()) throw InputError(plan.image.string(), "is no image that can be read", "name a PNG, JPEG or PGM");
   const int longest = std::max(image.cols, image.rows);
   if (longest > max_side) {
     const double scale = static_cast<double>(max_side) / longest;
     cv::resize(image, image, {}, scale, scale, cv::INTER_AREA);
   }
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png);
+  const std::vector<std::uint8_t> png = encode_image(".png", image);
   return {png.begin(), png.end()};
 }
 

@@ -1,24 +1,17 @@
 #include "byre/viewer/run_video.h"
 
+#include "byre/dataset/video_codec.h"
 #include "byre/input_error.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <cassert>
 #include <utility>
 
-#include <opencv2/videoio.hpp>
-
 namespace byre {
 namespace {
 
 int even(int length) {
   return length + length % 2;
-}
-
-std::unique_ptr<cv::VideoWriter> open(const std::filesystem::path& file, const char* codec, double frame_rate_hz,
-                                      const cv::Size& size) {
-  const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
-  return std::make_unique<cv::VideoWriter>(file.string(), cv::CAP_FFMPEG, fourcc, frame_rate_hz, size);
 }
 
 }  // namespace
@@ -41,9 +34,9 @@ Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& came
 RunVideo::RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height)
     : width_(even(width)), height_(even(height)) {
   const cv::Size size(width_, height_);
-  writer_ = open(file, "avc1", frame_rate_hz, size);
+  writer_ = open_video_writer(file.string(), "avc1", frame_rate_hz, size);
   is_h264_ = writer_->isOpened();
-  if (!is_h264_) writer_ = open(file, "mp4v", frame_rate_hz, size);
+  if (!is_h264_) writer_ = open_video_writer(file.string(), "mp4v", frame_rate_hz, size);
   if (writer_->isOpened()) return;
   throw InputError(file.string(), "cannot be written as a video",
                    "name it .mp4 in a folder that exists, and have OpenCV with FFmpeg");

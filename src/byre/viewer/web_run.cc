@@ -1,5 +1,6 @@
 #include "byre/viewer/web_run.h"
 
+#include "byre/dataset/image_codec.h"
 #include "byre/features/rectify.h"
 #include "byre/viewer/image_store.h"
 #include "byre/viewer/plan_image.h"
@@ -102,8 +103,7 @@ class RunSite : public WebSite {
   void add_image(FrameScene& scene) {
     Image& left = scene.left;
     const cv::Mat rectified = rectifier_.left(cv::Mat(left.height, left.width, CV_8UC1, left.pixels.data()));
-    std::vector<unsigned char> jpeg;
-    cv::imencode(".jpg", rectified, jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_});
+    const std::vector<std::uint8_t> jpeg = encode_image(".jpg", rectified, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_});
     const std::size_t frame = frames_.size() - 1;
     images_.add(frame, image_bytes(frame, scene.seen, jpeg));
     ++image_count_;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace byre {
+
+// OpenCV's decoders and encoders of image files, loaded by the first use: use these, not its own functions, which have
+// them loaded at every start of the program. All throw InputError where they cannot be loaded.
+
+// flags: cv::ImreadModes. Empty for bytes that are no image.
+cv::Mat decode_image(const std::vector<std::uint8_t>& bytes, int flags);
+
+// The same of a file; empty for one that is missing, too.
+cv::Mat decode_image_file(const std::filesystem::path& path, int flags);
+
+// extension: ".png", ".jpg"; parameters: cv::ImwriteFlags, each followed by its value.
+std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pixels,
+                                       const std::vector<int>& parameters = {});
+
+// Whether the file was written. Its extension says the format.
+bool write_image_file(const std::filesystem::path& path, const cv::Mat& pixels,
+                      const std::vector<int>& parameters = {});
+
+}  // namespace byre
