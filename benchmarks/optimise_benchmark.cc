@@ -240,7 +240,6 @@ void adjust_building(benchmark::State& state) {
   const double before = peak_megabytes();
   BundleOptions options;
   options.max_iterations = 15;
-  options.threads = static_cast<int>(state.range(2));
   BundleResult result;
   for (auto _ : state) result = bundle_adjust(building.problem(), options);
   state.counters["observations"] = static_cast<double>(building.problem().observations.size());
@@ -250,10 +249,9 @@ void adjust_building(benchmark::State& state) {
   state.counters["peak_MB"] = peak_megabytes();
 }
 BENCHMARK(adjust_building)
-    ->ArgNames({"poses", "points", "threads"})
-    ->Args({300, 40000, 1})
-    ->Args({300, 40000, 2})
-    ->Args({1000, 100000, 1})
+    ->ArgNames({"poses", "points"})
+    ->Args({300, 40000})
+    ->Args({1000, 100000})
     ->Iterations(1)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();

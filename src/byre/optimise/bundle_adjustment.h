@@ -53,7 +53,6 @@ struct BundleProblem {
 struct BundleOptions {
   int max_iterations = 10;
   double huber_width = 2.0;     // sigmas
-  int threads = 1;              // one keeps the order of sums, hence the result, reproducible
   int covariance_of_pose = -1;  // index of the pose whose marginal covariance is wanted, or -1
   // Asked before the first and after each iteration, on the calling thread; true ends the solution there. The result is
   // usable: the best poses and points so far. May be empty.

@@ -57,7 +57,7 @@ BundleRoles choose_roles(const BundleProblem& problem) {
     if (first != roles.pose_moves.end()) *first = false;
   }
   std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
-  // Ceres eliminates point by point: costs of one point that lie side by side in memory save it cache misses.
+  // Points are eliminated one by one.
   std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
   return roles;
 }

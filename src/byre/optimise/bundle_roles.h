@@ -24,10 +24,11 @@ BundleRoles choose_roles(const BundleProblem& problem);
 // What must be held for the scale to be determined; nothing where it is.
 std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles);
 
-// Poses and points that a solver has come to.
+// What a solver has come to.
 struct BundleSolution {
   std::vector<Pose> camera_from_world;           // one per pose
   std::vector<Eigen::Vector3d> points_in_world;  // one per point
+  CalibrationVector calibration_change = CalibrationVector::Zero();
   int iterations = 0;
   bool usable = false;
 };

@@ -1,11 +1,12 @@
 #include "byre/optimise/bundle_schur.h"
 
+#include "byre/optimise/calibration_border.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reduced_system.h"
 #include "byre/optimise/reprojection.h"
+#include "byre/optimise/trust_region.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -19,12 +20,27 @@ namespace {
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
-// One observation, ready for least squares.
+// One observation. What follows from it is worked out anew each time: kept, it would take several times the memory.
 struct Term {
-  Reprojection reprojection;
-  double weight = 1.0;
-  int pose = 0;
+  const BundleObservation* seen = nullptr;  // owned by the caller, as is the rig
+  const Rig* rig = nullptr;
   int slot = -1;  // place of the pose in the reduced system; negative for one that stays
+
+  Eigen::Vector3d residual(const Eigen::Vector3d& point_in_camera) const {
+    return reprojection().residual(point_in_camera);
+  }
+  Reprojection reprojection() const {
+    return Reprojection(*rig, seen->measured, seen->pixel_sigma, seen->disparity_sigma);
+  }
+};
+
+// An observation's error at an estimate, and its slopes.
+struct Linear {
+  Eigen::Vector3d residual;
+  double weight = 1.0;
+  Eigen::Matrix3d by_point;
+  Matrix36 by_pose;                         // for a pose that moves
+  CalibrationBorder::Slope by_calibration;  // where one is sought
 };
 
 // The observations of one point: terms [begin, end).
@@ -42,10 +58,11 @@ struct Eliminated {
   Eigen::Vector3d damping;
 };
 
-// Poses and points, and what is looked up again and again.
+// Poses, points and the change of the calibration, and what is looked up again and again.
 struct Estimate {
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;
+  CalibrationVector calibration = CalibrationVector::Zero();
   std::vector<Eigen::Matrix3d> rotations;  // turns of the poses
 
   void update_rotations() {
@@ -58,14 +75,10 @@ struct Estimate {
 struct Step {
   Eigen::VectorXd poses;                // six a slot: turn, then translation
   std::vector<Eigen::Vector3d> points;  // one a track
+  CalibrationVector calibration = CalibrationVector::Zero();
   double expected_gain = 0.0;
   double squared_length = 0.0;
 };
-
-// Ceres' bounds of the diagonal that damping is in proportion to.
-double bounded(double diagonal) {
-  return std::clamp(diagonal, 1e-6, 1e32);
-}
 
 // The problem as the solver walks through it. Lives for one call.
 class SchurBundle {
@@ -83,13 +96,12 @@ class SchurBundle {
         tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
       }
       const Rig& rig = problem.rigs[static_cast<std::size_t>(problem.poses[static_cast<std::size_t>(seen.pose)].rig)];
-      terms_.push_back({Reprojection(rig, seen.measured, seen.pixel_sigma, seen.disparity_sigma), seen.weight,
-                        seen.pose, slots_[static_cast<std::size_t>(seen.pose)]});
+      terms_.push_back({&seen, &rig, slots_[static_cast<std::size_t>(seen.pose)]});
       tracks_.back().end = terms_.size();
     }
-    between_.resize(terms_.size());
     eliminated_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
+    if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
   }
 
   const Estimate& estimate() const { return estimate_; }
@@ -108,8 +120,10 @@ class SchurBundle {
  private:
   void give_slots(const BundleRoles& roles);
   std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
+  Linear linearised(const Term& term, const Eigen::Vector3d& point) const;
   void linearise_track(std::size_t index, double radius);
-  void eliminate(const Track& track, Eliminated& eliminated);
+  void eliminate(std::size_t index);
+  bool solve_poses(Step& step);
   void add_scale();
 
   std::optional<HeldDistance> scale_;  // constant after construction, as are the next five
@@ -121,13 +135,14 @@ class SchurBundle {
 
   Estimate estimate_;
   // As linearise leaves them.
-  std::optional<ReducedSystem> reduced_;  // with the points eliminated
-  std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
-  Eigen::VectorXd gradient_;              // slopes by the poses
-  Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
-  Eigen::VectorXd damping_;               // added to the diagonal of reduced_
-  std::vector<Eliminated> eliminated_;    // one a track
-  std::vector<Matrix63> between_;         // one a term: normal matrix between its pose and its point
+  std::optional<ReducedSystem> reduced_;     // with the points eliminated
+  std::vector<Matrix6> own_;                 // one a pose, before the points are eliminated
+  Eigen::VectorXd gradient_;                 // slopes by the poses
+  Eigen::VectorXd used_up_;                  // part of the gradient that finding the points uses up
+  Eigen::VectorXd damping_;                  // added to the diagonal of reduced_
+  std::vector<Eliminated> eliminated_;       // one a track
+  std::vector<Matrix63> between_;            // one a term of the track at hand: normal matrix between pose and point
+  std::optional<CalibrationBorder> border_;  // empty where no calibration is sought
   double largest_slope_ = 0.0;
 };
 
@@ -165,31 +180,48 @@ std::vector<std::vector<int>> SchurBundle::neighbours() const {
   return neighbours;
 }
 
+Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) const {
+  const auto pose = static_cast<std::size_t>(term.seen->pose);
+  const Eigen::Matrix3d& rotation = estimate_.rotations[pose];
+  const Eigen::Vector3d turned = rotation * point;
+  const Eigen::Vector3d point_in_camera = turned + estimate_.poses[pose].translation;
+  const Reprojection reprojection = term.reprojection();
+  Linear linear;
+  linear.residual = reprojection.residual(point_in_camera);
+  if (border_) {
+    linear.by_calibration = border_->slope(*term.seen, point_in_camera);
+    linear.residual += linear.by_calibration * estimate_.calibration;
+  }
+  linear.weight = term.seen->weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
+  const Eigen::Matrix3d by_camera = reprojection.jacobian(point_in_camera);
+  linear.by_point = by_camera * rotation;
+  if (term.slot >= 0) linear.by_pose << -by_camera * skew(turned), by_camera;
+  return linear;
+}
+
 void SchurBundle::linearise_track(std::size_t index, double radius) {
   const Track& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   Eigen::Matrix3d point_point = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const Term& term = terms_[i];
-    const Eigen::Matrix3d& rotation = estimate_.rotations[static_cast<std::size_t>(term.pose)];
-    const Eigen::Vector3d turned = rotation * point;
-    const Eigen::Vector3d point_in_camera = turned + estimate_.poses[static_cast<std::size_t>(term.pose)].translation;
-    const Eigen::Vector3d residual = term.reprojection.residual(point_in_camera);
-    const double weight = term.weight * huber_weight(residual.squaredNorm(), huber_width_);
-    const Eigen::Matrix3d by_camera = term.reprojection.jacobian(point_in_camera);
-    const Eigen::Matrix3d by_point = by_camera * rotation;
+    const Linear linear = linearised(term, point);
     if (track.moves) {
-      point_point.noalias() += weight * by_point.transpose() * by_point;
-      gradient.noalias() += weight * by_point.transpose() * residual;
+      point_point.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
+      gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
+    }
+    if (border_) {
+      border_->add(linear.by_calibration, linear.weight, linear.residual);
+      if (track.moves) border_->add_point(index, linear.weight * linear.by_point.transpose(), linear.by_calibration);
     }
     if (term.slot < 0) continue;
-    Matrix36 by_pose;
-    by_pose << -by_camera * skew(turned), by_camera;
-    const Matrix63 weighted = weight * by_pose.transpose();
-    own_[static_cast<std::size_t>(term.slot)].noalias() += weighted * by_pose;
-    gradient_.segment<6>(6 * term.slot).noalias() += weighted * residual;
-    if (track.moves) between_[i].noalias() = weighted * by_point;
+    const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
+    own_[static_cast<std::size_t>(term.slot)].noalias() += weighted * linear.by_pose;
+    gradient_.segment<6>(6 * term.slot).noalias() += weighted * linear.residual;
+    if (track.moves) between_[i - track.begin].noalias() = weighted * linear.by_point;
+    if (border_) border_->add_pose(term.slot, weighted, linear.by_calibration);
   }
   if (!track.moves) return;
   Eliminated& eliminated = eliminated_[index];
@@ -198,20 +230,24 @@ void SchurBundle::linearise_track(std::size_t index, double radius) {
   point_point.diagonal() += eliminated.damping;
   eliminated.covariance = point_point.llt().solve(Eigen::Matrix3d::Identity());
   largest_slope_ = std::max(largest_slope_, gradient.cwiseAbs().maxCoeff());
-  eliminate(track, eliminated);
+  eliminate(index);
 }
 
-// Takes from the poses' equations what finding the point uses up.
-void SchurBundle::eliminate(const Track& track, Eliminated& eliminated) {
+// Takes from the other equations what finding the point uses up.
+void SchurBundle::eliminate(std::size_t index) {
+  const Track& track = tracks_[index];
+  const Eliminated& eliminated = eliminated_[index];
+  if (border_) border_->eliminate(index, eliminated.covariance, eliminated.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
     if (row < 0) continue;
-    const Matrix63 gain = between_[i] * eliminated.covariance;
+    const Matrix63 gain = between_[i - track.begin] * eliminated.covariance;
     used_up_.segment<6>(6 * row).noalias() += gain * eliminated.gradient;
+    if (border_) border_->eliminate_pose(row, index, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
       if (column < 0 || column > row) continue;
-      reduced_->at(row, column).noalias() -= gain * between_[j].transpose();
+      reduced_->at(row, column).noalias() -= gain * between_[j - track.begin].transpose();
     }
   }
 }
@@ -236,6 +272,7 @@ double SchurBundle::linearise(double radius) {
   gradient_.setZero(size);
   used_up_.setZero(size);
   largest_slope_ = 0.0;
+  if (border_) border_->begin(estimate_.calibration);
   for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i, radius);
   if (scale_) add_scale();
   damping_.resize(size);
@@ -246,18 +283,36 @@ double SchurBundle::linearise(double radius) {
     diagonal_block += own;
     diagonal_block.diagonal() += damping_.segment<6>(6 * slot);
   }
+  if (border_) {
+    border_->damp(radius);
+    largest_slope_ = std::max(largest_slope_, border_->largest_slope());
+  }
   return size == 0 ? largest_slope_ : std::max(largest_slope_, gradient_.cwiseAbs().maxCoeff());
+}
+
+// The steps of poses and calibration. False where the equations have no solution.
+bool SchurBundle::solve_poses(Step& step) {
+  const Eigen::VectorXd pull = used_up_ - gradient_;
+  if (border_) {
+    std::optional<CalibrationBorder::Step> solved = border_->solve(*reduced_, pull);
+    if (!solved) return false;
+    step.poses = std::move(solved->poses);
+    step.calibration = solved->calibration;
+    step.expected_gain = solved->expected_gain;
+    step.squared_length = step.calibration.squaredNorm();
+  } else {
+    std::optional<Eigen::VectorXd> poses = reduced_->solve(pull);
+    if (!poses) return false;
+    step.poses = std::move(*poses);
+  }
+  step.expected_gain += 0.5 * step.poses.dot(damping_.cwiseProduct(step.poses) - gradient_);
+  step.squared_length += step.poses.squaredNorm();
+  return true;
 }
 
 std::optional<Step> SchurBundle::solve() {
   Step step;
-  if (slot_count_ > 0) {
-    std::optional<Eigen::VectorXd> poses = reduced_->solve(used_up_ - gradient_);
-    if (!poses) return std::nullopt;
-    step.poses = std::move(*poses);
-    step.expected_gain = 0.5 * step.poses.dot(damping_.cwiseProduct(step.poses) - gradient_);
-    step.squared_length = step.poses.squaredNorm();
-  }
+  if (!solve_poses(step)) return std::nullopt;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
     if (!track.moves) continue;
@@ -265,8 +320,13 @@ std::optional<Step> SchurBundle::solve() {
     Eigen::Vector3d pull = -point.gradient;
     for (std::size_t i = track.begin; i < track.end; ++i) {
       const int slot = terms_[i].slot;
-      if (slot >= 0) pull.noalias() -= between_[i].transpose() * step.poses.segment<6>(6 * slot);
+      if (slot < 0) continue;
+      const Linear linear = linearised(terms_[i], estimate_.points[static_cast<std::size_t>(track.point)]);
+      const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
+      const Matrix63 between = weighted * linear.by_point;
+      pull.noalias() -= between.transpose() * step.poses.segment<6>(6 * slot);
     }
+    if (border_) pull -= border_->pull_on(t, step.calibration);
     const Eigen::Vector3d move = point.covariance * pull;
     if (!move.allFinite()) return std::nullopt;
     step.points.push_back(move);
@@ -278,6 +338,7 @@ std::optional<Step> SchurBundle::solve() {
 
 Estimate SchurBundle::moved(const Step& step) const {
   Estimate moved = estimate_;
+  moved.calibration += step.calibration;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i] < 0) continue;
     const Vector6 change = step.poses.segment<6>(6 * slots_[i]);
@@ -298,12 +359,15 @@ double SchurBundle::cost_of(const Estimate& estimate) const {
   for (const Track& track : tracks_) {
     const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
     for (std::size_t i = track.begin; i < track.end; ++i) {
-      const auto pose = static_cast<std::size_t>(terms_[i].pose);
+      const Term& term = terms_[i];
+      const auto pose = static_cast<std::size_t>(term.seen->pose);
       const Eigen::Vector3d point_in_camera = estimate.rotations[pose] * point + estimate.poses[pose].translation;
-      const double squared_error = terms_[i].reprojection.residual(point_in_camera).squaredNorm();
-      twice += terms_[i].weight * huber_cost(squared_error, huber_width_);
+      Eigen::Vector3d residual = term.residual(point_in_camera);
+      if (border_) residual += border_->slope(*term.seen, point_in_camera) * estimate.calibration;
+      twice += term.seen->weight * huber_cost(residual.squaredNorm(), huber_width_);
     }
   }
+  if (border_) twice += 2.0 * border_->cost(estimate.calibration);
   if (!scale_) return 0.5 * twice;
   const Pose& pose = estimate.poses[static_cast<std::size_t>(scale_->pose)];
   const double residual = ((pose * scale_->place_in_world).norm() - scale_->distance) / scale_->sigma();
@@ -311,7 +375,7 @@ double SchurBundle::cost_of(const Estimate& estimate) const {
 }
 
 double SchurBundle::squared_length() const {
-  double squared = 0.0;
+  double squared = estimate_.calibration.squaredNorm();
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i] >= 0) squared += 1.0 + estimate_.poses[i].translation.squaredNorm();  // a quaternion's length is 1
   }
@@ -320,26 +384,6 @@ double SchurBundle::squared_length() const {
   }
   return squared;
 }
-
-// How far a step may lead: the larger, the less it is damped. Grows and shrinks as in Ceres (Nielsen 1999).
-class TrustRegion {
- public:
-  double radius() const { return radius_; }
-  // The share is that of the gain expected which there was.
-  void widen(double share) {
-    radius_ = std::min(1e16, radius_ / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * share - 1.0, 3)));
-    shrink_ = 2.0;
-  }
-  void narrow() {
-    radius_ /= shrink_;
-    shrink_ *= 2.0;
-  }
-  bool is_too_small() const { return radius_ < 1e-32; }
-
- private:
-  double radius_ = 1e4;
-  double shrink_ = 2.0;
-};
 
 enum class Progress : std::uint8_t { goes_on, settled, failed };
 
@@ -376,7 +420,6 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
 
 BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& roles,
                             const std::optional<HeldDistance>& scale, const BundleOptions& options) {
-  assert(!problem.calibration);
   SchurBundle bundle(problem, roles, scale, options.huber_width);
   BundleSolution solution;
   double cost = bundle.cost();
@@ -389,6 +432,7 @@ BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& rol
   }
   solution.camera_from_world = bundle.estimate().poses;
   solution.points_in_world = bundle.estimate().points;
+  solution.calibration_change = bundle.estimate().calibration;
   solution.usable = progress != Progress::failed;
   return solution;
 }

@@ -65,14 +65,14 @@ class CalibrationSystem {
     if (!is_fixed) eliminate(shares, factor.solve(Eigen::Matrix3d::Identity()));
   }
 
-  // What is left of the calibration's part when the poses are eliminated.
-  std::optional<CalibrationMatrix> of_calibration() const {
+  // What is left of the calibration's part when the poses are eliminated. Once: the matrix is used up.
+  std::optional<CalibrationMatrix> of_calibration() {
     const CalibrationMatrix own = matrix_.bottomRightCorner<kCalibrationParameters, kCalibrationParameters>();
     const CalibrationMatrix whole = own.selfadjointView<Eigen::Lower>();
     if (poses_ == 0) return whole;
-    Eigen::MatrixXd of_poses = matrix_.topLeftCorner(poses_, poses_);
+    auto of_poses = matrix_.topLeftCorner(poses_, poses_);
     of_poses.diagonal().array() += kFreePose;
-    const Eigen::LLT<Eigen::MatrixXd> factor(of_poses);
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(of_poses);
     if (factor.info() != Eigen::Success) return std::nullopt;
     const Eigen::MatrixXd rows =
         factor.matrixL().solve(matrix_.bottomLeftCorner(kCalibrationParameters, poses_).transpose());

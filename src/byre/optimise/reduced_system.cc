@@ -83,22 +83,26 @@ ReducedSystem::Block ReducedSystem::at(int row, int column) {
   return Block(&dense_(6 * row, 6 * column), Eigen::OuterStride<>(dense_.outerStride()));
 }
 
-std::optional<Eigen::VectorXd> ReducedSystem::solve(const Eigen::VectorXd& right_hand_side) {
-  if (poses_ == 0) return Eigen::VectorXd();
-  Eigen::VectorXd solution;
+template <typename Sides>
+std::optional<Sides> ReducedSystem::solution(const Sides& right_hand_sides) {
+  if (poses_ == 0) return right_hand_sides;
+  Sides solution;
   if (sparse_) {
     const bool is_first = sparse_->lower.nonZeros() == 0;
     sparse_->fill_lower();
     if (is_first) sparse_->factor.analyzePattern(sparse_->lower);
     sparse_->factor.factorize(sparse_->lower);
     if (sparse_->factor.info() != Eigen::Success) return std::nullopt;
-    solution = sparse_->factor.solve(right_hand_side);
+    solution = sparse_->factor.solve(right_hand_sides);
   } else {
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
     if (factor.info() != Eigen::Success) return std::nullopt;
-    solution = factor.solve(right_hand_side);
+    solution = factor.solve(right_hand_sides);
   }
   return solution.allFinite() ? std::optional(solution) : std::nullopt;
 }
+
+template std::optional<Eigen::VectorXd> ReducedSystem::solution(const Eigen::VectorXd&);
+template std::optional<Eigen::MatrixXd> ReducedSystem::solution(const Eigen::MatrixXd&);
 
 }  // namespace byre

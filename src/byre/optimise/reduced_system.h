@@ -28,10 +28,16 @@ class ReducedSystem {
   void set_zero();
   // Preconditions: column <= row, and both are neighbours or the same.
   Block at(int row, int column);
-  // Empty where the matrix is not positive definite.
-  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& right_hand_side);
+  // Empty where the matrix is not positive definite. Once after each filling: the matrix is used up.
+  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& right_hand_side) { return solution(right_hand_side); }
+  std::optional<Eigen::MatrixXd> solve_several(const Eigen::MatrixXd& right_hand_sides) {
+    return solution(right_hand_sides);
+  }
 
  private:
+  template <typename Sides>
+  std::optional<Sides> solution(const Sides& right_hand_sides);
+
   struct Sparse;
 
   int poses_ = 0;

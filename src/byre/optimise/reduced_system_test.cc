@@ -56,6 +56,16 @@ TEST_P(ReducedSystemOf, HasTheSolutionOfTheWholeMatrix) {
   }
 }
 
+TEST_P(ReducedSystemOf, HasTheSameSolutionsForSeveralRightSidesAtOnce) {
+  ReducedSystem system(GetParam(), neighbours_of(GetParam()));
+  Eigen::MatrixXd right(6 * GetParam(), 2);
+  right << Eigen::VectorXd::LinSpaced(6 * GetParam(), -1.0, 2.0), Eigen::VectorXd::Ones(6 * GetParam());
+  const Eigen::MatrixXd whole = fill(system, GetParam(), 900.0);
+  const auto solutions = system.solve_several(right);
+  ASSERT_TRUE(solutions);
+  EXPECT_LT((whole * *solutions - right).norm(), 1e-9 * right.norm());
+}
+
 TEST_P(ReducedSystemOf, HasNoSolutionWhereItIsNotPositiveDefinite) {
   ReducedSystem system(GetParam(), neighbours_of(GetParam()));
   fill(system, GetParam(), 2000.0);
