@@ -65,6 +65,9 @@ class Features {
   // The same corners in the same order, each a little elsewhere in the image. Precondition: as many as there are.
   Features moved(std::vector<Keypoint> keypoints) const;
 
+  // The same, but for the patches of other features. Precondition: indices, ascending.
+  Features with_patches_of(std::span<const int> features) const;
+
   int size() const { return static_cast<int>(keypoints_.size()); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }
   const std::vector<Descriptor>& descriptors() const { return descriptors_; }

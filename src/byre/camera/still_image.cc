@@ -1,5 +1,7 @@
 #include "byre/camera/still_image.h"
 
+#include "byre/dataset/image_codec.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -11,9 +13,7 @@ std::vector<std::uint8_t> png_of(const Image& image) {
   // OpenCV knows no constant pixels.
   const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
   constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
-  return bytes;
+  return encode_image(".png", pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
 }
 
 Image side_by_side(const Image& left, const Image& right) {

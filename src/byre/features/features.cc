@@ -101,4 +101,19 @@ Features Features::moved(std::vector<Keypoint> keypoints) const {
   return result;
 }
 
+Features Features::with_patches_of(std::span<const int> features) const {
+  std::vector<Patch> kept;
+  kept.reserve(features.size());
+  Features result = *this;
+  result.patch_of_keypoint_.assign(keypoints_.size(), -1);
+  for (const int i : features) {
+    const Patch* const patch = find_patch(i);
+    if (patch == nullptr) continue;
+    result.patch_of_keypoint_[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
+    kept.push_back(*patch);
+  }
+  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(kept));
+  return result;
+}
+
 }  // namespace byre

@@ -143,6 +143,24 @@ TEST(Features, KeepSomePatchesOnly) {
   }
 }
 
+TEST(Features, KeepThePatchesAskedForAndAllElse) {
+  const Features all = make_features(random_keypoints(6, 8));
+  const std::vector<int> kept = {1, 4};
+  const Features some = all.with_patches_of(kept);
+  ASSERT_EQ(some.size(), all.size());
+  for (int i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(some.keypoint(i).pixel, all.keypoint(i).pixel);
+    EXPECT_EQ(some.descriptor(i), all.descriptor(i));
+    ASSERT_EQ(some.find_patch(i) != nullptr, i == 1 || i == 4);
+    if (some.find_patch(i)) {
+      EXPECT_EQ(some.find_patch(i)->centre, all.find_patch(i)->centre);
+    }
+  }
+  const std::vector<int> fewer = {0, 4};
+  EXPECT_EQ(some.with_patches_of(fewer).find_patch(0), nullptr) << "it was not kept";
+  EXPECT_NE(some.with_patches_of(fewer).find_patch(4), nullptr);
+}
+
 TEST(Features, AreFoundInAnImageMuchLargerThanTheyAreMany) {
   Keypoint keypoint;
   keypoint.pixel = {15000.0f, 9000.0f};

@@ -69,9 +69,17 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
 }
 
 PointId Map::add_point(const MapPoint& point) {
-  points_.emplace_back().point = point;
+  const PointId id{origin_, static_cast<std::uint32_t>(place_of_point_.size())};
+  if (empty_places_.empty()) {
+    place_of_point_.push_back(static_cast<std::uint32_t>(points_.size()));
+    points_.emplace_back();
+  } else {
+    place_of_point_.push_back(empty_places_.back());
+    empty_places_.pop_back();
+  }
+  slot(id).point = point;
   ++point_count_;
-  return {origin_, static_cast<std::uint32_t>(points_.size() - 1)};
+  return id;
 }
 
 bool Map::add_observation(const Observation& observation, const Sighting& sighting) {
@@ -103,7 +111,7 @@ bool Map::add_foreign_view(const ForeignView& view) {
   const PointId point = *view.sighting.point;
   const KeyframeId keyframe = view.observation.keyframe;
   if (keyframe.origin == origin_ || origin_ == Origin::offline || !find_point(point)) return false;
-  std::vector<ForeignView>& views = points_[point.number].foreign_views;
+  std::vector<ForeignView>& views = slot(point).foreign_views;
   const auto place = std::ranges::lower_bound(views, keyframe, {}, keyframe_of_view);
   if (place != views.end() && place->observation.keyframe == keyframe) return false;
   if (!points_of_foreign_views_.emplace(view.observation, point).second) return false;
@@ -114,7 +122,7 @@ bool Map::add_foreign_view(const ForeignView& view) {
 void Map::remove_foreign_view(const Observation& observation) {
   const auto known = points_of_foreign_views_.find(observation);
   if (known == points_of_foreign_views_.end()) return;
-  std::vector<ForeignView>& views = points_[known->second.number].foreign_views;
+  std::vector<ForeignView>& views = slot(known->second).foreign_views;
   views.erase(std::ranges::lower_bound(views, observation.keyframe, {}, keyframe_of_view));
   points_of_foreign_views_.erase(known);
 }
@@ -124,8 +132,8 @@ void Map::remove_point(PointId id) {
   const std::vector<Observation> observers = observations(id);
   for (const Observation& observation : observers) unlink(observation);
   for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.erase(view.observation);
-  points_[id.number].foreign_views.clear();
-  points_[id.number].point.reset();
+  slot(id) = {};
+  empty_places_.push_back(std::exchange(place_of_point_[id.number], kGone));
   --point_count_;
 }
 
@@ -164,7 +172,7 @@ void Map::scale_removed_keyframe(KeyframeId id, double scale) {
 
 void Map::update_point(PointId id, const MapPoint& point) {
   if (!find_point(id)) return;
-  points_[id.number].point = point;
+  slot(id).point = point;
   repair_reference(id);
 }
 
@@ -174,8 +182,8 @@ const Keyframe* Map::find_keyframe(KeyframeId id) const {
 }
 
 const MapPoint* Map::find_point(PointId id) const {
-  if (id.origin != origin_ || id.number >= points_.size() || !points_[id.number].point) return nullptr;
-  return &*points_[id.number].point;
+  const PointSlot* const found = find_slot(id);
+  return found ? &found->point : nullptr;
 }
 
 std::vector<KeyframeId> Map::keyframe_ids() const {
@@ -190,21 +198,25 @@ std::vector<KeyframeId> Map::keyframe_ids() const {
 std::vector<PointId> Map::point_ids() const {
   std::vector<PointId> ids;
   ids.reserve(static_cast<std::size_t>(point_count_));
-  for (std::uint32_t i = 0; i < points_.size(); ++i) {
-    if (points_[i].point) ids.push_back({origin_, i});
+  for (std::uint32_t i = 0; i < place_of_point_.size(); ++i) {
+    if (place_of_point_[i] != kGone) ids.push_back({origin_, i});
   }
   return ids;
 }
 
 const std::vector<Observation>& Map::observations(PointId id) const {
   static const std::vector<Observation> kNone;
-  if (id.origin == origin_) return id.number < points_.size() ? points_[id.number].observations : kNone;
+  if (id.origin == origin_) {
+    const PointSlot* const found = find_slot(id);
+    return found ? found->observations : kNone;
+  }
   return id.number < offline_observations_.size() ? offline_observations_[id.number] : kNone;
 }
 
 const std::vector<ForeignView>& Map::foreign_views(PointId id) const {
   static const std::vector<ForeignView> kNone;
-  return id.origin == origin_ && id.number < points_.size() ? points_[id.number].foreign_views : kNone;
+  const PointSlot* const found = find_slot(id);
+  return found ? found->foreign_views : kNone;
 }
 
 std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
@@ -256,8 +268,14 @@ Keyframe* Map::find_own_keyframe(KeyframeId id) {
   return &*slot(id).keyframe;
 }
 
+const Map::PointSlot* Map::find_slot(PointId id) const {
+  if (id.origin != origin_ || id.number >= place_of_point_.size()) return nullptr;
+  const std::uint32_t place = place_of_point_[id.number];
+  return place == kGone ? nullptr : &points_[place];
+}
+
 std::vector<Observation>* Map::find_observations(PointId id) {
-  if (id.origin == origin_) return find_point(id) ? &points_[id.number].observations : nullptr;
+  if (id.origin == origin_) return find_slot(id) ? &slot(id).observations : nullptr;
   if (origin_ == Origin::offline) return nullptr;
   if (id.number >= offline_observations_.size()) offline_observations_.resize(id.number + std::size_t{1});
   return &offline_observations_[id.number];
@@ -293,10 +311,10 @@ void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
 }
 
 void Map::repair_reference(PointId id) {
-  PointSlot& point_slot = points_[id.number];
+  PointSlot& point_slot = slot(id);
   const std::vector<Observation>& observers = point_slot.observations;
-  if (observers.empty() || std::ranges::binary_search(observers, point_slot.point->reference)) return;
-  point_slot.point->reference = observers.front();
+  if (observers.empty() || std::ranges::binary_search(observers, point_slot.point.reference)) return;
+  point_slot.point.reference = observers.front();
 }
 
 void Map::hand_children_to(KeyframeId id, KeyframeId parent) {

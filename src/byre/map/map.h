@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -125,6 +126,8 @@ class Map {
   // What a keyframe saw, found to lie a little elsewhere in the image; its sightings move along. Points stay where they
   // are. Precondition: the keyframe's own features, moved.
   void move_features(KeyframeId id, Features moved);
+  // The keyframe forgets the patches of other features. Precondition: indices, ascending.
+  void keep_patches(KeyframeId id, std::span<const int> features);
   int rig_of(KeyframeId id) const;  // index into rigs(), of a removed keyframe too. Precondition: was once given out
   // Where a removed keyframe lies relative to its parent, with lengths times the scale. Nothing for one still there.
   void scale_removed_keyframe(KeyframeId id, double scale);
@@ -163,15 +166,20 @@ class Map {
     std::vector<KeyframeId> children;  // ascending
   };
   struct PointSlot {
-    std::optional<MapPoint> point;
+    MapPoint point;
     std::vector<Observation> observations;   // ascending
     std::vector<ForeignView> foreign_views;  // ascending by keyframe
   };
+
+  static constexpr std::uint32_t kGone = 0xFFFFFFFF;  // in place of a place in points_
 
   bool was_given_out(KeyframeId id) const;
   Keyframe* find_own_keyframe(KeyframeId id);
   KeyframeSlot& slot(KeyframeId id) { return keyframes_[id.number]; }
   const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
+  // nullptr for a point that is gone, and for one of another origin.
+  const PointSlot* find_slot(PointId id) const;
+  PointSlot& slot(PointId id) { return points_[place_of_point_[id.number]]; }  // precondition: it is there
   // Where the observations of a point are kept, of an offline point too; nullptr for one that is gone.
   std::vector<Observation>* find_observations(PointId id);
 
@@ -187,7 +195,11 @@ class Map {
   Origin origin_;
   std::vector<Rig> rigs_;
   std::vector<KeyframeSlot> keyframes_;
+  // Points that are there, in any order, and empty places: most of the points that ever were do not last, and shall
+  // not take up room for good.
   std::vector<PointSlot> points_;
+  std::vector<std::uint32_t> place_of_point_;  // place in points_ by the point's number, or kGone
+  std::vector<std::uint32_t> empty_places_;
   std::vector<std::vector<Observation>> offline_observations_;  // observations by online keyframes, per offline point
   std::map<Observation, PointId> points_of_foreign_views_;
   int keyframe_count_ = 0;

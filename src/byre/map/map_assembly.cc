@@ -3,6 +3,7 @@
 #include "byre/map/map.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace byre {
@@ -12,12 +13,14 @@ Map::Map(Origin origin, MapParts parts)
       rigs_(std::move(parts.rigs)),
       keyframes_(parts.keyframes.size()),
       points_(parts.points.size()),
+      place_of_point_(parts.points.size()),
       keyframe_count_(static_cast<int>(parts.keyframes.size())),
       point_count_(static_cast<int>(parts.points.size())) {
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     if (const auto parent = parts.keyframes[i].parent) slot(*parent).children.push_back({origin_, i});
     keyframes_[i].keyframe = std::move(parts.keyframes[i]);
   }
+  std::iota(place_of_point_.begin(), place_of_point_.end(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].point = parts.points[i];
   collect_observations();
   count_covisible_keyframes();

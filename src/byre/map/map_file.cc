@@ -66,43 +66,67 @@ using Bytes = std::span<const std::byte>;
 // The places where sections end that lie one after the other.
 using SectionEnds = std::vector<std::size_t>;
 
-SectionEnds write_sections(const StoredMap& stored, ByteWriter& writer) {
-  const Keyframes all = keyframes_of(stored.map);
-  SectionEnds ends;
-  write_summary(summarise(stored.map), writer);
-  ends.push_back(writer.size());
-  write_notes(stored.notes, writer);
-  ends.push_back(writer.size());
-  write_provenance(stored, writer);
-  ends.push_back(writer.size());
-  write_rigs(stored.map.rigs(), writer);
-  ends.push_back(writer.size());
-  write_keyframes(all, writer);
-  ends.push_back(writer.size());
-  write_features(all, writer);
-  ends.push_back(writer.size());
-  write_patches(all, writer);
-  ends.push_back(writer.size());
-  write_points(stored.map, writer);
-  ends.push_back(writer.size());
-  write_observations(all, writer);
-  ends.push_back(writer.size());
-  write_words(all, stored.vocabulary_checksum, writer);
-  ends.push_back(writer.size());
-  const bool is_refined = std::ranges::any_of(
-      stored.recordings, [](const SourceRecording& recording) { return recording.refined.has_value(); });
+bool is_refined(const StoredMap& stored) {
+  return std::ranges::any_of(stored.recordings,
+                             [](const SourceRecording& recording) { return recording.refined.has_value(); });
+}
+
+// The oldest format that holds what the map has.
+std::uint32_t format_for(const StoredMap& stored) {
   const bool is_rolling = std::ranges::any_of(stored.recordings, [](const SourceRecording& recording) {
     return recording.calibration.readout_time != 0.0 || recording.present_calibration().readout_time != 0.0;
   });
-  if (!stored.plan && !is_refined && !is_rolling) return ends;
-  if (stored.plan) write_plan(*stored.plan, writer);
-  ends.push_back(writer.size());
-  if (!is_refined && !is_rolling) return ends;
-  if (is_refined) write_refined_calibrations(stored.recordings, writer);
-  ends.push_back(writer.size());
-  if (!is_rolling) return ends;
-  write_readout_times(stored.recordings, writer);
-  ends.push_back(writer.size());
+  if (is_rolling) return kFormat;
+  if (is_refined(stored)) return kFormatWithCalibration;
+  return stored.plan ? kFormatWithPlan : kFormatWithoutPlan;
+}
+
+void write_section(std::size_t section, const StoredMap& stored, const Keyframes& all, ByteWriter& writer) {
+  switch (section) {
+    case kSummary:
+      return write_summary(summarise(stored.map), writer);
+    case kNotes:
+      return write_notes(stored.notes, writer);
+    case kProvenance:
+      return write_provenance(stored, writer);
+    case kRigs:
+      return write_rigs(stored.map.rigs(), writer);
+    case kKeyframes:
+      return write_keyframes(all, writer);
+    case kFeatures:
+      return write_features(all, writer);
+    case kPatches:
+      return write_patches(all, writer);
+    case kPoints:
+      return write_points(stored.map, writer);
+    case kObservations:
+      return write_observations(all, writer);
+    case kWords:
+      return write_words(all, stored.vocabulary_checksum, writer);
+    case kPlan:
+      if (stored.plan) write_plan(*stored.plan, writer);
+      return;
+    case kRefinedCalibrations:
+      if (is_refined(stored)) write_refined_calibrations(stored.recordings, writer);
+      return;
+    case kReadoutTimes:
+      return write_readout_times(stored.recordings, writer);
+    default:
+      assert(false);
+  }
+}
+
+// Behind what is in the file already. One section after the other, so that no more than one is held twice.
+SectionEnds write_sections(const StoredMap& stored, std::size_t count, std::vector<std::byte>& file) {
+  const Keyframes all = keyframes_of(stored.map);
+  const std::size_t begin = file.size();
+  SectionEnds ends;
+  for (std::size_t section = 0; section < count; ++section) {
+    ByteWriter writer;
+    write_section(section, stored, all, writer);
+    file.insert(file.end(), writer.bytes().begin(), writer.bytes().end());
+    ends.push_back(file.size() - begin);
+  }
   return ends;
 }
 
@@ -222,12 +246,12 @@ class SectionOpener {
 }  // namespace
 
 std::vector<std::byte> write_map(const StoredMap& stored) {
-  ByteWriter content;
-  const SectionEnds ends = write_sections(stored, content);
+  const std::size_t sections = section_count(format_for(stored));
+  std::vector<std::byte> file(header_bytes(sections));
+  const SectionEnds ends = write_sections(stored, sections, file);
   ByteWriter header;
-  write_header(content.bytes(), ends, header);
-  std::vector<std::byte> file = header.bytes();
-  file.insert(file.end(), content.bytes().begin(), content.bytes().end());
+  write_header(Bytes(file).subspan(file.size() - ends.back()), ends, header);
+  std::ranges::copy(header.bytes(), file.begin());
   return file;
 }
 

@@ -27,6 +27,12 @@ void Map::move_features(KeyframeId id, Features moved) {
   keyframe->frame.features = std::make_shared<const Features>(std::move(moved));
 }
 
+void Map::keep_patches(KeyframeId id, std::span<const int> features) {
+  Keyframe* const keyframe = find_own_keyframe(id);
+  if (keyframe == nullptr || !keyframe->frame.features) return;
+  keyframe->frame.features = std::make_shared<const Features>(keyframe->frame.features->with_patches_of(features));
+}
+
 int Map::rig_of(KeyframeId id) const {
   return slot(id).keyframe ? slot(id).keyframe->rig : slot(id).removed->rig;
 }

@@ -202,6 +202,29 @@ TEST_F(SmallMap, NeverUsesANumberTwice) {
   EXPECT_GT(add_seen_point(map, {keyframe, 0}), lonely);
 }
 
+TEST_F(SmallMap, KnowsNothingOfARemovedPointOnceOthersCame) {
+  map.remove_point(shared);
+  const PointId next = add_seen_point(map, {first, 2});
+  EXPECT_EQ(map.find_point(shared), nullptr);
+  EXPECT_THAT(map.observations(shared), IsEmpty());
+  EXPECT_THAT(map.observations(next), ElementsAre(Observation{first, 2}));
+  EXPECT_THAT(map.observations(lonely), ElementsAre(Observation{third, 1}));
+  EXPECT_THAT(map.point_ids(), ElementsAre(lonely, next));
+}
+
+TEST_F(SmallMap, KeepsThePatchesAskedForAlone) {
+  Keyframe keyframe = keyframe_with(3, third);
+  keyframe.frame.features = std::make_shared<Features>(640, 480, std::vector<Keypoint>(3, Keypoint{{1.0f, 1.0f}}),
+                                                       std::vector<Descriptor>(3), std::vector<Patch>(3));
+  const KeyframeId id = map.add_keyframe(keyframe);
+  const std::vector<int> kept = {1};
+  map.keep_patches(id, kept);
+  const Features& features = *map.find_keyframe(id)->frame.features;
+  EXPECT_EQ(features.find_patch(0), nullptr);
+  EXPECT_NE(features.find_patch(1), nullptr);
+  EXPECT_NE(keyframe.frame.features->find_patch(0), nullptr) << "others may look at it still";
+}
+
 TEST_F(SmallMap, AddsTheObservationsANewKeyframeNames) {
   Keyframe keyframe = keyframe_with(5, third);
   keyframe.sightings = {{shared}, {PointId{Origin::online, 99}}, {shared}, {lonely}};

@@ -125,7 +125,24 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
   ++revision_;
   pending_.push_back(id);
   start_job();
+  forget_patches();
   return id;
+}
+
+// Patches at corners that see no point serve to find new points, which is done among the newest keyframes. At the
+// others they serve for as long as the map grows: points are fused, and defined by another view. Without them errors of
+// maps with loops grow by some percent.
+void Mapper::forget_patches() {
+  constexpr std::uint32_t kNew = 32;  // keyframes, as many as a window holds
+  if (newest_->number < kNew) return;
+  const KeyframeId old{newest_->origin, newest_->number - kNew};
+  const Keyframe* const keyframe = online_.find_keyframe(old);
+  if (keyframe == nullptr) return;
+  std::vector<int> kept;
+  for (int i = 0; i < static_cast<int>(keyframe->sightings.size()); ++i) {
+    if (keyframe->sightings[static_cast<std::size_t>(i)].point) kept.push_back(i);
+  }
+  online_.keep_patches(old, kept);
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be

@@ -104,6 +104,7 @@ class Mapper {
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   void take_over(const MapDelta& delta);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
+  void forget_patches();
   void settle_loop(const LoopHypothesis& loop);
   void index_place(KeyframeId id);
   void forget_places(const MapDelta& delta);

@@ -64,6 +64,40 @@ TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
   EXPECT_THAT(find_faults(mapper.online()), IsEmpty());
 }
 
+// A third of the features gets no disparity, hence no point from one frame alone.
+Frame with_patches(const Frame& frame, const Rig& rig) {
+  const Features& bare = *frame.features;
+  std::vector<Keypoint> keypoints = bare.keypoints();
+  for (std::size_t i = 0; i < keypoints.size(); i += 3) keypoints[i].disparity = keypoints[i].disparity_sigma = -1.0f;
+  Frame result = frame;
+  result.features = std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), bare.descriptors(),
+                                                     std::vector<Patch>(static_cast<std::size_t>(bare.size())));
+  return result;
+}
+
+TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCame) {
+  Mapper mapper = this->mapper(make_paced_executor(1000));
+  const KeyframeId first =
+      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, Pose{}).keyframes.front();
+  const auto patches_without_point = [&] {
+    const Keyframe& keyframe = *mapper.online().find_keyframe(first);
+    int count = 0;
+    for (int i = 0; i < keyframe.frame.features->size(); ++i) {
+      const bool sees_point = keyframe.sightings[static_cast<std::size_t>(i)].point.has_value();
+      const bool has_patch = keyframe.frame.features->find_patch(i) != nullptr;
+      EXPECT_TRUE(has_patch || !sees_point) << "feature " << i;
+      count += has_patch && !sees_point ? 1 : 0;
+    }
+    return count;
+  };
+  for (std::size_t frame = 1; frame < 32; ++frame) {
+    mapper.add_keyframe(mission_.frames[frame], track(mapper, frame), mission_.rig);
+  }
+  EXPECT_GT(patches_without_point(), 0);
+  mapper.add_keyframe(mission_.frames[32], track(mapper, 32), mission_.rig);
+  EXPECT_EQ(patches_without_point(), 0);
+}
+
 TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(5));
   mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));

@@ -61,8 +61,19 @@ struct ReducedSystem::Sparse {
   }
 };
 
+namespace {
+
+// A quarter of all pairs.
+bool are_most_pairs(int poses, const std::vector<std::vector<int>>& neighbours) {
+  std::size_t pairs = 0;
+  for (const std::vector<int>& columns : neighbours) pairs += columns.size();
+  return 8 * pairs >= static_cast<std::size_t>(poses) * static_cast<std::size_t>(poses);
+}
+
+}  // namespace
+
 ReducedSystem::ReducedSystem(int poses, std::vector<std::vector<int>> neighbours) : poses_(poses) {
-  if (poses <= kMaxDensePoses) {
+  if (poses <= kMaxDensePoses || are_most_pairs(poses, neighbours)) {
     dense_.resize(6 * poses, 6 * poses);
   } else {
     sparse_ = std::make_unique<Sparse>(std::move(neighbours));

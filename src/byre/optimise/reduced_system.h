@@ -11,8 +11,9 @@
 namespace byre {
 
 // The normal equations over poses, six unknowns each, once the points are eliminated; symmetric, of which the lower
-// triangle is kept. Dense where there are few poses, and by the pairs of poses that see a common point where there are
-// many: their number grows with the map, that of all pairs with its square.
+// triangle is kept. By the pairs of poses that see a common point where these are few: their number grows with the map,
+// that of all pairs with its square. Dense where poses are few, or most of them see the same room: then CHOLMOD, which
+// fills in nearly all pairs anyway, takes twice the memory for its copies of the matrix.
 class ReducedSystem {
  public:
   using Block = Eigen::Map<Matrix6, Eigen::Unaligned, Eigen::OuterStride<>>;

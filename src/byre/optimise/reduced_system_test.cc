@@ -75,6 +75,22 @@ TEST_P(ReducedSystemOf, HasNoSolutionWhereItIsNotPositiveDefinite) {
 
 INSTANTIATE_TEST_SUITE_P(DenseAndSparse, ReducedSystemOf, testing::Values(1, 20, ReducedSystem::kMaxDensePoses + 10));
 
+TEST(ReducedSystem, IsTheSameWhereMostPosesAreNeighbours) {
+  constexpr int kPoses = ReducedSystem::kMaxDensePoses + 4;
+  std::vector<std::vector<int>> neighbours(kPoses);
+  for (int row = 0; row < kPoses; ++row) {
+    for (int column = 0; column < row; ++column) neighbours[static_cast<std::size_t>(row)].push_back(column);
+  }
+  ReducedSystem filled(kPoses, neighbours), sparse(kPoses, neighbours_of(kPoses));
+  fill(filled, kPoses, 1500.0);
+  fill(sparse, kPoses, 1500.0);
+  const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(6 * kPoses, 1.0, -2.0);
+  const auto solution = filled.solve(right);
+  const auto expected = sparse.solve(right);
+  ASSERT_TRUE(solution && expected);
+  EXPECT_LT((*solution - *expected).norm(), 1e-9 * expected->norm());
+}
+
 TEST(ReducedSystem, OfNoPosesHasAnEmptySolution) {
   const auto solution = ReducedSystem(0, {}).solve(Eigen::VectorXd());
   ASSERT_TRUE(solution);

@@ -70,15 +70,16 @@ void take_over_result(const Engine& engine, MapRun& run) {
   }
 }
 
-}  // namespace
-
-MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
-               std::optional<Map> before) {
-  PlayedRecording frames(recording, options.pace == Pace::live);
-  return run_map(frames, options, hooks, std::move(before));
+// Each step needs as much memory as the ones before it together, and of another kind.
+FinishHooks frugal(const MapRunHooks& hooks) {
+  return {hooks.should_stop, [announce = hooks.before_finishing_step](const char* step) {
+            release_free_memory();
+            if (announce) announce(step);
+          }};
 }
 
-MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks, std::optional<Map> before) {
+MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks,
+                   std::optional<Map> before) {
   const Stopwatch watch;
   Engine engine(frames.calibration(), options, std::move(before));
   MotionFeed feed(frames.motion());
@@ -98,7 +99,7 @@ MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHo
   }
   if (hooks.should_stop()) engine.hurry();
   engine.finish();
-  const FinishHooks finish_hooks{hooks.should_stop, hooks.before_finishing_step};
+  const FinishHooks finish_hooks = frugal(hooks);
   if (is_begun && !hooks.should_stop()) {
     if (options.offline) {
       run.mission_finishing_seconds = engine.finish_mission(finish_hooks);
@@ -108,6 +109,20 @@ MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHo
   }
   take_over_result(engine, run);
   run.wall_seconds = watch.seconds();
+  return run;
+}
+
+}  // namespace
+
+MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
+               std::optional<Map> before) {
+  PlayedRecording frames(recording, options.pace == Pace::live);
+  return run_map(frames, options, hooks, std::move(before));
+}
+
+MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks, std::optional<Map> before) {
+  MapRun run = run_through(frames, options, hooks, std::move(before));
+  release_free_memory();
   return run;
 }
 

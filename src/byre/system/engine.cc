@@ -114,7 +114,8 @@ std::optional<RefinedCalibration> Engine::calibration() const {
 }
 
 Map Engine::kept_map() const {
-  return offline_copy(standalone_copy(session_.map()));
+  const MapView map = session_.map();
+  return map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
 }
 
 }  // namespace byre

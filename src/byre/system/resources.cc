@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,6 +21,10 @@ ResourceUse resources_used_so_far() {
   getrusage(RUSAGE_SELF, &usage);
   return {seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime),
           kMegabytesPerKibibyte * static_cast<double>(usage.ru_maxrss)};
+}
+
+void release_free_memory() {
+  malloc_trim(0);
 }
 
 double resident_memory_mb() {

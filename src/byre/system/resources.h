@@ -10,6 +10,9 @@ struct ResourceUse {
 
 ResourceUse resources_used_so_far();
 
+// Hands memory that was freed back to the system, which the allocator would rather keep. Takes milliseconds.
+void release_free_memory();
+
 double resident_memory_mb();  // now; zero where the system does not tell
 
 }  // namespace byre
