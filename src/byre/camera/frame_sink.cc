@@ -95,12 +95,12 @@ class McapSink final : public FrameSink {
   McapSink(const fs::path& path, const RecordedCameras& cameras)
       : writer_(path), calibration_(cameras.calibration), left_(add_camera("/left")) {
     if (cameras.has_right) right_ = add_camera("/right");
-    if (calibration_) mounts_ = writer_.add_topic<ros::TFMessage>("/tf_static", Durability::kept);
+    if (calibration_) mounts_ = writer_.add(ros::topic_of<ros::TFMessage>("/tf_static", ros::Durability::kept));
   }
 
   void write(const ImageFrame& frame) override {
     constexpr Timestamp kFlushInterval = std::chrono::seconds(1);
-    if (!last_flush_ && calibration_) writer_.write(*mounts_, frame.time, ros_mounts(*calibration_, frame.time));
+    if (!last_flush_ && calibration_) writer_.put_message(*mounts_, frame.time, ros_mounts(*calibration_, frame.time));
     write_image(left_, frame.left, calibration_ ? &calibration_->left : nullptr, kLeftFrame, frame.time);
     if (right_ && frame.right) {
       write_image(*right_, *frame.right, calibration_ ? &calibration_->right->camera : nullptr, kRightFrame,
@@ -120,14 +120,14 @@ class McapSink final : public FrameSink {
   };
 
   Topics add_camera(const std::string& name) {
-    Topics topics{writer_.add_topic<ros::Image>(name + "/image_raw")};
-    if (calibration_) topics.info = writer_.add_topic<ros::CameraInfo>(name + "/camera_info");
+    Topics topics{writer_.add(ros::topic_of<ros::Image>(name + "/image_raw"))};
+    if (calibration_) topics.info = writer_.add(ros::topic_of<ros::CameraInfo>(name + "/camera_info"));
     return topics;
   }
 
   void write_image(const Topics& topics, const Image& image, const Camera* camera, const char* frame, Timestamp time) {
-    writer_.write(topics.image, time, ros_image(image, frame, time));
-    if (camera != nullptr) writer_.write(*topics.info, time, ros_camera_info(*camera, frame, time));
+    writer_.put_message(topics.image, time, ros_image(image, frame, time));
+    if (camera != nullptr) writer_.put_message(*topics.info, time, ros_camera_info(*camera, frame, time));
   }
 
   McapWriter writer_;

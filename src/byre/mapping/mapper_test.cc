@@ -78,7 +78,8 @@ Frame with_patches(const Frame& frame, const Rig& rig) {
 TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCame) {
   Mapper mapper = this->mapper(make_paced_executor(1000));
   const KeyframeId first =
-      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, Pose{}).keyframes.front();
+      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, Pose{}, AnchoredTrajectory({}))
+          .keyframes.front();
   const auto patches_without_point = [&] {
     const Keyframe& keyframe = *mapper.online().find_keyframe(first);
     int count = 0;
