@@ -11,8 +11,8 @@
 namespace byre {
 namespace {
 
-constexpr double kLeastTurn = 1.5;           // radians, all turns together
-constexpr double kLeastWay = 1.5;            // metres, all ways together
+constexpr double kLeastTurn = 0.8;           // radians, all turns together; the deviations decide
+constexpr double kLeastWay = 1.0;            // metres, all ways together
 constexpr double kMaxAxisError = 0.35;       // radians, median angle between the axes of turns that were seen
 constexpr double kMaxScaleSigma = 0.05;      // share
 constexpr double kMaxDirectionSigma = 0.05;  // radians
