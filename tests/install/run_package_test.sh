@@ -76,9 +76,9 @@ if command -v man >/dev/null; then
   [[ $shown == *"byre-map - turn a recording into a map"* ]] || fail "man does not show byre-map(1): $shown"
 fi
 # shellcheck disable=SC2016
-completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pa); COMP_CWORD=2; _byre; echo "${COMPREPLY[@]}"' - \
+completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pac); COMP_CWORD=2; _byre; echo "${COMPREPLY[@]}"' - \
   "$usr/share/bash-completion/completions/byre")
-[[ $completed == "--pace" ]] || fail "bash completes --pa as: $completed"
+[[ $completed == "--pace" ]] || fail "bash completes --pac as: $completed"
 [[ -f $usr/share/zsh/vendor-completions/_byre ]] || fail "there is no completion for zsh"
 
 {

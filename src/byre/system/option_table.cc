@@ -330,6 +330,10 @@ void add_health(Table& table) {
       [](auto& o) -> auto& { return o.session.health.max_rotation_sigma; },
       "uncertainty of a trusted pose's rotation"));
   table.push_back(number(
+      "health.max_bridged_rotation_rad", "radians", 0, 10,
+      [](auto& o) -> auto& { return o.session.health.max_bridged_rotation; },
+      "error of a bridged pose's rotation, up to which it is degraded"));
+  table.push_back(number(
       "health.min_points", "points", 0, 1e5, [](auto& o) -> auto& { return o.session.health.min_points; },
       "points of either map that hold a trusted pose"));
   table.push_back(number(
