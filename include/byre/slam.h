@@ -73,7 +73,7 @@ class Slam {
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& told = {});
 
   // What wheels tell, at any rate: the pose of the robot's base in a frame of their own, which drifts; metres. In order
-  // of time, by the clock of the images, before the frames that it leads to; what comes up to a tenth of a second late
+  // of time, by the clock of the images, before the frames that it leads to; what comes up to a fifth of a second late
   // is made up for. How the camera is mounted on the base, how late wheels stamp and, with one camera, how long the
   // map's unit is, byre finds out while the robot drives and turns; until then it does not use them. Where wheels slip
   // they are left out.

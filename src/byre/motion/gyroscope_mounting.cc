@@ -15,10 +15,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kLeastTurn = 0.5;    // radians, all turns together
+constexpr double kLeastTurned = 0.5;  // radians, all turns together
 constexpr double kMaxError = 0.15;    // radians per second, median
 constexpr Timestamp kBiasSpan = 30s;  // back from the last motion seen
-constexpr int kRounds = 4;
+constexpr int kMountingRounds = 4;
 
 struct TurnPair {
   Eigen::Vector3d seen;  // radians, about the body's axes
@@ -27,13 +27,12 @@ struct TurnPair {
   bool is_recent = false;
 };
 
-std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen, const RateTrack& rates) {
+std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen) {
   std::vector<TurnPair> pairs;
   for (const SeenMotion& motion : seen) {
-    const auto told = rates.between(motion.earlier, motion.later, Eigen::Vector3d::Zero());
-    if (!told) continue;
-    pairs.push_back({rotation_log(motion.body.rotation), rotation_log(*told), to_seconds(motion.later - motion.earlier),
-                     motion.later + kBiasSpan >= seen.back().later});
+    if (!motion.gyroscope_turn) continue;
+    pairs.push_back({rotation_log(motion.body.rotation), *motion.gyroscope_turn,
+                     to_seconds(motion.later - motion.earlier), motion.later + kBiasSpan >= seen.back().later});
   }
   return pairs;
 }
@@ -62,14 +61,14 @@ Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quatern
 
 }  // namespace
 
-std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen, const RateTrack& rates) {
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen) {
   constexpr std::size_t kLeastPairs = 8;
-  const std::vector<TurnPair> pairs = pairs_of(seen, rates);
+  const std::vector<TurnPair> pairs = pairs_of(seen);
   double turned = 0.0;
   for (const TurnPair& pair : pairs) turned += pair.seen.norm();
-  if (pairs.size() < kLeastPairs || turned < kLeastTurn) return {};
+  if (pairs.size() < kLeastPairs || turned < kLeastTurned) return {};
   GyroscopeMounting mounting;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMountingRounds; ++round) {
     mounting.body_from_gyroscope = rotation_of(pairs, mounting.bias);
     mounting.bias = bias_of(pairs, mounting.body_from_gyroscope);
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "byre/motion/rate_track.h"
 #include "byre/motion/seen_motion.h"
 
 #include <deque>
@@ -18,6 +17,6 @@ struct GyroscopeMounting {
 // By turns that were seen, of some seconds at least; the bias is that of the last half minute. Where all turns are
 // about one axis, how the gyroscope is turned about that one stays open, and matters to no such turn. Empty while too
 // little was turned, or what it tells is not what was seen.
-std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen, const RateTrack& rates);
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen);
 
 }  // namespace byre

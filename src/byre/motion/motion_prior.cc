@@ -15,6 +15,7 @@ constexpr Timestamp kStride = 500ms;       // length of the motions that are com
 constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
+constexpr int kLooksPerOffset = 8;  // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
 double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
@@ -86,34 +87,45 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
   if (++unlooked_ >= kMotionsPerLook) look_for_mountings();
 }
 
+std::optional<Pose> MotionPrior::base_between(Timestamp earlier, Timestamp later) const {
+  const Timestamp offset = from_seconds(time_offset());
+  return wheels_.between(earlier + offset, later + offset);
+}
+
 std::vector<MotionPair> MotionPrior::pairs() const {
-  const Timestamp offset = from_seconds(time_offset_);
   std::vector<MotionPair> pairs;
   for (const SeenMotion& motion : seen_) {
-    if (const auto base = wheels_.between(motion.earlier + offset, motion.later + offset)) {
-      pairs.push_back({*base, motion.body});
-    }
+    if (const auto base = base_between(motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
   }
   return pairs;
+}
+
+// Takes down what the gyroscope told of the motions seen since the last look.
+void MotionPrior::ask_gyroscope() {
+  for (auto motion = seen_.rbegin(); motion != seen_.rend() && !motion->gyroscope_turn; ++motion) {
+    const auto turn = rates_.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
+    if (!turn) break;
+    motion->gyroscope_turn = rotation_log(*turn);
+  }
 }
 
 void MotionPrior::look_for_mountings() {
   unlooked_ = 0;
   if (!rates_.empty()) {
-    if (const auto found = find_gyroscope_mounting(seen_, rates_)) gyroscope_ = found;
+    ask_gyroscope();
+    if (const auto found = find_gyroscope_mounting(seen_)) gyroscope_ = found;
   }
   if (wheels_.empty()) return;
   if (const auto found = find_wheel_mounting(pairs())) mounting_ = found;
-  if (!mounting_) return;
+  if (!mounting_ || looks_++ % kLooksPerOffset != 0) return;
   const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  if (const auto offset = find_time_offset(seen_, up, wheels_)) time_offset_ = *offset;
+  if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {
   constexpr int kAgreeing = 2;  // motions after which wheels are believed again
   if (!mounting_) return;
-  const Timestamp offset = from_seconds(time_offset_);
-  const auto base = wheels_.between(motion.earlier + offset, motion.later + offset);
+  const auto base = base_between(motion.earlier, motion.later);
   if (!base) return;
   if (disagreement(body_motion(*mounting_, *base), motion, mounting_->metres_per_unit) > 1.0) {
     if (!is_slipping_) ++slips_;
@@ -131,13 +143,23 @@ std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earli
   return gyroscope_->body_from_gyroscope * *told * gyroscope_->body_from_gyroscope.conjugate();
 }
 
-std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later) const {
+// turn: the body's by the gyroscope, which replaces the one that wheels tell.
+std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
+                                                 const std::optional<Eigen::Quaterniond>& turn) const {
   if (!mounting_ || is_slipping_) return {};
-  const Timestamp offset = from_seconds(time_offset_);
-  const auto base = wheels_.between(earlier + offset, later + offset);
+  auto base = base_between(earlier, later);
   if (!base) return {};
-  const Pose motion = body_motion(*mounting_, *base);
-  return BodyMotion{motion, covariance_of(motion, *mounting_)};
+  bool is_way_known = true;
+  if (turn) {
+    const Eigen::Quaterniond& base_from_body = mounting_->base_from_body.rotation;
+    const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
+    is_way_known = !is_slip(base->rotation, base_turn, to_seconds(later - earlier));
+    base->rotation = base_turn;
+  }
+  const Pose body = body_motion(*mounting_, *base);
+  BodyMotion motion{body, covariance_of(body, *mounting_)};
+  if (!is_way_known) forget_way(motion);
+  return motion;
 }
 
 std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp later) const {
@@ -155,21 +177,11 @@ std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp lat
 
 std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp later) const {
   constexpr double kLeastTurn = 1e-4;  // radians
-  auto motion = by_wheels(earlier, later);
   const auto turn = turn_by_gyroscope(earlier, later);
+  auto motion = by_wheels(earlier, later, turn);
   if (!turn) return motion;
-  if (motion) {
-    if (is_slip(motion->last_from_body.rotation, *turn, to_seconds(later - earlier))) forget_way(*motion);
-    Pose base = mounting_->base_from_body;
-    base.translation /= mounting_->metres_per_unit;
-    Pose base_motion = base * motion->last_from_body * inverse(base);
-    base_motion.rotation = base.rotation * *turn * base.rotation.conjugate();
-    motion->last_from_body = inverse(base) * base_motion * base;
-  } else if ((motion = by_sight(earlier, later))) {
-    motion->last_from_body.rotation = *turn;
-  } else {
-    return {};
-  }
+  if (!motion && (motion = by_sight(earlier, later))) motion->last_from_body.rotation = *turn;
+  if (!motion) return {};
   const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
   motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
   return motion;

@@ -32,15 +32,18 @@ class MotionPrior {
 
   const std::optional<WheelMounting>& wheels() const { return mounting_; }
   const std::optional<GyroscopeMounting>& gyroscope() const { return gyroscope_; }
-  double time_offset() const { return time_offset_; }  // seconds that wheels stamp later than the camera
+  double time_offset() const { return time_offset_.value_or(0.0); }  // seconds that wheels stamp later than the camera
   bool are_wheels_slipping() const { return is_slipping_; }
   int slips() const { return slips_; }  // times that they began to
 
  private:
   void look_for_mountings();
   void watch_for_slip(const SeenMotion& motion);
+  void ask_gyroscope();
   std::vector<MotionPair> pairs() const;
-  std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later) const;
+  std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
+  std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later,
+                                      const std::optional<Eigen::Quaterniond>& turn) const;
   std::optional<BodyMotion> by_sight(Timestamp earlier, Timestamp later) const;
   std::optional<Eigen::Quaterniond> turn_by_gyroscope(Timestamp earlier, Timestamp later) const;
 
@@ -51,9 +54,10 @@ class MotionPrior {
   std::optional<StampedPose> last_;   // the last frame, where it was seen
   std::optional<Vector6> velocity_;   // velocity of the body, per second, when it was seen last
   int unlooked_ = 0;                  // motions seen since mountings were looked for
+  int looks_ = 0;                     // looks by which the mounting of wheels was known
   std::optional<WheelMounting> mounting_;
   std::optional<GyroscopeMounting> gyroscope_;
-  double time_offset_ = 0.0;
+  std::optional<double> time_offset_;
   bool is_slipping_ = false;
   int agreeing_ = 0;  // motions that wheels told as they were seen, since they slipped
   int slips_ = 0;

@@ -50,6 +50,18 @@ MotionPrior followed(const Drive& drive, const Told& told, double dark, double e
   return prior;
 }
 
+// The same, seen all the time, by wheels whose news come at the time that they are stamped for.
+MotionPrior heard_until_now(const Drive& drive, double end) {
+  MotionPrior prior;
+  std::mt19937 random(5);
+  for (int step = 0; step * 0.01 <= end; ++step) {
+    const double t = step * 0.01;
+    if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), Drive::world_from_base(t - drive.wheel_delay)});
+    if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
+  }
+  return prior;
+}
+
 Pose true_motion(const Drive& drive, double from, double to) {
   Drive exact = drive;
   exact.noise = 0.0;
@@ -84,6 +96,18 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05);  // metres, of 5
   EXPECT_LT(error.tail<3>().norm(), 0.02);
   EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
+// The last frames are led to by wheels that were heard up to then only, and tell what they did later.
+TEST(MotionPrior, GoesOnWithWhatWheelsToldLast) {
+  const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.15, .noise = 0.0005};
+  const MotionPrior late = heard_until_now(drive, 60.0);
+  EXPECT_NEAR(late.time_offset(), 0.15, 0.01);
+  const auto told = late.between(from_seconds(59.95), from_seconds(60.0));
+  ASSERT_TRUE(told);
+  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 59.95, 60.0));
+  EXPECT_LT(error.head<3>().norm(), 0.005);
+  EXPECT_LT(error.tail<3>().norm(), 0.005);
 }
 
 TEST(MotionPrior, TurnsByTheGyroscope) {

@@ -8,15 +8,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kKept = 120s;
-constexpr Timestamp kMaxGap = 50ms;
+constexpr Timestamp kRatesKept = 120s;
+constexpr Timestamp kMaxRateGap = 50ms;
 
 }  // namespace
 
 void RateTrack::add(const AngularRate& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   samples_.push_back(sample);
-  while (samples_.front().time + kKept < sample.time) samples_.pop_front();
+  while (samples_.front().time + kRatesKept < sample.time) samples_.pop_front();
 }
 
 // Between two samples the rate is the mean of both.
@@ -29,7 +29,7 @@ std::optional<Eigen::Quaterniond> RateTrack::between(Timestamp earlier, Timestam
   Timestamp now = earlier;
   for (auto sample = std::prev(next); now < later; sample = next, ++next) {
     const bool is_last = next == samples_.end();
-    if ((is_last ? later : next->time) - sample->time > kMaxGap) return {};
+    if ((is_last ? later : next->time) - sample->time > kMaxRateGap) return {};
     const Timestamp until = is_last ? later : std::min(later, next->time);
     const Eigen::Vector3d rate = is_last ? sample->rate : (0.5 * (sample->rate + next->rate)).eval();
     turn = turn * rotation_exp((rate - bias) * to_seconds(until - now));

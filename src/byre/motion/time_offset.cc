@@ -1,9 +1,10 @@
 #include "byre/motion/time_offset.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace byre {
 namespace {
@@ -11,9 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Timestamp kStep = 20ms;
-constexpr int kSteps = 10;           // either way
-constexpr double kMostError = 0.03;  // radians that count: where a wheel slips, no offset makes up for it
-constexpr double kLeastTurn = 1.5;   // radians, all turns together
+constexpr int kSteps = 10;              // either way
+constexpr int kStepsAround = 2;         // either way of what is known
+constexpr double kMostError = 0.03;     // radians that count: where a wheel slips, no offset makes up for it
+constexpr double kLeastTurnSeen = 1.5;  // radians, all turns together
 
 double turn_of(const SeenMotion& motion, const Eigen::Vector3d& up) {
   return rotation_log(motion.body.rotation).dot(up);
@@ -37,23 +39,25 @@ std::optional<double> difference(const std::deque<SeenMotion>& seen, const Eigen
 }  // namespace
 
 std::optional<double> find_time_offset(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
-                                       const WheelTrack& wheels) {
+                                       const WheelTrack& wheels, std::optional<double> known) {
   double turned = 0.0;
   for (const SeenMotion& motion : seen) turned += std::abs(turn_of(motion, up));
-  if (turned < kLeastTurn) return {};
-  std::array<double, 2 * kSteps + 1> cost{};
-  int best = 0;
-  for (int step = -kSteps; step <= kSteps; ++step) {
-    const auto index = static_cast<std::size_t>(step + kSteps);
+  if (turned < kLeastTurnSeen) return {};
+  const int middle = known ? static_cast<int>(std::lround(*known / to_seconds(kStep))) : 0;
+  const int reach = known ? kStepsAround : kSteps;
+  const int first = std::clamp(middle - reach, -kSteps, kSteps), last = std::clamp(middle + reach, -kSteps, kSteps);
+  std::vector<double> cost;
+  for (int step = first; step <= last; ++step) {
     const auto value = difference(seen, up, wheels, step * kStep);
     if (!value) return {};
-    cost[index] = *value;
-    if (cost[index] < cost[static_cast<std::size_t>(best + kSteps)]) best = step;
+    cost.push_back(*value);
   }
+  const auto least = std::ranges::min_element(cost);
+  const int best = first + static_cast<int>(least - cost.begin());
   if (std::abs(best) == kSteps) return {};
-  const auto middle = static_cast<std::size_t>(best + kSteps);
-  const double before = cost[middle - 1], after = cost[middle + 1];
-  const double curvature = before - 2.0 * cost[middle] + after;
+  if (best == first || best == last) return best * to_seconds(kStep);
+  const double before = *std::prev(least), after = *std::next(least);
+  const double curvature = before - 2.0 * *least + after;
   const double beside = curvature > 0.0 ? 0.5 * (before - after) / curvature : 0.0;
   return (best + beside) * to_seconds(kStep);
 }

@@ -1,6 +1,5 @@
 #include "byre/motion/wheel_track.h"
 
-#include <algorithm>
 #include <chrono>
 
 namespace byre {
@@ -8,28 +7,26 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kKept = 120s;
-constexpr Timestamp kMaxGap = 500ms;
-constexpr Timestamp kMaxAhead = 100ms;  // how far the last motion is taken to go on
+constexpr Timestamp kWheelsKept = 120s;
+constexpr Timestamp kMaxWheelGap = 500ms;
+constexpr Timestamp kMaxAhead = 250ms;
 
 }  // namespace
 
 void WheelTrack::add(const StampedPose& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   samples_.push_back(sample);
-  while (samples_.front().time + kKept < sample.time) samples_.pop_front();
+  if (samples_.front().time + 2 * kWheelsKept < sample.time) {
+    std::erase_if(samples_, [&](const StampedPose& old) { return old.time + kWheelsKept < sample.time; });
+  }
 }
 
 std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {
-  if (samples_.size() < 2 || time < samples_.front().time || time > samples_.back().time + kMaxAhead) return {};
-  auto after = std::lower_bound(samples_.begin(), samples_.end(), time,
-                                [](const StampedPose& sample, Timestamp t) { return sample.time < t; });
-  if (after == samples_.begin()) return after->world_from_body;
-  if (after == samples_.end()) --after;
-  const auto before = std::prev(after);
-  if (after->time - before->time > kMaxGap) return {};
-  const double fraction = to_seconds(time - before->time) / to_seconds(after->time - before->time);
-  return interpolate(before->world_from_body, after->world_from_body, fraction);
+  if (samples_.size() < 2 || time <= samples_.back().time) return byre::pose_at(samples_, time, kMaxWheelGap);
+  const StampedPose &before = samples_[samples_.size() - 2], &last = samples_.back();
+  if (time > last.time + kMaxAhead || last.time - before.time > kMaxWheelGap) return {};
+  const double fraction = to_seconds(time - before.time) / to_seconds(last.time - before.time);
+  return interpolate(before.world_from_body, last.world_from_body, fraction);
 }
 
 std::optional<Pose> WheelTrack::between(Timestamp earlier, Timestamp later) const {

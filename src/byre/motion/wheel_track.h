@@ -2,7 +2,6 @@
 
 #include "byre/trajectory.h"
 
-#include <deque>
 #include <optional>
 
 namespace byre {
@@ -14,14 +13,14 @@ class WheelTrack {
   void add(const StampedPose& sample);
 
   bool empty() const { return samples_.empty(); }
-  // The base at a time between two samples at most half a second apart, or up to a tenth of a second after the last
-  // one.
+  // The base at a time between two samples at most half a second apart, or up to a quarter of a second after the last
+  // one, by which the last motion is taken to go on.
   std::optional<Pose> pose_at(Timestamp time) const;
   // The base's motion, earlier_from_later; empty where either end is not known.
   std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
 
  private:
-  std::deque<StampedPose> samples_;
+  Trajectory samples_;
 };
 
 }  // namespace byre

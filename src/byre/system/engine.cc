@@ -73,7 +73,7 @@ FrameReport Engine::process(const Frame& frame, const std::optional<BodyMotion>&
   const bool is_told = !motion && last_frame_ && !prior_.is_empty();
   FrameReport report = session_.process(frame, is_told ? prior_.between(*last_frame_, frame.time) : motion);
   last_frame_ = frame.time;
-  const bool is_seen = report.odometry_from_body && report.health.doubt != Doubt::bridged;
+  const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
   return report;
 }
