@@ -68,9 +68,9 @@ pages=$usr/share/man/man1
 for command in $("$byre" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]*\) .*/\1/p'); do
   page=$pages/byre-$command.1.gz
   [[ -f $page ]] || fail "byre $command has no manual page"
-  zcat "$page" | grep -q "^byre\\\\-${command//-/\\\\-} \\\\- " || fail "$page has no name"
+  grep -q "^byre\\\\-${command//-/\\\\-} \\\\- " <(zcat "$page") || fail "$page has no name"
 done
-zcat "$pages/byre-map.1.gz" | grep -qF '\fB\-o,\-\-output MAP\fR' || fail "byre-map(1) does not know the option --output"
+grep -qF '\fB\-o,\-\-output MAP\fR' <(zcat "$pages/byre-map.1.gz") || fail "byre-map(1) does not know the option --output"
 if command -v man >/dev/null; then
   shown=$(MANPATH=$usr/share/man man byre-map 2>&1 | cat)
   [[ $shown == *"byre-map - turn a recording into a map"* ]] || fail "man does not show byre-map(1): $shown"
@@ -85,7 +85,7 @@ completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pac); COMP_CWORD=2; _by
   cmake -S "$source_dir/tests/install" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$usr" -DBYRE_COMPONENT=shared
   cmake --build "$work/consumer"
 } >"$work/consumer.log" 2>&1 || { cat "$work/consumer.log"; exit 1; }
-ldd "$work/consumer/consumer" | grep -q "libbyre\.so\.0 => $usr/" || fail "the consumer does not use the package's library"
+grep -q "libbyre\.so\.0 => $usr/" <(ldd "$work/consumer/consumer") || fail "the consumer does not use the package's library"
 said=$("$work/consumer/consumer")
 [[ $(sed -n 21p <<<"$said") == "tracking, none, "* ]] || fail "the consumer does not know where it is: $said"
 
