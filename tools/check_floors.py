@@ -3,7 +3,11 @@
 
 Usage: check_floors.py [SOURCE]        SOURCE is the folder of rooms, src/byre of this project unless given.
 
-A room may include rooms on lower floors only. Some headers and calls are fenced in, see KEPT_IN and FORBIDDEN.
+A room may include rooms on lower floors only. Some headers and calls are fenced in, see KEPT_IN and FORBIDDEN. A type
+is defined by one header only: two of one name may be linked into one program, which then takes either for both. What
+a file keeps to itself has a name that no other file of its room has, as several are compiled as one. Functions may be
+overloaded by types of byre. Those that take others, which convert into each other, may not, or another file might call
+one for what a header declares.
 Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 nothing to check.
 """
 import pathlib
@@ -162,6 +166,73 @@ def file_faults(path: pathlib.Path, room: str) -> Iterator[Fault]:
             yield Fault(path, number, message)
 
 
+OPENING = re.compile(
+    r"namespace(?:\s+(?P<namespace>[\w:]+))?\s*\{"
+    r"|\b(?:struct|class|enum(?:\s+class)?)\s+(?P<type>\w+)\s*(?:final\s*)?(?::[^:;{(][^;{(]*)?\{"
+    r"|(?<=\n)(?:inline\s+)?const(?:expr)?\s[^;=({]*\b(?P<constant>k[A-Z]\w*)"
+    r"|(?<=\n)(?!return|using|template|static_assert|#)[A-Za-z_][^\n;{}=()]*[\s&*](?P<function>\w+)\((?:const\s+)?(?P<taken>[\w:]*)"
+    r"|[{}]")
+
+
+ANONYMOUS = "{anonymous}"
+
+
+# What a file declares or defines outside of types and functions, each name with its namespace and its line: types,
+# constants, and functions that take no type of byre first, with "()" behind them.
+def definitions(text: str) -> Iterator[tuple[str, int]]:
+    code = "\n".join(without_strings(line) for line in without_comments(text).split("\n"))
+    code = re.sub(r"'(?:\\.|[^'\\\n])'", "' '", code)
+    scopes = []
+    for found in OPENING.finditer(code):
+        name = found["type"] or found["constant"] or found["function"]
+        is_overload = found["function"] and re.match("[A-Z](?!igen::)|ros::", found["taken"])
+        if name and None not in scopes and not is_overload:
+            yield "::".join([*scopes, name]) + "()" * bool(found["function"]), code.count("\n", 0, found.start()) + 1
+        if found[0] == "}":
+            del scopes[-1:]
+        elif not found["constant"] and not found["function"]:
+            is_namespace = found[0].startswith("namespace")
+            scopes.append((found["namespace"] or ANONYMOUS) if is_namespace else None)
+
+
+def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathlib.Path]) -> Iterator[Fault]:
+    for path in paths:
+        for name, line in definitions(path.read_text(encoding="utf-8")):
+            if is_wanted(name) and first.setdefault(name, path) != path:
+                yield Fault(path, line, f"{name} is defined by {first[name]} too: name one of them otherwise")
+
+
+def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
+    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith("()"), {})
+
+
+# What headers on the floors up to a room's declare, as if each file kept it to itself.
+def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[str, pathlib.Path]:
+    names = {}
+    for other, path in headers:
+        is_of_tests = re.search("_(scene|fixture|matchers|images)$", path.stem)
+        if not is_of_tests and (other == room or FLOOR[other] < FLOOR[room]):
+            for full_name, _ in definitions(path.read_text(encoding="utf-8")):
+                scope, _, name = full_name.rpartition("::")
+                names[f"{scope}::{ANONYMOUS}::{name}"] = path
+    return names
+
+
+# Of files that are compiled as one: those of a room, its tests apart.
+def clash_faults(source: pathlib.Path, public: pathlib.Path) -> Iterator[Fault]:
+    together = {}
+    headers = [(PUBLIC[path.name], path) for path in source_files(public) if path.name in PUBLIC]
+    for path in source_files(source):
+        room = path.relative_to(source).parts[0]
+        if path.suffix == ".cc":
+            together.setdefault((room, path.stem.endswith("_test")), []).append(path)
+        elif room in EVERY_ROOM:
+            headers.append((room, path))
+    for (room, _), paths in together.items():
+        if room in EVERY_ROOM:
+            yield from faults_of_names(paths, lambda name: ANONYMOUS in name, declared_names(headers, room))
+
+
 def source_files(source: pathlib.Path) -> list[pathlib.Path]:
     return sorted(path for path in source.rglob("*") if path.suffix in {".h", ".cc"} and path.is_file())
 
@@ -208,6 +279,8 @@ def main(arguments: list[str]) -> int:
     public = source.parent.parent / "include" / "byre"
     found = list(faults(source)) + list(all_public_faults(public))
     files += source_files(public)
+    found += twice_defined_faults([path for path in files if path.suffix == ".h"])
+    found += clash_faults(source, public)
     for fault in found:
         print(fault)
     print(f"{len(files)} files, {len(found)} faults" if found else f"floors hold in {len(files)} files")

@@ -36,6 +36,64 @@ class CheckFloorsTest(unittest.TestCase):
         return code, output.getvalue(), errors.getvalue()
 
 
+class Types(CheckFloorsTest):
+    def defined(self, text):
+        return list(check_floors.definitions(text))
+
+    def test_types_have_their_namespace_and_line(self):
+        text = "namespace byre {\n// struct No {\nstruct Light { double s; };\nenum class Kind : int { a };\n}\n"
+        self.assertEqual([("byre::Light", 3), ("byre::Kind", 4)], self.defined(text))
+
+    def test_what_is_defined_within_a_type_or_a_function_is_its_own(self):
+        text = "namespace byre {\nclass A final : public B {\n struct Impl { int x; };\n};\nint f(Map map) {\n struct C {}; }\n}\n"
+        self.assertEqual([("byre::A", 2)], self.defined(text))
+
+    def test_files_of_a_room_keep_nothing_of_one_name_to_themselves(self):
+        kept = "namespace byre {\nnamespace {\n\n%s\n}\nvoid f() {\n  constexpr int kTwo = 2;\n}\n}\n"
+        self.write("map/a.cc", kept % "constexpr double kLeast = 1;")
+        self.write("map/b.cc", kept % "const int kLeast = 2;")
+        self.write("map/c_test.cc", kept % "constexpr int kLeast = 3;\nstruct Scene {\n};")
+        self.write("slam/a.cc", kept % "constexpr int kLeast = 4;")
+        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
+        self.assertEqual([("b.cc", 4)], [(fault.path.name, fault.line) for fault in found])
+        self.assertIn("kLeast is defined by", found[0].message)
+
+    def test_a_function_that_is_kept_has_a_name_of_its_own(self):
+        kept = "namespace byre {\nnamespace {\n\n%s {\n}\n}\n}\n"
+        self.write("geometry/pose.h", "namespace byre {\nstruct Pose {\n  int size() const;\n};\nPose inverse(int x);\n}\n")
+        self.write("map/map.h", "namespace byre {\nint far(int x);\n}\n")
+        self.write("dataset/a.cc", kept % "int inverse(int x)")
+        self.write("dataset/b.cc", kept % "int far(int x)")  # of a floor above
+        self.write("dataset/c.cc", kept % "int size(int x)")
+        self.write("dataset/d.cc", kept % "double size(double x)")
+        self.write("dataset/overload.cc", kept % "Pose inverse(const Pose& pose)")
+        self.write("dataset/d_test.cc", kept % "double size(double x)")
+        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
+        self.assertEqual([("a.cc", 4), ("d.cc", 4)], [(fault.path.name, fault.line) for fault in found])
+        self.assertIn("pose.h", found[0].message)
+
+    def test_what_a_header_declares_is_not_hidden(self):
+        self.write("map/trust.h", "namespace byre {\n\ninline constexpr double kFar = 0.2;\n}\n")
+        self.write("map/a.cc", "namespace byre {\nnamespace {\n\nconstexpr double kFar = 0.5;\n}\n}\n")
+        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
+        self.assertEqual([("a.cc", 4)], [(fault.path.name, fault.line) for fault in found])
+
+    def test_declared_types_are_not_defined(self):
+        self.assertEqual([("byre::f()", 3)], self.defined("namespace byre {\nclass Map;\nvoid f(const std::string& t);\n}\n"))
+
+    def test_two_headers_that_define_one_name_are_a_fault(self):
+        self.write("camera/exposure.h", "namespace byre {\nstruct Exposure {\n};\n}\n")
+        self.write("simulation/sensor.h", "namespace byre {\n\nstruct Exposure {\n};\n}\n")
+        self.write("ros/types.h", "namespace byre::ros {\nstruct Exposure {\n};\n}\n")
+        self.write("camera/exposure.cc", "namespace byre {\nnamespace {\nstruct Local {\n};\n}\n}\n")
+        found = list(check_floors.twice_defined_faults(sorted(self.source.rglob("*.h"))))
+        self.assertEqual([("sensor.h", 3)], [(fault.path.name, fault.line) for fault in found])
+        self.assertIn("byre::Exposure is defined by", found[0].message)
+        code, output, _ = self.run_main(self.source)
+        self.assertEqual(1, code)
+        self.assertIn("Exposure", output)
+
+
 class Floors(CheckFloorsTest):
     def test_lower_floors_and_the_own_room_may_be_included(self):
         self.write("map/map.cc", '#include "byre/map/map.h"\n#include "byre/features/features.h"\n')

@@ -15,7 +15,7 @@ enum class SessionEvent : std::uint8_t {
   left_mapped_area,     // no offline point in view any more, as the map's extent led to expect
   entered_mapped_area,  // offline points hold the pose again
   navigation_error,     // not known where the robot is for StateOptions::lost_after; told once each time
-  restarted,            // a new segment of the online map was begun, for the way back was not found
+  restarted,            // a new submap of the online map was begun, for the way back was not found
   online_corrected,     // the online map was moved so that it agrees with the offline one
   loop_found,           // the online map met itself: its ends are fused, or a correction was begun
   map_corrected,        // a correction of the whole online map was taken over

@@ -1,5 +1,7 @@
 #include "mqtt_peer.h"
 
+#include "node_scene.h"
+
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -27,11 +29,6 @@ fs::path broker_program() {
 
 tcp::endpoint endpoint(int port) {
   return {boost::asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(port)};
-}
-
-int free_port() {
-  boost::asio::io_context context;
-  return tcp::acceptor(context, endpoint(0)).local_endpoint().port();
 }
 
 bool answers(int port) {

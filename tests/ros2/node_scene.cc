@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <boost/asio/ip/tcp.hpp>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -59,6 +60,13 @@ std::string NodeProcess::said() const {
   std::ostringstream text;
   text << std::ifstream(folder_ / "said.txt").rdbuf();
   return text.str();
+}
+
+int free_port() {
+  using boost::asio::ip::tcp;
+  boost::asio::io_context context;
+  const tcp::acceptor acceptor(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
+  return acceptor.local_endpoint().port();
 }
 
 int some_domain() {

@@ -33,6 +33,9 @@ class NodeProcess {
   pid_t process_ = -1;
 };
 
+// A port of TCP that nobody listens at.
+int free_port();
+
 // A domain that no other test of this machine has by chance.
 int some_domain();
 

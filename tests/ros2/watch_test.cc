@@ -16,13 +16,6 @@
 namespace byre::testing_ros2 {
 namespace {
 
-int free_port() {
-  using boost::asio::ip::tcp;
-  boost::asio::io_context context;
-  const tcp::acceptor acceptor(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
-  return acceptor.local_endpoint().port();
-}
-
 // Subscribes topics, and reads what comes of them.
 class Watcher {
  public:

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kCloseMetres = 0.1;
 constexpr double kCloseDegrees = 2.0;
-constexpr double kFarMetres = 0.5;
+constexpr double kFarFoundMetres = 0.5;
 
 Trajectory found_trajectory(const LocaliseRun& run) {
   Trajectory trajectory;
@@ -64,14 +64,14 @@ struct ErrorSummary {
   ErrorStatistics position;  // metres
   ErrorStatistics rotation;  // degrees
   int close = 0;             // frames within kCloseMetres and kCloseDegrees
-  int far = 0;               // frames off by more than kFarMetres
+  int far = 0;               // frames off by more than kFarFoundMetres
 };
 
 ErrorSummary summarise_errors(const LocalisationErrors& errors) {
   ErrorSummary summary;
   for (const PoseError& error : errors.errors) {
     summary.close += error.position() <= kCloseMetres && error.rotation() <= kCloseDegrees;
-    summary.far += error.position() > kFarMetres;
+    summary.far += error.position() > kFarFoundMetres;
   }
   summary.position = position_statistics(errors.errors);
   summary.rotation = rotation_statistics(errors.errors);
@@ -94,7 +94,7 @@ std::string error_rows(const LocalisationErrors& errors, std::size_t frames) {
                                     summary.rotation.p95, summary.rotation.max));
   text += row("close", formatted("%d of %zu frames (%.1f %%) found within %g m and %g deg", summary.close, frames,
                                  percent(summary.close, frames), kCloseMetres, kCloseDegrees));
-  text += row("far", formatted("%d frames accepted but off by more than %g m", summary.far, kFarMetres));
+  text += row("far", formatted("%d frames accepted but off by more than %g m", summary.far, kFarFoundMetres));
   return text;
 }
 

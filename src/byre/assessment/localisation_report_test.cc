@@ -39,16 +39,16 @@ LocaliseRun small_run() {
 }
 
 // True poses twice a second, in a frame that is turned and shifted against the map's.
-const Pose kTruthFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
+const Pose kPlanFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
 
-Trajectory truth() {
+Trajectory truth_of_run() {
   Trajectory result;
-  for (int i = 0; i < 11; ++i) result.push_back({from_seconds(0.5 * i), kTruthFromMap * at(0.5 * i)});
+  for (int i = 0; i < 11; ++i) result.push_back({from_seconds(0.5 * i), kPlanFromMap * at(0.5 * i)});
   return result;
 }
 
 TEST(ErrorsInMap, AlignTheMapByItsKeyframesAndNotByWhatWasFound) {
-  const LocalisationErrors errors = errors_in_map(small_run(), small_map(), truth(), truth());
+  const LocalisationErrors errors = errors_in_map(small_run(), small_map(), truth_of_run(), truth_of_run());
   EXPECT_EQ(errors.alignment_keyframes, 4);
   ASSERT_EQ(errors.errors.size(), 4u);
   EXPECT_NEAR(errors.errors[0].position(), 0.0, 1e-9);
@@ -57,7 +57,7 @@ TEST(ErrorsInMap, AlignTheMapByItsKeyframesAndNotByWhatWasFound) {
 }
 
 TEST(ErrorsInMap, TakeTheTruthAsItIsWhereItDoesNotCoverTheMap) {
-  const LocalisationErrors errors = errors_in_map(small_run(), small_map(), {}, truth());
+  const LocalisationErrors errors = errors_in_map(small_run(), small_map(), {}, truth_of_run());
   EXPECT_EQ(errors.alignment_keyframes, 0);
   EXPECT_GT(errors.errors[0].position(), 1.0);
 }
@@ -69,7 +69,7 @@ TEST(LocaliseReport, CountsWhatWasFoundAndWhyOthersWereNot) {
 }
 
 TEST(LocaliseReport, CountsFramesThatAreFarOff) {
-  const auto errors = errors_in_map(small_run(), small_map(), truth(), truth());
+  const auto errors = errors_in_map(small_run(), small_map(), truth_of_run(), truth_of_run());
   EXPECT_THAT(to_text(small_run(), {}, errors), HasSubstr("far          1 frames accepted but off by more than 0.5 m"));
   const json report = json::parse(to_json(small_run(), {"room.byre", "evening", 5}, errors));
   EXPECT_EQ(report.at("errors").at("frames_within_0.1m_2deg"), 3);

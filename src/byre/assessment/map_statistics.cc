@@ -7,8 +7,6 @@
 namespace byre {
 namespace {
 
-constexpr double kMillisecondsPerSecond = 1e3;
-
 template <typename SecondsOf>
 TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsOf seconds_of) {
   std::vector<double> seconds;
@@ -28,7 +26,7 @@ void count_events(const FrameReport& report, FrameCounts& counts) {
 }  // namespace
 
 TimeSummary summarise_times(std::vector<double> seconds) {
-  for (double& each : seconds) each *= kMillisecondsPerSecond;
+  for (double& each : seconds) each *= 1e3;  // milliseconds
   const Distribution ms = distribution_of(std::move(seconds));
   return {ms.count, ms.mean, ms.p50, ms.p95, ms.p99, ms.max};
 }

@@ -9,7 +9,7 @@ namespace {
 
 using testing::SizeIs;
 
-Pose at(double x) {
+Pose pose_after(double x) {
   return {rotation_exp({0.0, 0.0, 0.1 * x}), {x, 0.1 * x * x, 0.0}};
 }
 
@@ -18,7 +18,7 @@ const Pose kTruthFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
 // Ten poses a second for ten seconds.
 Trajectory truth() {
   Trajectory result;
-  for (int i = 0; i <= 100; ++i) result.push_back({from_seconds(0.1 * i), kTruthFromMap * at(0.1 * i)});
+  for (int i = 0; i <= 100; ++i) result.push_back({from_seconds(0.1 * i), kTruthFromMap * pose_after(0.1 * i)});
   return result;
 }
 
@@ -28,7 +28,7 @@ Map offline_map() {
   for (int i = 0; i < 4; ++i) {
     Keyframe keyframe;
     keyframe.frame.time = from_seconds(2 * i);
-    keyframe.camera_from_world = inverse(at(2.0 * i));
+    keyframe.camera_from_world = inverse(pose_after(2.0 * i));
     map.add_keyframe(keyframe);
   }
   return map;
@@ -45,7 +45,7 @@ MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Ve
     const double time_s = 0.5 * static_cast<double>(i);
     FrameReport report;
     report.time = from_seconds(time_s);
-    report.map_from_body = at(time_s) * Pose{Eigen::Quaterniond::Identity(), {errors_m[i], 0.0, 0.0}};
+    report.map_from_body = pose_after(time_s) * Pose{Eigen::Quaterniond::Identity(), {errors_m[i], 0.0, 0.0}};
     report.covariance = 1e-4 * Matrix6::Identity();
     report.health.verdict = verdict;
     run.causal.push_back({report.time, *report.map_from_body});

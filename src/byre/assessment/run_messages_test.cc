@@ -39,10 +39,10 @@ class CountingSink : public ros::MessageSink {
   std::map<std::string, int> counts_;
 };
 
-constexpr int kFrames = 6;
+constexpr int kFramesTold = 6;
 
 std::map<std::string, int> told_of_a_run(const std::set<std::string>& wanted, bool is_finished) {
-  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFrames});
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesTold});
   CountingSink sink(wanted);
   RunMessages messages(sink, recording->calibration(), {.with_images = true, .is_watched = true});
   EngineOptions options;
@@ -62,8 +62,8 @@ TEST(RunMessages, MakeNothingButEventsAndMountsForNobody) {
 
 TEST(RunMessages, MakeWhatIsWanted) {
   const std::map<std::string, int> told = told_of_a_run({"/left/image_raw", "/diagnostics", "/map_points"}, false);
-  EXPECT_EQ(told.at("/left/image_raw"), kFrames);
-  EXPECT_EQ(told.at("/diagnostics"), kFrames);
+  EXPECT_EQ(told.at("/left/image_raw"), kFramesTold);
+  EXPECT_EQ(told.at("/diagnostics"), kFramesTold);
   EXPECT_EQ(told.at("/map_points"), 1);
   EXPECT_FALSE(told.contains("/right/image_raw"));
   EXPECT_FALSE(told.contains("/path"));

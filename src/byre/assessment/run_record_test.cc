@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFrames = 6;
+constexpr int kFramesRecorded = 6;
 
 // A recorded run of a few frames, made once.
 class RecordedRun {
  public:
   RecordedRun() : path_(fs::path(testing::TempDir()) / ("run_record." + std::to_string(getpid()) + ".mcap")) {
-    const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFrames});
+    const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
     EngineOptions options;
     options.pace = Pace::same_thread;
     RunRecord record(McapWriter(path_), recording->calibration(), true);
@@ -74,9 +74,9 @@ TEST(RunRecord, IsAWholeBag) {
   EXPECT_EQ(counts["/tf_static"], 1u);
   EXPECT_EQ(counts["/map_points"], 2u);
   EXPECT_EQ(counts["/path"], 2u);
-  EXPECT_EQ(counts["/diagnostics"], kFrames + 1u);
+  EXPECT_EQ(counts["/diagnostics"], kFramesRecorded + 1u);
   for (const char* const topic : {"/tf", "/odometry", "/left/image_raw", "/right/camera_info"}) {
-    EXPECT_EQ(counts[topic], static_cast<std::uint64_t>(kFrames)) << topic;
+    EXPECT_EQ(counts[topic], static_cast<std::uint64_t>(kFramesRecorded)) << topic;
   }
 }
 
@@ -109,7 +109,7 @@ TEST(RunRecord, EndsWithTheFinalPathAndMap) {
 
 TEST(RunRecord, WithImagesCanBeRunAgain) {
   const RecordedRun& recorded = RecordedRun::shared();
-  const auto original = open_recording(RenderedFixture::shared().folder(), {.last = kFrames});
+  const auto original = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
   const auto again = open_recording(recorded.path(), {});
   EXPECT_EQ(again->times(), original->times());
   EXPECT_EQ(again->calibration().left, original->calibration().left);

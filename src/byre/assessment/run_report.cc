@@ -120,7 +120,7 @@ std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
                           run.frames.back().memory_mb);
 }
 
-std::string listing(const std::vector<std::string>& files) {
+std::string comma_separated(const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& file : files) text += (text.empty() ? "" : ", ") + file;
   return text;
@@ -151,7 +151,7 @@ std::string closing_rows(const MapRun& run, const std::vector<std::string>& file
   if (!run.warnings.empty()) {
     text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
   }
-  if (!files.empty()) text += row("written", listing(files));
+  if (!files.empty()) text += row("written", comma_separated(files));
   return text;
 }
 

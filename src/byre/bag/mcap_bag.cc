@@ -12,12 +12,7 @@
 namespace byre {
 namespace {
 
-constexpr std::uint64_t kMostDescription = 16u << 20;  // bytes of a schema or a channel
-
-std::uint32_t checksum_of(std::span<const std::byte> bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(crc32_z(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
+constexpr std::uint64_t kMostOfSchema = 16u << 20;  // bytes of a schema or a channel
 
 }  // namespace
 
@@ -63,9 +58,9 @@ void McapBag::take_record(McapRecord kind, std::uint64_t begin, std::uint64_t si
   ByteSource& source = region.source;
   switch (kind) {
     case McapRecord::schema:
-      return take_schema(read_piece(source, begin, std::min(size, kMostDescription)), begin);
+      return take_schema(read_piece(source, begin, std::min(size, kMostOfSchema)), begin);
     case McapRecord::channel:
-      return take_channel(read_piece(source, begin, std::min(size, kMostDescription)), begin);
+      return take_channel(read_piece(source, begin, std::min(size, kMostOfSchema)), begin);
     case McapRecord::message:
       return take_message(begin, size, region);
     case McapRecord::chunk:
@@ -119,7 +114,7 @@ void McapBag::take_chunk(std::uint64_t begin, std::uint64_t size) {
     return;
   }
   const Decompressed chunk_content = decompress_piece(piece);
-  const bool is_matched = chunk.checksum == 0 || checksum_of(chunk_content.bytes) == chunk.checksum;
+  const bool is_matched = chunk.checksum == 0 || mcap_checksum(chunk_content.bytes) == chunk.checksum;
   if (chunk_content.is_whole && !is_matched) return add_broken(record, "does not match its checksum");
   MemorySource source(chunk_content.bytes);
   const bool is_complete = scan({source, 0, source.size(), true, record}) == source.size();

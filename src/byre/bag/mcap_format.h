@@ -3,6 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+
+#include <zlib.h>
 
 namespace byre {
 
@@ -28,5 +31,9 @@ inline constexpr std::size_t kMcapRecordHead = 1 + 8;           // kind, length
 inline constexpr std::size_t kMcapMessageHead = 2 + 4 + 8 + 8;  // channel, number, log time, publish time
 inline constexpr std::size_t kMcapChunkHead = 8 + 8 + 8 + 4;    // start, end, size, checksum; compression follows
 inline constexpr std::size_t kMcapFooter = 8 + 8 + 4;           // summary, summary offsets, checksum
+
+inline std::uint32_t mcap_checksum(std::span<const std::byte> bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 }  // namespace byre

@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::size_t kChunkBytes = 1u << 20;
 
-std::uint32_t checksum_of(std::span<const std::byte> bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 void write_record(ByteWriter& writer, McapRecord kind, const ByteWriter& content) {
   writer.write(kind);
   writer.write(std::uint64_t{content.size()});
@@ -122,7 +118,7 @@ void McapWriter::flush() {
   content.write(chunk.start);
   content.write(chunk.end);
   content.write(chunk.size);
-  content.write(checksum_of(chunk_.bytes()));
+  content.write(mcap_checksum(chunk_.bytes()));
   content.write_text("zstd");
   content.write(chunk.compressed_size);
   content.write_bytes(compressed);
@@ -237,7 +233,7 @@ void McapWriter::close() {
   summary.write(std::uint64_t{kMcapFooter});
   summary.write(summary_begin);
   summary.write(offsets_begin);
-  summary.write(checksum_of(summary.bytes()));
+  summary.write(mcap_checksum(summary.bytes()));
   summary.write_bytes(kMcapMagic);
   append(summary);
   file_.close();

@@ -13,8 +13,8 @@ namespace {
 using Fields = std::map<std::string, std::vector<std::byte>, std::less<>>;
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint64_t kMostHeader = 1u << 20;        // bytes of a record's header
-constexpr std::uint64_t kMostDescription = 16u << 20;  // bytes of the description of a connection
+constexpr std::uint64_t kMostHeader = 1u << 20;         // bytes of a record's header
+constexpr std::uint64_t kMostOfConnection = 16u << 20;  // bytes of the description of a connection
 
 enum class Operation : std::uint8_t {
   message = 2,
@@ -129,7 +129,7 @@ void Ros1Bag::take_file_header(const Record& record) {
 
 void Ros1Bag::take_connection(const Record& record, const Region& region) {
   const auto connection = number<std::uint32_t>(record.fields, "conn");
-  if (!connection || record.data_size > kMostDescription) return;
+  if (!connection || record.data_size > kMostOfConnection) return;
   const std::vector<std::byte> data = read_piece(region.source, record.data_begin, record.data_size);
   const std::string type = text(fields_of(data, place(), record.data_begin), "type");
   connections_[*connection] = topic_number(text(record.fields, "topic"), type, "ros1");

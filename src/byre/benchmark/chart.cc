@@ -35,7 +35,7 @@ struct Range {
 };
 
 // Where values lie in the picture; y as it is drawn, the logarithm where the axis is logarithmic.
-struct Frame {
+struct ChartFrame {
   Range x;
   Range y;
   double height = kPlotHeight;
@@ -71,15 +71,15 @@ Range widened(const Range& range) {
   return result;
 }
 
-void equalise_scales(Frame& frame) {
+void equalise_scales(ChartFrame& frame) {
   frame.height = std::clamp(kPlotWidth * frame.y.length() / frame.x.length(), kLeastPlotHeight, kMostPlotHeight);
   const double metres_per_pixel = std::max(frame.x.length() / kPlotWidth, frame.y.length() / frame.height);
   frame.x.grow_to(metres_per_pixel * kPlotWidth);
   frame.y.grow_to(metres_per_pixel * frame.height);
 }
 
-Frame frame_of(const Chart& chart) {
-  Frame frame;
+ChartFrame frame_of(const Chart& chart) {
+  ChartFrame frame;
   for_each_point(chart, [&frame](const Eigen::Vector2d& point) {
     frame.x.add(point.x());
     frame.y.add(point.y());
@@ -133,7 +133,7 @@ std::vector<Tick> logarithmic_ticks(const Range& range) {
   return ticks;
 }
 
-std::string axes(const Chart& chart, const Frame& frame) {
+std::string axes(const Chart& chart, const ChartFrame& frame) {
   std::string svg;
   for (const Tick& tick : linear_ticks(frame.x)) {
     const Eigen::Vector2d foot = frame.pixel(tick.at, frame.y.least);
@@ -156,7 +156,7 @@ std::string axes(const Chart& chart, const Frame& frame) {
 
 // Points closer than half a pixel to the one before add nothing to be seen.
 std::string polyline(const std::vector<Eigen::Vector2d>& piece, const ChartSeries& series, const Chart& chart,
-                     const Frame& frame) {
+                     const ChartFrame& frame) {
   constexpr double kVisible = 0.5;  // pixels
   std::string points;
   Eigen::Vector2d last = Eigen::Vector2d::Constant(-1e9);
@@ -172,7 +172,7 @@ std::string polyline(const std::vector<Eigen::Vector2d>& piece, const ChartSerie
          formatted("\" stroke-width=\"%.1f\" points=\"", series.width) + points + "\"/>\n";
 }
 
-std::string curves(const Chart& chart, const Frame& frame) {
+std::string curves(const Chart& chart, const ChartFrame& frame) {
   std::string svg;
   for (const ChartSeries& series : chart.series) {
     for (const auto& piece : series.pieces) svg += polyline(piece, series, chart, frame);
@@ -193,7 +193,7 @@ std::string legend(const Chart& chart) {
   return svg;
 }
 
-double height_of(const Frame& frame) {
+double height_of(const ChartFrame& frame) {
   return kTop + frame.height + kBottom;
 }
 
@@ -205,7 +205,7 @@ std::string begin_of_svg(double height) {
                          kPaper);
 }
 
-std::string content(const Chart& chart, const Frame& frame) {
+std::string content(const Chart& chart, const ChartFrame& frame) {
   return text_at(kLeft, 30.0, chart.title, "font-size=\"18\" font-weight=\"bold\"") +
          text_at(kLeft, 52.0, chart.subtitle, formatted("fill=\"%s\"", kFaint)) + axes(chart, frame) +
          curves(chart, frame) + legend(chart);
@@ -229,7 +229,7 @@ std::vector<double> round_ticks(double least, double most) {
 }
 
 std::string to_svg(const Chart& chart) {
-  const Frame frame = frame_of(chart);
+  const ChartFrame frame = frame_of(chart);
   return begin_of_svg(height_of(frame)) + content(chart, frame) + "</svg>\n";
 }
 
@@ -237,7 +237,7 @@ std::string to_svg(const std::vector<Chart>& charts) {
   double height = 0.0;
   std::string svg;
   for (const Chart& chart : charts) {
-    const Frame frame = frame_of(chart);
+    const ChartFrame frame = frame_of(chart);
     svg += formatted("<g transform=\"translate(0 %.0f)\">\n", height) + content(chart, frame) + "</g>\n";
     height += height_of(frame);
   }

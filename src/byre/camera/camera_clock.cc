@@ -5,16 +5,16 @@
 namespace byre {
 namespace {
 
-Timestamp monotonic_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, as drivers use it
-}
-
 bool is_near(Timestamp a, Timestamp b) {
   constexpr Timestamp kNear = std::chrono::seconds(10);
   return std::chrono::abs(a - b) <= kNear;
 }
 
 }  // namespace
+
+Timestamp monotonic_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, as drivers use it
+}
 
 std::string_view to_string(CameraClock clock) {
   switch (clock) {

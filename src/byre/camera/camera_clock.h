@@ -15,6 +15,8 @@ enum class CameraClock : std::uint8_t { monotonic, utc, own };
 
 std::string_view to_string(CameraClock clock);
 
+Timestamp monotonic_now();
+
 // The machine's clocks at one moment.
 struct MachineTime {
   Timestamp monotonic{};

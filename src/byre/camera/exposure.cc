@@ -97,12 +97,12 @@ double best_light_factor(const Image& image) {
   return most < kNothing ? factor_of_blank(image) : best;
 }
 
-Exposure next_exposure(const Exposure& now, double factor, const ExposureLimits& limits) {
+CameraExposure next_exposure(const CameraExposure& now, double factor, const CameraExposureLimits& limits) {
   constexpr double kShare = 0.7;  // share of the way, of the logarithm
   constexpr double kMost = 2.0;
   const double change = std::clamp(std::pow(factor, kShare), 1.0 / kMost, kMost);
   const double light = std::max(now.light(), limits.min_seconds) * change;
-  Exposure next;
+  CameraExposure next;
   next.seconds = std::clamp(light, limits.min_seconds, limits.max_seconds);
   next.gain = std::clamp(light / next.seconds, 1.0, std::max(1.0, limits.max_gain));
   return next;

@@ -5,14 +5,14 @@
 namespace byre {
 
 // How much light a camera takes: exposure time, and by how much what it gives is amplified.
-struct Exposure {
+struct CameraExposure {
   double seconds = 0.0;
   double gain = 1.0;  // factor, one for none
 
   double light() const { return seconds * gain; }
 };
 
-struct ExposureLimits {
+struct CameraExposureLimits {
   double min_seconds = 1e-4;
   double max_seconds = 5e-3;  // longer ones blur what moves
   double max_gain = 1.0;      // factor
@@ -32,6 +32,6 @@ double best_light_factor(const Image& image);
 
 // What to take next after an image taken so has that best factor: a part of the way, at most a factor of two, so that
 // it settles. Time comes first, up to its limit; the gain makes up for the rest.
-Exposure next_exposure(const Exposure& now, double factor, const ExposureLimits& limits);
+CameraExposure next_exposure(const CameraExposure& now, double factor, const CameraExposureLimits& limits);
 
 }  // namespace byre

@@ -60,23 +60,23 @@ ExposureControls::ExposureControls(const VideoDescriptor& descriptor, const std:
   gain_ = range_of(descriptor, V4L2_CID_GAIN);
 }
 
-ExposureLimits ExposureControls::limits(double max_seconds) const {
-  ExposureLimits limits;
+CameraExposureLimits ExposureControls::limits(double max_seconds) const {
+  CameraExposureLimits limits;
   limits.min_seconds = std::max(1, exposure_.min) * kUnit;
   limits.max_seconds = std::max(limits.min_seconds, std::min(max_seconds, exposure_.max * kUnit));
   limits.max_gain = gain_ ? kMostGain : 1.0;
   return limits;
 }
 
-Exposure ExposureControls::now() const {
-  Exposure exposure;
+CameraExposure ExposureControls::now() const {
+  CameraExposure exposure;
   exposure.seconds = value_of(descriptor_, V4L2_CID_EXPOSURE_ABSOLUTE).value_or(exposure_.min) * kUnit;
   if (gain_) exposure.gain = gain_factor(*gain_, value_of(descriptor_, V4L2_CID_GAIN).value_or(gain_->min));
   return exposure;
 }
 
 // Time is rounded down: a limit is one.
-bool ExposureControls::set(const Exposure& exposure) const {
+bool ExposureControls::set(const CameraExposure& exposure) const {
   constexpr double kRounding = 1e-6;  // units
   const int units = static_cast<int>(std::floor(exposure.seconds / kUnit + kRounding));
   const int steps = std::max(0, (units - exposure_.min) / exposure_.step);

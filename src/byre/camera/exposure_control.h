@@ -30,10 +30,10 @@ class ExposureControls {
   ExposureControls(const VideoDescriptor& descriptor, const std::string& place);
 
   // What can be had of these limits.
-  ExposureLimits limits(double max_seconds) const;
-  Exposure now() const;
+  CameraExposureLimits limits(double max_seconds) const;
+  CameraExposure now() const;
   // False when the device does not take it any more.
-  bool set(const Exposure& exposure) const;
+  bool set(const CameraExposure& exposure) const;
 
  private:
   const VideoDescriptor& descriptor_;

@@ -1,5 +1,7 @@
 #include "byre/camera/exposure.h"
 
+#include "byre/simulation/image_sensor.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -24,7 +26,7 @@ Scene squares(double light) {
 }
 
 // A camera whose pixels fill up.
-Image taken(const Scene& scene, const Exposure& exposure) {
+Image taken(const Scene& scene, const CameraExposure& exposure) {
   Image image{kWidth, kHeight, {}};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -35,28 +37,22 @@ Image taken(const Scene& scene, const Exposure& exposure) {
   return image;
 }
 
-Exposure settled(const Scene& scene, Exposure exposure, const ExposureLimits& limits) {
+CameraExposure settled(const Scene& scene, CameraExposure exposure, const CameraExposureLimits& limits) {
   for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
   return exposure;
 }
 
-double mean_of(const Image& image) {
-  double sum = 0.0;
-  for (const std::uint8_t pixel : image.pixels) sum += pixel;
-  return sum / static_cast<double>(image.pixels.size());
-}
-
 TEST(Exposure, BecomesMoreWhereItIsTooDarkAndLessWhereItIsTooBright) {
-  const ExposureLimits limits{.max_seconds = 0.02};
-  const Exposure now{2e-3, 1.0};
+  const CameraExposureLimits limits{.max_seconds = 0.02};
+  const CameraExposure now{2e-3, 1.0};
   EXPECT_GT(next_exposure(now, 1.7, limits).light(), 1.1 * now.light());
   EXPECT_LT(next_exposure(now, 0.6, limits).light(), 0.9 * now.light());
   EXPECT_DOUBLE_EQ(next_exposure(now, 1.0, limits).light(), now.light());
 }
 
 TEST(Exposure, NeverExceedsItsLimits) {
-  const ExposureLimits limits{.min_seconds = 1e-4, .max_seconds = 5e-3, .max_gain = 4.0};
-  Exposure exposure{1e-3, 1.0};
+  const CameraExposureLimits limits{.min_seconds = 1e-4, .max_seconds = 5e-3, .max_gain = 4.0};
+  CameraExposure exposure{1e-3, 1.0};
   for (int i = 0; i < 100; ++i) {
     exposure = next_exposure(exposure, 3.0, limits);
     EXPECT_LE(exposure.seconds, limits.max_seconds);
@@ -70,21 +66,21 @@ TEST(Exposure, NeverExceedsItsLimits) {
 }
 
 TEST(Exposure, UsesTimeBeforeGain) {
-  const ExposureLimits limits{.max_seconds = 5e-3, .max_gain = 8.0};
+  const CameraExposureLimits limits{.max_seconds = 5e-3, .max_gain = 8.0};
   EXPECT_DOUBLE_EQ(next_exposure({2e-3, 1.0}, 1.7, limits).gain, 1.0);
   EXPECT_GT(next_exposure({5e-3, 1.0}, 1.7, limits).gain, 1.2);
-  const Exposure darker = next_exposure({5e-3, 4.0}, 0.6, limits);
+  const CameraExposure darker = next_exposure({5e-3, 4.0}, 0.6, limits);
   EXPECT_DOUBLE_EQ(darker.seconds, 5e-3) << "gain is what is taken back first, as it only adds noise";
   EXPECT_LT(darker.gain, 3.0);
 }
 
 TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
-  const ExposureLimits limits{.max_seconds = 0.05};
+  const CameraExposureLimits limits{.max_seconds = 0.05};
   for (const double light : {0.1, 1.0, 8.0}) {
     const Scene scene = squares(light);
     for (const double start : {2e-4, 4e-2}) {
-      const Exposure exposure = settled(scene, {start, 1.0}, limits);
-      const double mean = mean_of(taken(scene, exposure));
+      const CameraExposure exposure = settled(scene, {start, 1.0}, limits);
+      const double mean = mean_grey(taken(scene, exposure));
       EXPECT_GT(mean, 60.0) << light << " from " << start;
       EXPECT_LT(mean, 230.0) << light << " from " << start;
       EXPECT_GE(corner_information(taken(scene, exposure), 1.0), corner_information(taken(scene, {start, 1.0}), 1.0));
@@ -95,26 +91,26 @@ TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
 // A window without anything to see takes half of the image: its mean says nothing of the wall beside it.
 TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
   const Scene scene = [](int x, int y) { return x < kWidth / 2 ? 5.0 : 0.15 * squares(1.0)(x, y); };
-  const Exposure exposure = settled(scene, {2e-4, 1.0}, {.max_seconds = 0.05});
+  const CameraExposure exposure = settled(scene, {2e-4, 1.0}, {.max_seconds = 0.05});
   const Image image = taken(scene, exposure);
   const Image by_mean = taken(scene, {0.19e-3, 1.0});  // mean of 128
-  EXPECT_NEAR(mean_of(by_mean), 128.0, 10.0);
-  EXPECT_GT(mean_of(image), 150.0) << "the window may be white";
+  EXPECT_NEAR(mean_grey(by_mean), 128.0, 10.0);
+  EXPECT_GT(mean_grey(image), 150.0) << "the window may be white";
   EXPECT_GT(corner_information(image, 1.0), 2.0 * corner_information(by_mean, 1.0));
 }
 
 TEST(Exposure, Settles) {
-  const ExposureLimits limits{.max_seconds = 0.05};
+  const CameraExposureLimits limits{.max_seconds = 0.05};
   const Scene scene = squares(1.0);
-  const Exposure settling = settled(scene, {2e-4, 1.0}, limits);
-  for (Exposure exposure = settling; const int step : {1, 2, 3}) {
+  const CameraExposure settling = settled(scene, {2e-4, 1.0}, limits);
+  for (CameraExposure exposure = settling; const int step : {1, 2, 3}) {
     exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
     EXPECT_NEAR(exposure.light() / settling.light(), 1.0, 0.1) << step;
   }
 }
 
 TEST(Exposure, StaysWhereThereIsNothingToSee) {
-  const Exposure exposure = settled([](int, int) { return 0.5; }, {1e-3, 1.0}, {});
+  const CameraExposure exposure = settled([](int, int) { return 0.5; }, {1e-3, 1.0}, {});
   EXPECT_DOUBLE_EQ(exposure.light(), 1e-3);
 }
 

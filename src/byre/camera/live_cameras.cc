@@ -14,10 +14,6 @@ namespace {
 
 constexpr int kExposureInterval = 6;  // frames from one change to the next: a change is seen some frames later
 
-Timestamp monotonic_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
-}
-
 void require_sense(const LiveCameraOptions& options) {
   if (options.devices.empty() || options.devices.size() > 2) {
     throw InputError("cameras", "are one device or two", "name the left one, or the left and the right one");

@@ -59,7 +59,7 @@ class LiveCameras {
   StampPairing pairing_;
   std::optional<CameraClock> clock_;
   Timestamp utc_offset_{};
-  std::optional<Exposure> exposure_;  // empty until it is controlled
+  std::optional<CameraExposure> exposure_;  // empty until it is controlled
   int frames_since_exposure_ = 0;
   bool has_told_difference_ = false;
   std::vector<std::string> notes_;

@@ -46,7 +46,7 @@ TEST(LiveCameraReport, TellsOnlyWhatHappened) {
   report.devices.front().counts.lost = 3;
   report.devices.front().times_away = 1;
   report.devices.front().seconds_away = 2.5;
-  report.devices.front().exposure = Exposure{0.005, 2.0};
+  report.devices.front().exposure = CameraExposure{0.005, 2.0};
   report.devices.front().is_away = true;
   report.pairs = StampPairCounts{190, 10, 4};
   report.last_difference = 1500us;

@@ -109,15 +109,15 @@ std::vector<StampedImage> WatchedDevice::take(Timestamp now) {
   return images;
 }
 
-void WatchedDevice::set_exposure(const Exposure& exposure) {
+void WatchedDevice::set_exposure(const CameraExposure& exposure) {
   if (!controls_) return;
-  const ExposureLimits limits = controls_->limits(*exposure_limit_);
-  report_.exposure = Exposure{std::clamp(exposure.seconds, limits.min_seconds, limits.max_seconds),
-                              std::min(exposure.gain, limits.max_gain)};
+  const CameraExposureLimits limits = controls_->limits(*exposure_limit_);
+  report_.exposure = CameraExposure{std::clamp(exposure.seconds, limits.min_seconds, limits.max_seconds),
+                                    std::min(exposure.gain, limits.max_gain)};
   controls_->set(*report_.exposure);  // a device that takes it no more is found to be away
 }
 
-std::optional<ExposureLimits> WatchedDevice::exposure_limits() const {
+std::optional<CameraExposureLimits> WatchedDevice::exposure_limits() const {
   return controls_ ? std::optional(controls_->limits(*exposure_limit_)) : std::nullopt;
 }
 

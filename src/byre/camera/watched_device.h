@@ -21,7 +21,7 @@ struct DeviceReport {
   int times_away = 0;         // times that it was unplugged, or gave no image for long, and had to be opened anew
   double seconds_away = 0.0;  // without those since it went last, where it is away
   bool is_away = false;
-  std::optional<Exposure> exposure{};  // where it is controlled
+  std::optional<CameraExposure> exposure{};  // where it is controlled
 };
 
 // A device that may be unplugged: it is opened again when it is back. Times are monotonic ones of this machine.
@@ -37,9 +37,9 @@ class WatchedDevice {
   // Images that are waiting, in order; not so many that others would have to wait.
   std::vector<StampedImage> take(Timestamp now);
   // Takes the same exposure as other devices do; no more than its limit.
-  void set_exposure(const Exposure& exposure);
+  void set_exposure(const CameraExposure& exposure);
   // Limits of exposure; empty where it is not controlled, or away.
-  std::optional<ExposureLimits> exposure_limits() const;
+  std::optional<CameraExposureLimits> exposure_limits() const;
 
   // Since it was asked last: that it is away, and that it is back.
   std::vector<std::string> take_notes();

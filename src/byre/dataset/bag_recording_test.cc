@@ -34,7 +34,7 @@ std::vector<SceneMessage> infos() {
           scene_message("/right/camera_info", ms(1000), info("left", -0.5))};
 }
 
-SceneMessage image(const std::string& topic, int number, Timestamp stamp, Timestamp log_time) {
+SceneMessage image_of_bag(const std::string& topic, int number, Timestamp stamp, Timestamp log_time) {
   return scene_message(topic, log_time, scene_image(number, stamp));
 }
 
@@ -89,10 +89,11 @@ TEST_F(BagRecordings, KeepToTheRangeAskedFor) {
 }
 
 TEST_F(BagRecordings, PairImagesThatAreTwoMillisecondsApartAtMost) {
-  const auto recording = open(with_infos({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1002), ms(1002)),
-                                          image(kLeft, 3, ms(1050), ms(1051)), image(kRight, 4, ms(1053), ms(1053)),
-                                          image(kLeft, 5, ms(1100), ms(1101)), image(kRight, 6, ms(1098), ms(1102)),
-                                          image(kRight, 7, ms(1100), ms(1103))}));
+  const auto recording =
+      open(with_infos({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1002), ms(1002)),
+                       image_of_bag(kLeft, 3, ms(1050), ms(1051)), image_of_bag(kRight, 4, ms(1053), ms(1053)),
+                       image_of_bag(kLeft, 5, ms(1100), ms(1101)), image_of_bag(kRight, 6, ms(1098), ms(1102)),
+                       image_of_bag(kRight, 7, ms(1100), ms(1103))}));
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 of 3 left images have no right one taken within 2 ms, "
                                                            "2 of 4 right images no left one")));
   EXPECT_EQ(recording->read(0)->right->pixels, scene_image(2, {}).data);
@@ -102,14 +103,15 @@ TEST_F(BagRecordings, PairImagesThatAreTwoMillisecondsApartAtMost) {
 }
 
 TEST_F(BagRecordings, AreRefusedWhereNoImagesBelongTogether) {
-  EXPECT_THAT(open_error(with_infos({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1025), ms(1026)),
-                                     image(kLeft, 3, ms(1050), ms(1051))})),
-              HasSubstr("no right image was taken within 2 ms of any left one; the nearest is off by 25.0"));
+  EXPECT_THAT(
+      open_error(with_infos({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1025), ms(1026)),
+                             image_of_bag(kLeft, 3, ms(1050), ms(1051))})),
+      HasSubstr("no right image was taken within 2 ms of any left one; the nearest is off by 25.0"));
 }
 
 TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
-  const auto recording = open({image(kLeft, 1, ms(1050), ms(1001)), image(kLeft, 2, ms(1000), ms(1002)),
-                               image(kLeft, 3, ms(1050), ms(1003)), infos()[0]});
+  const auto recording = open({image_of_bag(kLeft, 1, ms(1050), ms(1001)), image_of_bag(kLeft, 2, ms(1000), ms(1002)),
+                               image_of_bag(kLeft, 3, ms(1050), ms(1003)), infos()[0]});
   EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050)));
   EXPECT_EQ(recording->read(1)->left.pixels, scene_image(1, {}).data);
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 images were recorded after later ones"),
@@ -117,7 +119,8 @@ TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
 }
 
 TEST_F(BagRecordings, WithoutTimesInTheirHeadersHaveThoseOfTheRecorder) {
-  const auto recording = open({image(kLeft, 1, ms(0), ms(1001)), image(kLeft, 2, ms(0), ms(1051)), infos()[0]});
+  const auto recording =
+      open({image_of_bag(kLeft, 1, ms(0), ms(1001)), image_of_bag(kLeft, 2, ms(0), ms(1051)), infos()[0]});
   EXPECT_THAT(recording->times(), ElementsAre(ms(1001), ms(1051)));
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("has no time stamps in its headers")));
 }
@@ -137,7 +140,7 @@ TEST_F(BagRecordings, TakeTheCalibrationNamedOrOneBesideThem) {
   const std::string camera =
       "camera_matrix: {rows: 3, cols: 3, data: [4.0, 0, 2.5, 0, 4.0, 1.5, 0, 0, 1]}\nimage_width: 6\nimage_height: 4\n"
       "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\ndistortion_model: plumb_bob\n";
-  const std::vector<SceneMessage> images = {image(kLeft, 1, ms(1000), ms(1001))};
+  const std::vector<SceneMessage> images = {image_of_bag(kLeft, 1, ms(1000), ms(1001))};
   EXPECT_THAT(open_error(images), HasSubstr("has no camera info of the topic /left/camera_info"));
   write("calibration.yaml", camera);
   EXPECT_EQ(open(images)->calibration().left.fx, 4.0);
@@ -147,12 +150,14 @@ TEST_F(BagRecordings, TakeTheCalibrationNamedOrOneBesideThem) {
 }
 
 TEST_F(BagRecordings, NameTheCameraInfoThatIsMissingOrOfAnotherSize) {
-  EXPECT_THAT(open_error({image(kLeft, 1, ms(1000), ms(1001)), image(kRight, 2, ms(1000), ms(1001)), infos()[0]}),
-              HasSubstr("has no camera info of /right/image_raw"));
+  EXPECT_THAT(
+      open_error({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1000), ms(1001)), infos()[0]}),
+      HasSubstr("has no camera info of /right/image_raw"));
   ros::CameraInfo large = info("left");
   large.width = 640;
-  EXPECT_THAT(open_error({image(kLeft, 1, ms(1000), ms(1001)), scene_message("/left/camera_info", ms(1000), large)}),
-              HasSubstr("/left/camera_info: is 640x4, but the images are 6x4"));
+  EXPECT_THAT(
+      open_error({image_of_bag(kLeft, 1, ms(1000), ms(1001)), scene_message("/left/camera_info", ms(1000), large)}),
+      HasSubstr("/left/camera_info: is 640x4, but the images are 6x4"));
 }
 
 TEST_F(BagRecordings, PlaceTheCameraInTheRobotByTheFramesThatDoNotMove) {
@@ -163,7 +168,7 @@ TEST_F(BagRecordings, PlaceTheCameraInTheRobotByTheFramesThatDoNotMove) {
 }
 
 TEST_F(BagRecordings, SayWhichImagesCannotBeRead) {
-  std::vector<SceneMessage> messages = {image(kLeft, 1, ms(1000), ms(1001)), infos()[0]};
+  std::vector<SceneMessage> messages = {image_of_bag(kLeft, 1, ms(1000), ms(1001)), infos()[0]};
   ros::Image strange = scene_image(2, ms(1050));
   strange.encoding = "jpeg2000";
   messages.push_back(scene_message(kLeft, ms(1051), strange));

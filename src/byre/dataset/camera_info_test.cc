@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const Pose kRightFromLeft{rotation_exp({0.01, -0.02, 0.005}), {-0.11, 0.002, 0.001}};
 
-PlacedCameraInfo info(const std::string& frame) {
+PlacedCameraInfo placed_info(const std::string& frame) {
   PlacedCameraInfo placed{{.height = 480, .width = 752}, "walk.bag: /" + frame + "/camera_info"};
   placed.info.header.frame_id = frame;
   placed.info.k = {458.0, 0.0, 367.0, 0.0, 457.0, 248.0, 0.0, 0.0, 1.0};
@@ -34,7 +34,7 @@ ros::TransformStamped transform(const std::string& parent, const std::string& ch
 }
 
 TEST(CameraInfo, IsOfTheModelThatTheInfoNames) {
-  const Camera camera = camera_of(info("left"));
+  const Camera camera = camera_of(placed_info("left"));
   EXPECT_EQ(camera.model, CameraModel::radial_tangential);
   EXPECT_EQ(camera, (Camera{CameraModel::radial_tangential,
                             752,
@@ -44,43 +44,43 @@ TEST(CameraInfo, IsOfTheModelThatTheInfoNames) {
                             367.0,
                             248.0,
                             {-0.28, 0.07, 0.0002, 0.00002, 0.001}}));
-  PlacedCameraInfo fisheye = info("left");
+  PlacedCameraInfo fisheye = placed_info("left");
   fisheye.info.distortion_model = "equidistant";
   fisheye.info.d = {0.1, 0.2, 0.3, 0.4};
   EXPECT_EQ(camera_of(fisheye).model, CameraModel::equidistant);
   EXPECT_EQ(camera_of(fisheye).distortion[3], 0.4);
-  PlacedCameraInfo rational = info("left");
+  PlacedCameraInfo rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d.resize(8, 0.0);
   EXPECT_EQ(camera_of(rational), camera);
 }
 
 TEST(CameraInfo, OfRectifiedImagesIsInTheirProjection) {
-  PlacedCameraInfo placed = info("left");
+  PlacedCameraInfo placed = placed_info("left");
   placed.is_rectified = true;
   placed.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 431.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
 }
 
 TEST(CameraInfo, IsRefusedWhereByreDoesNotKnowTheLens) {
-  PlacedCameraInfo rational = info("left");
+  PlacedCameraInfo rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
   EXPECT_THAT(error_of([&] { camera_of(rational); }),
               HasSubstr("walk.bag: /left/camera_info: is of the lens model \"rational_polynomial\" with 8"));
-  PlacedCameraInfo none = info("left");
+  PlacedCameraInfo none = placed_info("left");
   none.info.k = {};
   EXPECT_THAT(error_of([&] { camera_of(none); }), HasSubstr("not calibrated (name a calibration"));
-  PlacedCameraInfo binned = info("left");
+  PlacedCameraInfo binned = placed_info("left");
   binned.info.binning_x = 2;
   EXPECT_THAT(error_of([&] { camera_of(binned); }), HasSubstr("binned"));
-  PlacedCameraInfo cut = info("left");
+  PlacedCameraInfo cut = placed_info("left");
   cut.info.roi = {10, 10, 100, 100, false};
   EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("cut out"));
 }
 
 TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
-  PlacedCameraInfo left = info("left"), right = info("left");
+  PlacedCameraInfo left = placed_info("left"), right = placed_info("left");
   left.is_rectified = right.is_rectified = true;
   left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.p[3] = -43.0;
@@ -94,7 +94,7 @@ TEST(CameraInfo, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
   const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
   const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
   const Pose expected = inverse(right_turn) * Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}} * left_turn;
-  PlacedCameraInfo left = info("left"), right = info("right");
+  PlacedCameraInfo left = placed_info("left"), right = placed_info("right");
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(left.info.r.data()) = left_turn.rotation.toRotationMatrix();
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(right.info.r.data()) =
       right_turn.rotation.toRotationMatrix();
@@ -106,20 +106,22 @@ TEST(CameraInfo, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
   StaticFrames frames;
   const Pose base_from_left{rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.05, 0.4}};
   frames.take({{transform("/base_link", "left", base_from_left), transform("left", "right", inverse(kRightFromLeft))}});
-  EXPECT_THAT(partner_of(info("left"), info("right"), frames).right_from_left, PoseNear(kRightFromLeft, 1e-9, 1e-9));
+  EXPECT_THAT(partner_of(placed_info("left"), placed_info("right"), frames).right_from_left,
+              PoseNear(kRightFromLeft, 1e-9, 1e-9));
   EXPECT_THAT(body_from_camera("left", frames), PoseNear(base_from_left, 1e-9, 1e-9));
   EXPECT_THAT(body_from_camera("right", frames), PoseNear(base_from_left * inverse(kRightFromLeft), 1e-9, 1e-9));
 }
 
 TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
-  EXPECT_THAT(error_of([] { partner_of(info("left"), info("right"), {}); }),
+  EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("right"), {}); }),
               HasSubstr("does not lead from the frame \"left\" to \"right\" (name a calibration"));
-  EXPECT_THAT(error_of([] { partner_of(info("left"), info("left"), {}); }), HasSubstr("walk.bag: /left/camera_info"));
+  EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("left"), {}); }),
+              HasSubstr("walk.bag: /left/camera_info"));
   EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
 }
 
 TEST(CameraInfo, IsRefusedWhereItMakesNoSense) {
-  PlacedCameraInfo left = info("left");
+  PlacedCameraInfo left = placed_info("left");
   left.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   const auto is_refused = [&left](const std::function<void(ros::CameraInfo&)>& change) {
     PlacedCameraInfo right = left;

@@ -63,7 +63,7 @@ std::pair<std::uint32_t, ColmapCamera> read_camera(ByteReader& reader) {
   return {id, camera};
 }
 
-std::pair<std::uint32_t, ColmapImage> read_image(ByteReader& reader) {
+std::pair<std::uint32_t, ColmapImage> read_binary_image(ByteReader& reader) {
   constexpr std::size_t kKeypointBytes = 24;
   const auto id = reader.read<std::uint32_t>();
   ColmapImage image;
@@ -170,7 +170,7 @@ std::map<std::uint32_t, ColmapCamera> read_colmap_cameras_binary(const fs::path&
 }
 
 std::map<std::uint32_t, ColmapImage> read_colmap_images_binary(const fs::path& path) {
-  return read_entries<std::uint32_t, ColmapImage>(path, 74, read_image);
+  return read_entries<std::uint32_t, ColmapImage>(path, 74, read_binary_image);
 }
 
 std::map<std::uint64_t, ColmapPoint> read_colmap_points_binary(const fs::path& path) {

@@ -116,7 +116,7 @@ ColmapCamera read_camera(Fields& fields) {
   return camera;
 }
 
-ColmapImage read_image(Fields& fields) {
+ColmapImage read_colmap_image(Fields& fields) {
   ColmapImage image;
   const char* const kRotation = "quaternion";
   const double w = fields.number(kRotation), x = fields.number(kRotation), y = fields.number(kRotation),
@@ -267,7 +267,7 @@ std::map<std::uint32_t, ColmapImage> read_colmap_images_text(const fs::path& pat
   while (const std::optional<std::string_view> line = lines.next_entry()) {
     Fields fields(*line, lines);
     const auto id = fields.whole<std::uint32_t>("image id");
-    ColmapImage image = read_image(fields);
+    ColmapImage image = read_colmap_image(fields);
     const std::string place = lines.place();
     Fields keypoints(lines.next().value_or(""), lines);
     image.keypoints = read_keypoints(keypoints);

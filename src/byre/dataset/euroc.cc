@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A line of data.csv: "1403636584763555584,1403636584763555584.png".
-TimedFile parse_timed_file(const TextLine& line, const fs::path& images, const std::string& place) {
+TimedFile parse_euroc_line(const TextLine& line, const fs::path& images, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
   const std::optional<Timestamp> time = parse_nanoseconds(fields.front());
   if (!time) throw InputError(place, "\"" + std::string(fields.front()) + "\" is not a time in nanoseconds");
@@ -24,7 +24,7 @@ std::vector<TimedFile> read_image_list(const fs::path& camera_folder) {
   std::vector<TimedFile> files;
   for (const TextLine& line : read_lines(csv)) {
     const std::string place = place_of(csv, line);
-    TimedFile file = parse_timed_file(line, camera_folder / "data", place);
+    TimedFile file = parse_euroc_line(line, camera_folder / "data", place);
     if (!files.empty() && file.time <= files.back().time) {
       throw InputError(place, "the time stamp is not later than the one before it", "sort the lines by time");
     }

@@ -15,7 +15,7 @@ bool is_within(const FrameRange& range, int number, double seconds) {
   return (!range.start_s || seconds >= *range.start_s) && (!range.end_s || seconds < *range.end_s);
 }
 
-std::string describe(const std::vector<Timestamp>& times) {
+std::string describe_extent(const std::vector<Timestamp>& times) {
   const double span = to_seconds(times.back() - times.front());
   return "it holds " + std::to_string(times.size()) + " frames in " + std::to_string(span) + " s";
 }
@@ -67,7 +67,7 @@ std::vector<std::size_t> frames_in_range(const std::vector<Timestamp>& times, co
     if (!is_within(range, static_cast<int>(i), to_seconds(times[i] - times.front()))) continue;
     if (within++ % range.stride == 0) selected.push_back(i);
   }
-  if (selected.empty()) throw InputError(path.string(), "no frame lies in the range asked for", describe(times));
+  if (selected.empty()) throw InputError(path.string(), "no frame lies in the range asked for", describe_extent(times));
   return selected;
 }
 

@@ -22,7 +22,7 @@ std::vector<fs::path> images_by_name(const fs::path& folder) {
 }
 
 // An ideal camera that sees 53 degrees across: descriptors do not depend on it.
-Calibration calibration_for(int width, int height) {
+Calibration ideal_calibration(int width, int height) {
   Calibration calibration;
   Camera& camera = calibration.left;
   camera.width = width;
@@ -52,7 +52,7 @@ std::vector<fs::path> find_images(std::span<const fs::path> files_and_folders) {
 Extractor& ImageDescriber::extractor_for(int width, int height) {
   const auto found = extractors_.find({width, height});
   if (found != extractors_.end()) return found->second;
-  return extractors_.emplace(std::pair(width, height), Extractor(calibration_for(width, height), options_))
+  return extractors_.emplace(std::pair(width, height), Extractor(ideal_calibration(width, height), options_))
       .first->second;
 }
 

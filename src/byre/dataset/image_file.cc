@@ -20,12 +20,12 @@
 namespace byre {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using OwnBytes = std::vector<std::uint8_t>;
 
 // What a file holds, or why that cannot be known. A file that is there but not to be had, as where the program has too
 // many others open, is another thing than one that is missing or broken.
 struct FileBytes {
-  Bytes bytes;
+  OwnBytes bytes;
   std::string failure;
 };
 
@@ -39,14 +39,14 @@ FileBytes read_bytes(const std::filesystem::path& path) {
   if (!file) return failed("cannot be opened");
   struct stat status {};
   if (fstat(fileno(file.get()), &status) != 0) return failed("cannot be read");
-  Bytes bytes(status.st_size > 0 ? static_cast<std::size_t>(status.st_size) : 0);
+  OwnBytes bytes(status.st_size > 0 ? static_cast<std::size_t>(status.st_size) : 0);
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
   if (std::ferror(file.get()) != 0) return failed("cannot be read");
   return {std::move(bytes), {}};
 }
 
 // The decoder fills the missing part of a JPEG with grey and says nothing; its end marker tells whether it is whole.
-bool is_cut_jpeg(const Bytes& bytes) {
+bool is_cut_jpeg(const OwnBytes& bytes) {
   constexpr std::array<std::uint8_t, 2> kStart = {0xFF, 0xD8};
   constexpr std::array<std::uint8_t, 2> kEnd = {0xFF, 0xD9};
   constexpr std::size_t kTrailer = 1024;  // some cameras pad their files
@@ -71,10 +71,10 @@ cv::Mat decode_grey(std::span<const PngChunk> chunks) {
   return grey;
 }
 
-cv::Mat decode(const Bytes& bytes, int flags) {
+cv::Mat decode(const OwnBytes& bytes, int flags) {
   const std::optional<ImageSize> size = stated_size(bytes);
   if (size && size->pixels() > kMostPixels) return {};
-  std::optional<Bytes> png;
+  std::optional<OwnBytes> png;
   if (is_png(bytes)) {
     const std::optional<std::vector<PngChunk>> chunks = png_chunks(bytes);
     if (!chunks) return {};
@@ -103,7 +103,7 @@ ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
   const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) return broken;
   assert(grey.isContinuous());
-  return {Image{grey.cols, grey.rows, Bytes(grey.data, grey.data + grey.total())}, {}};
+  return {Image{grey.cols, grey.rows, OwnBytes(grey.data, grey.data + grey.total())}, {}};
 }
 
 ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path) {

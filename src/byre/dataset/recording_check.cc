@@ -4,10 +4,10 @@
 #include "byre/features/stereo_fit.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
+#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -17,12 +17,6 @@ namespace {
 
 double median_or_zero(const std::vector<double>& values) {
   return values.empty() ? 0.0 : median(values);
-}
-
-std::string formatted(const char* format, double value) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
 }
 
 class CameraSum {

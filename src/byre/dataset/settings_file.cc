@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string place_of(const fs::path& path, int line) {
+std::string place_of_line(const fs::path& path, int line) {
   return path.string() + ":" + std::to_string(line);
 }
 
@@ -20,7 +20,7 @@ int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;
 }
 
-YAML::Node load_yaml(const fs::path& path) {
+YAML::Node load_settings(const fs::path& path) {
   refuse_pipe(path);
   if (fs::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
   try {
@@ -28,7 +28,7 @@ YAML::Node load_yaml(const fs::path& path) {
   } catch (const YAML::BadFile&) {
     throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
   } catch (const YAML::Exception& error) {
-    throw InputError(place_of(path, error.mark.line + 1), error.msg, "correct the YAML");
+    throw InputError(place_of_line(path, error.mark.line + 1), error.msg, "correct the YAML");
   }
 }
 
@@ -38,15 +38,16 @@ void append_settings(const YAML::Node& group, const std::string& prefix, int dep
   constexpr int kDeepest = 8;
   for (const auto& entry : group) {
     const int line = line_of(entry.first);
-    if (!entry.first.IsScalar()) throw InputError(place_of(path, line), "has no name", "write NAME: VALUE");
+    if (!entry.first.IsScalar()) throw InputError(place_of_line(path, line), "has no name", "write NAME: VALUE");
     const std::string name = prefix + entry.first.Scalar();
     if (entry.second.IsMap()) {
-      if (depth == kDeepest) throw InputError(place_of(path, line), "lies too deep in groups", "write fewer of them");
+      if (depth == kDeepest)
+        throw InputError(place_of_line(path, line), "lies too deep in groups", "write fewer of them");
       append_settings(entry.second, name + ".", depth + 1, path, settings);
     } else if (entry.second.IsSequence()) {
-      throw InputError(place_of(path, line), name + " is a list", "give one value");
+      throw InputError(place_of_line(path, line), name + " is a list", "give one value");
     } else if (std::ranges::find(settings, name, &Setting::name) != settings.end()) {
-      throw InputError(place_of(path, line), name + " is given twice", "give it once");
+      throw InputError(place_of_line(path, line), name + " is given twice", "give it once");
     } else {
       settings.push_back({name, entry.second.IsNull() ? "" : entry.second.Scalar(), line});
     }
@@ -56,7 +57,7 @@ void append_settings(const YAML::Node& group, const std::string& prefix, int dep
 }  // namespace
 
 std::vector<Setting> read_settings(const fs::path& path) {
-  const YAML::Node root = load_yaml(path);
+  const YAML::Node root = load_settings(path);
   std::vector<Setting> settings;
   if (root.IsNull()) return settings;
   if (!root.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields", "write NAME: VALUE");

@@ -34,7 +34,7 @@ auto find_nearest(Range& items, Timestamp time, Timestamp tolerance) {
   return is_near ? nearest : items.end();
 }
 
-std::vector<Timestamp> times_of(const std::vector<TimedFile>& files) {
+std::vector<Timestamp> times_of_files(const std::vector<TimedFile>& files) {
   std::vector<Timestamp> times;
   for (const TimedFile& file : files) times.push_back(file.time);
   return times;
@@ -55,7 +55,8 @@ std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Times
 
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right) {
   std::vector<FrameFiles> frames;
-  const std::vector<std::optional<std::size_t>> partners = partners_in_time(times_of(left), times_of(right));
+  const std::vector<std::optional<std::size_t>> partners =
+      partners_in_time(times_of_files(left), times_of_files(right));
   for (std::size_t i = 0; i < left.size(); ++i) {
     frames.push_back({left[i].time, left[i].path, std::nullopt});
     if (partners[i]) frames.back().right = right[*partners[i]].path;

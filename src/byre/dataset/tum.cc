@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A line of rgb.txt or depth.txt: "1305031102.175304 rgb/1305031102.175304.png".
-TimedFile parse_timed_file(const TextLine& line, const fs::path& folder, const std::string& place) {
+TimedFile parse_tum_line(const TextLine& line, const fs::path& folder, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
   const std::optional<Timestamp> time = parse_seconds(fields.front());
   if (!time) throw InputError(place, "\"" + std::string(fields.front()) + "\" is not a time in seconds");
@@ -24,7 +24,7 @@ std::vector<TimedFile> read_list(const fs::path& folder, const char* name) {
   std::vector<TimedFile> files;
   for (const TextLine& line : read_lines(list)) {
     const std::string place = place_of(list, line);
-    files.push_back(parse_timed_file(line, folder, place));
+    files.push_back(parse_tum_line(line, folder, place));
     if (files.size() > 1 && files.back().time <= files[files.size() - 2].time) {
       throw InputError(place, "the time stamp is not later than the one before it", "sort the lines by time");
     }

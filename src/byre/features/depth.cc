@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-constexpr int kRadius = 2;         // pixels, half the side of the square that a corner's depth is taken from
+constexpr int kSearchRadius = 2;   // pixels, half the side of the square that a corner's depth is taken from
 constexpr double kMinShare = 0.4;  // least share of that square that shows one surface
 constexpr double kMaxGap = 0.03;   // gap between neighbours in depth on one surface, as a share of the depth
 
@@ -32,8 +32,8 @@ std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vect
   const int column = static_cast<int>(std::lround(pixel.x()));
   const int row = static_cast<int>(std::lround(pixel.y()));
   std::vector<Sample> samples;
-  for (int v = std::max(0, row - kRadius); v <= std::min(camera.height - 1, row + kRadius); ++v) {
-    for (int u = std::max(0, column - kRadius); u <= std::min(camera.width - 1, column + kRadius); ++u) {
+  for (int v = std::max(0, row - kSearchRadius); v <= std::min(camera.height - 1, row + kSearchRadius); ++v) {
+    for (int u = std::max(0, column - kSearchRadius); u <= std::min(camera.width - 1, column + kSearchRadius); ++u) {
       const float depth =
           depths[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u)];
       if (depth > 0.0f) samples.push_back({depth, Eigen::Vector2d(u, v) - pixel});
@@ -124,7 +124,7 @@ std::vector<std::optional<DepthReading>> DepthReader::read(const DepthImage& ima
                                                            const DepthOptions& options) const {
   const std::vector<float> depths = depths_in_left(image);
   const double pixels_per_inverse_depth = rig_.focal * rig_.baseline;
-  const int side = 2 * kRadius + 1;
+  const int side = 2 * kSearchRadius + 1;
   const double min_samples = std::max(3.0, kMinShare * side * side);
   const auto read_one = [&](const Keypoint& keypoint) -> std::optional<DepthReading> {
     const auto pixel = left_.project(rig_.ray(keypoint.pixel.cast<double>()));

@@ -76,7 +76,7 @@ struct Place {
 };
 
 // A pixel on the border is its own neighbour.
-Place place_of(int made, double factor, int size) {
+Place source_place(int made, double factor, int size) {
   const auto coordinate = static_cast<float>((made + 0.5) * factor - 0.5);
   const float first = std::floor(coordinate);
   const float fraction = coordinate - first;
@@ -95,9 +95,9 @@ Downscale::Downscale(cv::Size source, double factor)
   const double scale = 1.0 / (1.0 / factor);  // as cv::resize rounds it
   for (int u = 0; u < size_.width; u += Group::kPixels) {
     Group group;
-    group.first = std::min(place_of(u, scale, source.width).first, source.width - kReadAtOnce);
+    group.first = std::min(source_place(u, scale, source.width).first, source.width - kReadAtOnce);
     for (int i = 0; i < Group::kPixels && u + i < size_.width; ++i) {
-      const Place place = place_of(u + i, scale, source.width);
+      const Place place = source_place(u + i, scale, source.width);
       const auto at = static_cast<std::size_t>(i);
       constexpr std::uint8_t kNothing = 0x80;  // the upper byte of 16 bits
       const auto neighbour = [&](int column) { return static_cast<std::uint8_t>(column - group.first); };
@@ -110,7 +110,7 @@ Downscale::Downscale(cv::Size source, double factor)
     groups_.push_back(group);
   }
   for (int v = 0; v < size_.height; ++v) {
-    const Place place = place_of(v, scale, source.height);
+    const Place place = source_place(v, scale, source.height);
     rows_.push_back({place.first, place.second, place.first_weight, place.second_weight});
   }
 }

@@ -1,7 +1,7 @@
 #include "byre/features/downscale.h"
 
-#include <cstdint>
-#include <random>
+#include "byre/features/test_images.h"
+
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -10,20 +10,11 @@
 namespace byre {
 namespace {
 
-cv::Mat noise(cv::Size size) {
-  cv::Mat image(size, CV_8U);
-  std::mt19937 random(11);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random());
-  }
-  return image;
-}
-
 class DownscaleOf : public testing::TestWithParam<std::tuple<int, int, double>> {};  // width, height, factor
 
 TEST_P(DownscaleOf, GivesTheValuesOfOpenCv) {
   const auto [width, height, factor] = GetParam();
-  const cv::Mat image = noise({width, height});
+  const cv::Mat image = white_noise({width, height}, 11);
   const Downscale downscale(image.size(), factor);
   cv::Mat made, expected;
   downscale.apply(image, made);

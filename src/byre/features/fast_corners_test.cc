@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-cv::Mat noise(int width, int height, double blur) {
+cv::Mat noise_to_search(int width, int height, double blur) {
   cv::Mat image(height, width, CV_8U);
   std::mt19937 random(7);
   for (int y = 0; y < height; ++y) {
@@ -40,7 +40,7 @@ class FastStrength : public testing::TestWithParam<int> {};  // width of the are
 TEST_P(FastStrength, IsThatOfTheDetectorOfOpenCv) {
   for (const double blur : {0.0, 0.8}) {
     for (const int threshold : {7, 20}) {
-      const cv::Mat image = noise(GetParam() + 9, 40, blur);
+      const cv::Mat image = noise_to_search(GetParam() + 9, 40, blur);
       const cv::Rect area(4, 3, GetParam(), 34);
       cv::Mat strengths;
       measure_fast_strengths(image, area, threshold, strengths);
@@ -57,7 +57,7 @@ class FastPeaks : public testing::TestWithParam<int> {};  // width of the area, 
 
 TEST_P(FastPeaks, AreTheCornersOfOpenCv) {
   for (const int threshold : {7, 20}) {
-    const cv::Mat image = noise(GetParam() + 9, 60, 0.8);
+    const cv::Mat image = noise_to_search(GetParam() + 9, 60, 0.8);
     const cv::Rect area(4, 3, GetParam(), 54);
     cv::Mat strengths;
     measure_fast_strengths(image, area, 7, strengths);

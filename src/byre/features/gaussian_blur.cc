@@ -72,7 +72,7 @@ void add_columns(const std::uint16_t* sums, std::size_t width, std::uint8_t* blu
 }
 
 // The widest vector, in pixels.
-std::size_t lanes_of_rows() {
+std::size_t lanes_of_sums() {
   return hn::Lanes(hn::ScalableTag<std::uint16_t>());
 }
 
@@ -87,7 +87,7 @@ namespace {
 
 HWY_EXPORT(add_rows);
 HWY_EXPORT(add_columns);
-HWY_EXPORT(lanes_of_rows);
+HWY_EXPORT(lanes_of_sums);
 
 constexpr int kRadius = 3;  // pixels
 
@@ -110,7 +110,7 @@ void mirror_sides(std::uint16_t* sums, std::size_t width) {
 void gaussian_blur(const cv::Mat& image, cv::Mat& blurred) {
   assert(image.type() == CV_8U && std::min(image.cols, image.rows) > kRadius && image.data != blurred.data);
   const auto width = static_cast<std::size_t>(image.cols);
-  if (width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)()) {
+  if (width < HWY_DYNAMIC_DISPATCH(lanes_of_sums)()) {
     cv::GaussianBlur(image, blurred, cv::Size(2 * kRadius + 1, 2 * kRadius + 1), 2.0, 2.0, cv::BORDER_REFLECT_101);
     return;
   }

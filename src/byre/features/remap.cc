@@ -68,16 +68,16 @@ namespace {
 
 HWY_EXPORT(look_up);
 
-constexpr int kSteps = 32;      // places between two pixels
-constexpr int kReadAtOnce = 4;  // bytes, of which the first two are used
+constexpr int kSteps = 32;       // places between two pixels
+constexpr int kBytesAtOnce = 4;  // bytes, of which the first two are used
 
-struct Place {
+struct Neighbours {
   int pixel = 0;     // with a neighbour after it
   int fraction = 0;  // 0 to kSteps, of the way to that neighbour
 };
 
 // What lies outside is on the outermost pixel.
-Place place_of(float coordinate, int size) {
+Neighbours neighbours_of(float coordinate, int size) {
   const float inside = std::min(std::max(coordinate, 0.0f), static_cast<float>(size - 1));
   const int steps = cvRound(inside * kSteps);
   if (steps / kSteps >= size - 1) return {size - 2, kSteps};
@@ -92,11 +92,11 @@ Remap::Remap(const cv::Mat& columns, const cv::Mat& rows, cv::Size source) : siz
   offsets_.reserve(count);
   column_fractions_.reserve(count);
   row_fractions_.reserve(count);
-  const int last = source.area() - source.width - kReadAtOnce;
+  const int last = source.area() - source.width - kBytesAtOnce;
   for (int v = 0; v < size_.height; ++v) {
     for (int u = 0; u < size_.width; ++u) {
-      const Place column = place_of(columns.at<float>(v, u), source.width);
-      const Place row = place_of(rows.at<float>(v, u), source.height);
+      const Neighbours column = neighbours_of(columns.at<float>(v, u), source.width);
+      const Neighbours row = neighbours_of(rows.at<float>(v, u), source.height);
       const int offset = row.pixel * source.width + column.pixel;
       if (offset > last) at_the_end_.push_back({offsets_.size(), offset});
       offsets_.push_back(std::clamp(offset, 0, std::max(0, last)));
@@ -120,7 +120,7 @@ void Remap::apply(const cv::Mat& image, cv::Mat& made) const {
   const std::uint8_t* const source = image.ptr<std::uint8_t>();
   std::uint8_t* const values = made.ptr<std::uint8_t>();
   std::size_t pixel =
-      source_.area() < source_.width + kReadAtOnce
+      source_.area() < source_.width + kBytesAtOnce
           ? 0
           : HWY_DYNAMIC_DISPATCH(look_up)(source, source_.width, offsets_.data(), column_fractions_.data(),
                                           row_fractions_.data(), offsets_.size(), values);

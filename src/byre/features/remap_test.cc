@@ -1,23 +1,14 @@
 #include "byre/features/remap.h"
 
+#include "byre/features/test_images.h"
+
 #include <cmath>
-#include <cstdint>
-#include <random>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
 namespace {
-
-cv::Mat noise(cv::Size size) {
-  cv::Mat image(size, CV_8U);
-  std::mt19937 random(5);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random());
-  }
-  return image;
-}
 
 struct Places {
   cv::Mat columns;
@@ -42,7 +33,7 @@ Places turned(cv::Size size, cv::Size source) {
 TEST(Remap, GivesTheValuesOfOpenCv) {
   for (const cv::Size source : {cv::Size(160, 120), cv::Size(33, 7), cv::Size(2, 2), cv::Size(3, 2)}) {
     for (const cv::Size size : {source, cv::Size(101, 57)}) {
-      const cv::Mat image = noise(source);
+      const cv::Mat image = white_noise(source, 5);
       const Places places = turned(size, source);
       cv::Mat made, expected, whole, fraction;
       Remap(places.columns, places.rows, source).apply(image, made);

@@ -13,13 +13,13 @@
 namespace byre {
 namespace {
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kRigWidth = 320;
+constexpr int kRigHeight = 240;
 
 Rig stereo_rig() {
   Rig rig;
-  rig.width = kWidth;
-  rig.height = kHeight;
+  rig.width = kRigWidth;
+  rig.height = kRigHeight;
   rig.focal = 200.0;
   rig.cx = 159.5;
   rig.cy = 119.5;
@@ -41,8 +41,8 @@ struct Pair {
 };
 
 Pair render_pair(const Scene& scene) {
-  cv::Mat left = render(kWidth, kHeight, scene.grey);
-  cv::Mat right = render(kWidth, kHeight,
+  cv::Mat left = render(kRigWidth, kRigHeight, scene.grey);
+  cv::Mat right = render(kRigWidth, kRigHeight,
                          [&](double x, double y) { return scene.grey(x + scene.disparity, y - scene.vertical_error); });
   std::mt19937 random(1);
   if (scene.noise > 0.0) {
@@ -68,7 +68,7 @@ std::vector<Keypoint> keypoints_of(const Pyramid& pyramid, int per_octave) {
 }
 
 // How the keypoints of a scene that the right image holds were matched.
-struct Score {
+struct StereoScore {
   int tried = 0;
   int matched = 0;
   int gross = 0;               // more than two octave pixels off
@@ -88,7 +88,7 @@ struct Score {
   }
 };
 
-void add_scene(const Scene& scene, Score& score) {
+void add_scene(const Scene& scene, StereoScore& score) {
   const Pair pair = render_pair(scene);
   const std::vector<Keypoint> keypoints = keypoints_of(pair.left, 60);
   const auto matches = match_stereo(pair.left, pair.right, stereo_rig(), keypoints, {});
@@ -107,8 +107,8 @@ void add_scene(const Scene& scene, Score& score) {
 }
 
 // Disparities with all fractions of a pixel.
-Score match_textures(double noise, double vertical_error = 0.0) {
-  Score score;
+StereoScore match_textures(double noise, double vertical_error = 0.0) {
+  StereoScore score;
   std::uint64_t seed = 30;
   for (const double disparity : {1.3, 5.0, 12.45, 23.71, 40.1, 60.62}) {
     add_scene({Texture(++seed, 0.7), disparity, vertical_error, noise}, score);
@@ -117,18 +117,18 @@ Score match_textures(double noise, double vertical_error = 0.0) {
 }
 
 TEST(MatchStereo, FindsSubPixelDisparitiesInAllOctaves) {
-  const Score score = match_textures(0.0);
+  const StereoScore score = match_textures(0.0);
   EXPECT_GE(score.share_matched(), 0.95);
   EXPECT_LE(score.median_error(), 0.02);
   EXPECT_EQ(score.gross, 0);
 }
 
 TEST(MatchStereo, IsExactToItsSigmaUnderNoise) {
-  const Score slight = match_textures(2.0);
+  const StereoScore slight = match_textures(2.0);
   EXPECT_GE(slight.share_matched(), 0.85);
   EXPECT_LE(slight.median_error(), 0.05);
   EXPECT_GE(slight.share_within(2.0), 0.95);
-  const Score strong = match_textures(6.0);
+  const StereoScore strong = match_textures(6.0);
   EXPECT_GE(strong.share_within(2.0), 0.95);
   EXPECT_LE(strong.share_within(1.0), 0.97) << "sigma is not a mere upper bound";
   for (double n : {0., 1., 2., 4., 6., 8.}) {
@@ -137,7 +137,7 @@ TEST(MatchStereo, IsExactToItsSigmaUnderNoise) {
 }
 
 TEST(MatchStereo, ToleratesRowsThatAreHalfAPixelOff) {
-  const Score score = match_textures(1.0, 0.5);
+  const StereoScore score = match_textures(1.0, 0.5);
   EXPECT_GE(score.share_matched(), 0.9);
   EXPECT_LE(score.median_error(), 0.05);
   EXPECT_GE(score.share_within(2.0), 0.95);
@@ -171,7 +171,7 @@ TEST(MatchStereo, RejectsARepetitivePattern) {
       return 60.0 + 150.0 * std::exp(-0.15 * (u * u + v * v));
     };
     for (const double noise : {0.0, 2.0, 5.0}) {
-      Score score;
+      StereoScore score;
       add_scene({dots, 8.0, 0.0, noise}, score);
       EXPECT_GT(score.tried, 300);
       EXPECT_LE(score.share_matched(), 0.04) << "period " << period << ", noise " << noise;
@@ -181,7 +181,7 @@ TEST(MatchStereo, RejectsARepetitivePattern) {
 }
 
 TEST(MatchStereo, FindsDullTextures) {
-  Score score;
+  StereoScore score;
   add_scene({Texture(48, 0.2), 12.45, 0.0, 1.0}, score);
   EXPECT_GT(score.tried, 300);
   EXPECT_GE(score.share_matched(), 0.95);
@@ -202,7 +202,7 @@ TEST(MatchStereo, FindsNothingBehindInfinity) {
 
 TEST(MatchStereo, FindsNothingInABlankRightImage) {
   Pair pair = render_pair({Texture(44, 0.7), 10.0});
-  build_pyramid(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(120)), pair.right);
+  build_pyramid(cv::Mat(kRigHeight, kRigWidth, CV_8U, cv::Scalar(120)), pair.right);
   const auto keypoints = keypoints_of(pair.left, 60);
   for (const auto& match : match_stereo(pair.left, pair.right, stereo_rig(), keypoints, {})) EXPECT_FALSE(match);
 }

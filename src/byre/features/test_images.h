@@ -103,6 +103,16 @@ Patch render_patch(GreyAt grey_at) {
   return patch;
 }
 
+// Grey values that are independent of each other.
+inline cv::Mat white_noise(cv::Size size, std::uint32_t seed) {
+  cv::Mat image(size, CV_8U);
+  std::mt19937 random(seed);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random());
+  }
+  return image;
+}
+
 // Adds normal noise of a standard deviation in grey values.
 template <typename Pixels>
 void add_noise(Pixels first, Pixels last, double sigma, std::mt19937& random) {

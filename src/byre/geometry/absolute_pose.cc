@@ -116,7 +116,7 @@ std::vector<Pose> poses_from(const Problem& problem, const std::array<std::size_
 }
 
 // Draws needed until one of three inliers has come up with the confidence asked for (Fischler and Bolles 1981).
-int draws_needed(double inlier_ratio, const RansacOptions& options) {
+int pose_draws_needed(double inlier_ratio, const RansacOptions& options) {
   const double all_inliers = inlier_ratio * inlier_ratio * inlier_ratio;
   if (all_inliers >= 1.0) return 1;
   const double draws = std::log(1.0 - options.confidence) / std::log1p(-all_inliers);
@@ -133,7 +133,7 @@ Candidate search(const Problem& problem, const RansacOptions& options) {
       const Candidate candidate = score(problem, pose, best.cost);
       if (!(candidate.cost < best.cost)) continue;
       best = refine(problem, candidate, kLocalSteps);
-      draws = draws_needed(best.inlier_count / static_cast<double>(problem.sightings.size()), options);
+      draws = pose_draws_needed(best.inlier_count / static_cast<double>(problem.sightings.size()), options);
     }
   }
   return best;

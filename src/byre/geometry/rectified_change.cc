@@ -4,13 +4,13 @@ namespace byre {
 namespace {
 
 // A camera as calibrated, and how that is rectified.
-struct RectifiedCamera {
+struct RectifiedView {
   const Camera& camera;
   const Eigen::Quaterniond& camera_from_rectified;
   const Rig& rig;
 };
 
-PixelGrid<Eigen::Vector2d> displacements(const RectifiedCamera& before, const RectifiedCamera& after) {
+PixelGrid<Eigen::Vector2d> displacements(const RectifiedView& before, const RectifiedView& after) {
   return {before.rig.width, before.rig.height, [&](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
             const auto raw = before.camera.project(before.camera_from_rectified * before.rig.ray(pixel));
             const auto bearing = raw ? after.camera.bearing(*raw) : std::nullopt;

@@ -52,7 +52,7 @@ double parallax(const Pose& second_from_first, const TwoViewMatch& match) {
 
 // A motion and what speaks for it: the same kind of score as a model's, of the lines, and of them only those of matches
 // that lie in front of both cameras.
-struct Candidate {
+struct MotionCandidate {
   TwoViewMotion motion;
   double score = 0.0;
 };
@@ -62,9 +62,9 @@ bool is_far(double match_parallax, const TwoViewMatch& match) {
   return match_parallax < 4.0 * match.sigma;
 }
 
-Candidate weigh(const Pose& second_from_first, Matches matches) {
+MotionCandidate weigh(const Pose& second_from_first, Matches matches) {
   const Eigen::Matrix3d essential = essential_of(second_from_first);
-  Candidate candidate{{.second_from_first = second_from_first, .points_in_first = {}}, 0.0};
+  MotionCandidate candidate{{.second_from_first = second_from_first, .points_in_first = {}}, 0.0};
   std::vector<double> parallaxes;
   for (const TwoViewMatch& match : matches) {
     auto& point = candidate.motion.points_in_first.emplace_back();
@@ -89,8 +89,8 @@ bool is_same_motion(const Pose& first, const Pose& second) {
          (first.translation - second.translation).norm() < kMaxShift;
 }
 
-bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates) {
-  return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
+bool has_rival(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates) {
+  return std::ranges::any_of(candidates, [&](const MotionCandidate& candidate) {
     return candidate.score > kRivalShare * best.score &&
            !is_same_motion(candidate.motion.second_from_first, best.motion.second_from_first);
   });
@@ -103,7 +103,7 @@ TwoViewFailure reason_to_doubt(const Models& models, bool planar) {
   return planar && turned ? TwoViewFailure::rotation_only : TwoViewFailure::none;
 }
 
-TwoViewFailure reason_to_doubt(const Candidate& best, const std::vector<Candidate>& candidates) {
+TwoViewFailure reason_to_doubt(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates) {
   if (best.motion.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
   if (has_rival(best, candidates)) return TwoViewFailure::planar_ambiguity;
   return best.motion.point_count < kMinPoints ? TwoViewFailure::too_few_points : TwoViewFailure::none;
@@ -143,9 +143,9 @@ TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches) 
   const bool planar = is_planar(models);
   const TwoViewFailure doubt = reason_to_doubt(models, planar);
   if (doubt != TwoViewFailure::none) return failed(doubt);
-  std::vector<Candidate> candidates;
+  std::vector<MotionCandidate> candidates;
   for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
-  Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
+  MotionCandidate best = *std::ranges::max_element(candidates, {}, &MotionCandidate::score);
   const TwoViewFailure failure = reason_to_doubt(best, candidates);
   if (failure != TwoViewFailure::none) return failed(failure);
   best.motion.is_planar = planar;

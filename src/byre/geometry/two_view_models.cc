@@ -234,17 +234,17 @@ double cost_of(const Pose& motion, Matches matches) {
   return cost;
 }
 
-struct NormalEquations {
+struct TwoViewEquations {
   Matrix5 information = Matrix5::Zero();
   Vector5 gradient = Vector5::Zero();
 };
 
 // The lengths of the epipolar lines are held while the product changes.
-NormalEquations linearise(const Pose& motion, Matches matches) {
+TwoViewEquations linearise(const Pose& motion, Matches matches) {
   const Eigen::Matrix3d rotation = motion.rotation.toRotationMatrix();
   const Eigen::Matrix3d essential = skew(motion.translation) * rotation;
   const Eigen::Matrix<double, 3, 2> tangents = tangents_of(motion.translation);
-  NormalEquations equations;
+  TwoViewEquations equations;
   for (const TwoViewMatch& match : matches) {
     const double squared_error = epipolar_error(essential, match);
     if (!(squared_error < kMaxEpipolarError)) continue;
@@ -280,7 +280,7 @@ Pose refine_motion(const Pose& second_from_first, std::span<const TwoViewMatch> 
   Pose best{second_from_first.rotation, second_from_first.translation.normalized()};
   double cost = cost_of(best, matches);
   double damping = 1e-4;
-  NormalEquations equations = linearise(best, matches);
+  TwoViewEquations equations = linearise(best, matches);
   for (int step = 0; step < kMaxSteps; ++step) {
     Matrix5 damped = equations.information;
     damped.diagonal() *= 1.0 + damping;

@@ -87,10 +87,6 @@ fs::path target_of(const fs::path& path) {
   return fs::is_symlink(path) ? fs::weakly_canonical(path) : path;
 }
 
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
 void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
   const OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy);
   file.write_all(bytes);
@@ -98,6 +94,10 @@ void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 }  // namespace
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 std::vector<std::byte> read_file(const fs::path& path) {
   refuse_pipe(path);

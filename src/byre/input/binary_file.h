@@ -16,6 +16,9 @@ std::vector<std::byte> read_file(const std::filesystem::path& path);
 // a device or a pipe is written to directly. Throws InputError, and leaves path as it was, when it cannot be done.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+// The folder that a file lies in; "." where the path names none.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
 // Writes it where it is, in place of what is there. Throws InputError when it cannot be done, and says what to do where
 // the disk is full or the file larger than allowed.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);

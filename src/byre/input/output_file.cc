@@ -14,12 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // A device, a pipe, or a link, which may stand for one: renaming would put a file in its place.
-bool is_special(const fs::path& path) {
+bool is_written_in_place(const fs::path& path) {
   return fs::is_symlink(path) || (fs::exists(path) && !fs::is_regular_file(path));
-}
-
-fs::path folder_of(const fs::path& path) {
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
 void require_access(const fs::path& path) {
@@ -37,7 +33,7 @@ void require_writable(const fs::path& path) {
   if (path.filename().empty() || fs::is_directory(path)) {
     throw InputError(path.string(), "is a folder", "name a file in it");
   }
-  if (is_special(path)) return require_access(path);
+  if (is_written_in_place(path)) return require_access(path);
   const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder)) {
     throw InputError(path.string(), "cannot be written: its folder does not exist",
@@ -47,7 +43,7 @@ void require_writable(const fs::path& path) {
 }
 
 void write_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  if (is_special(path)) return write(path);
+  if (is_written_in_place(path)) return write(path);
   fs::path unfinished = path;
   unfinished += ".unfinished";
   try {

@@ -30,7 +30,7 @@ std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_fr
 std::vector<PointId> Mission::candidates(const std::vector<PointId>& around) const {
   std::vector<PointId> candidates;
   std::ranges::copy_if(around, std::back_inserter(candidates),
-                       [this](PointId id) { return !suspension_.is_suspended(id); });
+                       [this](PointId id) { return !moved_points_.is_suspended(id); });
   return candidates;
 }
 
@@ -39,7 +39,8 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
   ++frames_;
   const bool held = view_ == OfflineView::held;
   if (held) {
-    suspension_.note(track.offline_agreed, moved_together(offline_->map(), track.offline_agreed, track.offline_moved));
+    moved_points_.note(track.offline_agreed,
+                       moved_together(offline_->map(), track.offline_agreed, track.offline_moved));
   }
   reference_ = held ? track.offline_reference : std::nullopt;
   if (held && (track.offline_stands || !track.maps_disagree)) {
@@ -52,8 +53,8 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
 
 std::vector<PointId> Mission::due_again(const std::vector<PointId>& around) const {
   std::vector<PointId> due;
-  if (suspension_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
-  std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return suspension_.is_suspended(id); });
+  if (moved_points_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
+  std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return moved_points_.is_suspended(id); });
   return due;
 }
 

@@ -2,10 +2,10 @@
 
 #include "byre/slam/health.h"
 #include "byre/slam/hybrid_tracking.h"
+#include "byre/slam/moved_points.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/registration.h"
 #include "byre/slam/state.h"
-#include "byre/slam/suspension.h"
 
 #include <memory>
 #include <optional>
@@ -19,7 +19,7 @@ struct MissionOptions {
   double search_after = 0.3;   // metres without offline points, from which places are looked for beside tracking
   double restart_after = 1.0;  // seconds without a pose, from which a new piece of online map is begun
   OfflineViewOptions view;
-  SuspensionOptions suspension;
+  MovedPointsOptions moved_points;
   RegistrationOptions registration;
 };
 
@@ -28,10 +28,10 @@ struct MissionOptions {
 class Mission {
  public:
   Mission(std::shared_ptr<const OfflineMap> offline, const MissionOptions& options)
-      : offline_(std::move(offline)), options_(options), suspension_(options.suspension) {}
+      : offline_(std::move(offline)), options_(options), moved_points_(options.moved_points) {}
 
   const OfflineMap& offline() const { return *offline_; }
-  const Suspension& suspension() const { return suspension_; }
+  const MovedPoints& moved_points() const { return moved_points_; }
   OfflineView view() const { return view_; }
   double distance_since_offline() const { return distance_since_offline_; }
   std::optional<Timestamp> last_offline_time() const { return last_offline_time_; }
@@ -47,7 +47,7 @@ class Mission {
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
   // Suspended points around, in frames where they are to be looked for again; else none.
   std::vector<PointId> due_again(const std::vector<PointId>& around) const;
-  void note_again(const PlacedPoints& placed) { suspension_.note_again(placed.agreed, placed.moved); }
+  void note_again(const PlacedPoints& placed) { moved_points_.note_again(placed.agreed, placed.moved); }
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
 
@@ -61,7 +61,7 @@ class Mission {
   std::shared_ptr<const OfflineMap> offline_;
   MissionOptions options_;
 
-  Suspension suspension_;
+  MovedPoints moved_points_;
   OfflineView view_ = OfflineView::off_the_map;
   double distance_since_offline_ = 0.0;  // metres
   std::optional<Timestamp> last_offline_time_;

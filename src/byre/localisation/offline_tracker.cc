@@ -65,7 +65,7 @@ void OfflineTracker::lose() {
 void OfflineTracker::search_beside(const Frame& frame, const Rig& rig, const Whereabouts& whereabouts,
                                    const Mapper& mapper) {
   if (!search_.idle() || mapper.has_correction() || !whereabouts.confirmation().is_believed()) return;
-  const bool is_needed = !mapper.segments().is_registered() || !whereabouts.confirmation().is_proven() ||
+  const bool is_needed = !mapper.submaps().is_registered() || !whereabouts.confirmation().is_proven() ||
                          mission_.distance_since_offline() > options_.mission.search_after;
   if (!is_needed) return;
   const std::size_t number = whereabouts.trajectory().size() - 1;
@@ -80,25 +80,25 @@ OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, co
   constexpr double kElsewhere = 0.5;  // metres
   const AnchoredTrajectory& trajectory = whereabouts.trajectory();
   const Confirmation& confirmation = whereabouts.confirmation();
-  const Segments& segments = mapper.segments();
+  const Submaps& submaps = mapper.submaps();
   if (!whereabouts.has_pose() || !confirmation.is_believed() || mapper.has_correction()) return {};
   if (found.frame >= trajectory.size()) return {};
   const AnchoredPose& then = trajectory[found.frame];
-  if (segments.frame(then.segment) != segments.frame()) return {};
+  if (submaps.frame(then.submap) != submaps.frame()) return {};
   const Pose camera_from_online = camera_from_world(mapper.map(), then);
   const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
-  const bool is_find_open = then.segment == segments.present() && segments.is_registered() && !confirmation.is_proven();
+  const bool is_find_open = then.submap == submaps.present() && submaps.is_registered() && !confirmation.is_proven();
   if (is_find_open && agreement.translation > kElsewhere &&
       found.seen_share >= options_.mission.registration.proving_share) {
     return {.events = {}, .refutes_pose = true};
   }
-  return {.events = {}, .correction = correction_by(found, camera_from_online, segments.frame())};
+  return {.events = {}, .correction = correction_by(found, camera_from_online, submaps.frame())};
 }
 
 // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
 std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
-                                                              Segments::Frame frame) {
-  const bool is_registered = frame == Segments::kMapFrame;
+                                                              Submaps::Frame frame) {
+  const bool is_registered = frame == Submaps::kMapFrame;
   if (is_registered && !is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift())) {
     return std::nullopt;
   }
@@ -116,12 +116,12 @@ std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack&
   const auto confirmed = mission_.consider(offline_from_online, inverse(*track.from_online).translation,
                                            median_depth(track.tracked, mapper.map()));
   if (!confirmed) return std::nullopt;
-  return OnlineCorrection{mapper.segments().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
+  return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
 }
 
 Health OfflineTracker::added_to(Health health, Timestamp now, Timestamp first_frame) const {
   health.focal_error = focal_check_.error();
-  health.suspended = mission_.suspension().count();
+  health.suspended = mission_.moved_points().count();
   health.distance_since_offline = mission_.distance_since_offline();
   health.seconds_since_offline = to_seconds(now - mission_.last_offline_time().value_or(first_frame));
   return health;

@@ -63,8 +63,8 @@ class OfflineTracker {
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
   Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
-  // A segment begins where offline points do not hold the pose yet.
-  void begin_segment() { mission_.forget_reference(); }
+  // A submap begins where offline points do not hold the pose yet.
+  void begin_submap() { mission_.forget_reference(); }
   void lose();
 
   // Looks for the last frame in the offline map beside tracking, while its points do not hold the pose, or may do so by
@@ -81,7 +81,7 @@ class OfflineTracker {
   // Once enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
   std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
-                                                Segments::Frame frame);
+                                                Submaps::Frame frame);
 
   OfflineTrackerOptions options_;              // constant after construction
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction

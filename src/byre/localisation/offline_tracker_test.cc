@@ -84,7 +84,7 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
   const auto correction = tracker_.consider(place_beside(0.005, 0.5), whereabouts_, mapper_).correction;
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->shape, CorrectionShape::spread);
-  EXPECT_EQ(correction->frame, Segments::kMapFrame);
+  EXPECT_EQ(correction->frame, Submaps::kMapFrame);
   EXPECT_NEAR(correction->offline_from_online.translation.norm(), 0.005, 1e-6);
 }
 

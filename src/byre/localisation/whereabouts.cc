@@ -97,7 +97,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
   const KeyframeId anchor = anchor_of(track);
   trajectory_.add({seen.frame.time, anchor, track.tracked.camera_from_world * inverse(camera_from_world(map, anchor)),
-                   seen.segment});
+                   seen.submap});
   if (on_offline_map_) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
   has_pose_ = true;
   last_seen_ = seen.frame.time;
@@ -110,7 +110,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   return progress;
 }
 
-void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t segment, const Rig& rig,
+void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig,
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
   if (bridge_ && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
@@ -118,7 +118,7 @@ void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t se
   odometry_.remember_offset({});
   for (const KeyframeId id : keyframes) {
     const Timestamp time = online.find_keyframe(id)->frame.time;
-    if (trajectory_.empty() || trajectory_.back().time < time) trajectory_.add({time, id, Pose{}, segment});
+    if (trajectory_.empty() || trajectory_.back().time < time) trajectory_.add({time, id, Pose{}, submap});
   }
   believe();
   motion_.reach(Vector6::Zero());
@@ -147,7 +147,7 @@ bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
   const Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
   bridge_ = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
   const Pose camera_from_keyframe = camera_from_map * inverse(byre::camera_from_world(map, last.keyframe));
-  trajectory_.add({time, last.keyframe, camera_from_keyframe, last.segment});
+  trajectory_.add({time, last.keyframe, camera_from_keyframe, last.submap});
   trajectory_.believe_all();
   since_believed_ = no_motion();
   motion_.go_on();

@@ -47,7 +47,7 @@ class Whereabouts {
   std::optional<BodyMotion> bridge() const { return has_pose_ ? std::nullopt : bridge_; }
   const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
-  Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present segment leaves open
+  Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
 
   // A frame later; motion is that of the body, where it is known.
@@ -60,7 +60,7 @@ class Whereabouts {
     const HybridTrack& track;
     bool from_nothing = false;
     bool is_registered = false;
-    std::size_t segment = 0;
+    std::size_t submap = 0;
   };
   // What a tracked frame changed.
   struct Progress {
@@ -69,14 +69,14 @@ class Whereabouts {
     bool was_ever_believed = false;  // a pose in the reports' frame before
   };
   Progress note(const TrackedPose& seen, const Rig& rig, const MapView& map);
-  // A segment of the online map begins with the last of these keyframes, made of this frame.
-  void begin(const std::vector<KeyframeId>& keyframes, std::size_t segment, const Rig& rig, const Map& online);
+  // A submap of the online map begins with the last of these keyframes, made of this frame.
+  void begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig, const Map& online);
   // The last frame has become a keyframe.
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
   void lose();
   // Nothing was seen, and the pose goes on by what is told, where it is: whether it does.
   bool go_on(Timestamp time, const Rig& rig, const MapView& map);
-  // Places told of the present segment anew: nothing is left of what a bridge to it left open.
+  // Places told of the present submap anew: nothing is left of what a bridge to it left open.
   void forget_carried() { carried_.reset(); }
 
   // Changes of the map, or of the camera.
@@ -115,7 +115,7 @@ class Whereabouts {
   std::optional<BridgeEnd> bridge_end_;
   PoseQuality quality_;
   std::optional<Timestamp> last_seen_;
-  // Where the present segment was begun by a bridge, and how uncertain that was.
+  // Where the present submap was begun by a bridge, and how uncertain that was.
   struct Carried {
     Pose map_from_body;
     Matrix6 covariance;

@@ -160,7 +160,7 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
   EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(before * ahead * ahead * ahead, 1e-9, 1e-9));
 }
 
-TEST_F(TrueWhereabouts, BelieveASegmentThatBeginsAtOnce) {
+TEST_F(TrueWhereabouts, BelieveASubmapThatBeginsAtOnce) {
   whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
   EXPECT_TRUE(whereabouts_.has_pose());
   EXPECT_TRUE(confirmation().is_believed());

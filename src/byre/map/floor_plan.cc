@@ -181,14 +181,14 @@ std::vector<Eigen::Vector2d> used_points(Correspondences correspondences, const 
   return points;
 }
 
-Eigen::Vector2d mean_of(const std::vector<Eigen::Vector2d>& points) {
+Eigen::Vector2d mean_of_picks(const std::vector<Eigen::Vector2d>& points) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : points) sum += point;
   return sum / static_cast<double>(points.size());
 }
 
 bool lie_in_line(const std::vector<Eigen::Vector2d>& points) {
-  const Eigen::Vector2d mean = mean_of(points);
+  const Eigen::Vector2d mean = mean_of_picks(points);
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& point : points) scatter += (point - mean) * (point - mean).transpose();
   const Eigen::Vector2d spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues();
@@ -198,7 +198,7 @@ bool lie_in_line(const std::vector<Eigen::Vector2d>& points) {
 // Whether the path of the body reaches far beyond the points.
 bool lie_in_a_corner(const std::vector<Eigen::Vector2d>& points, const DrivingPlane& plane,
                      const Similarity& plan_from_map) {
-  const Eigen::Vector2d centre = mean_of(points);
+  const Eigen::Vector2d centre = mean_of_picks(points);
   double reach_of_points = 0.0, reach_of_path = 0.0;
   for (const Eigen::Vector2d& point : points) reach_of_points = std::max(reach_of_points, (point - centre).norm());
   for (const Eigen::Vector3d& position_in_map : plane.path_in_map) {

@@ -8,6 +8,8 @@
 
 namespace byre {
 
+inline constexpr double kPickNoise = 0.03;  // metres, of picks on a plan by hand
+
 // A barn of 40 x 12 m on a plan, a robot that drove up and down its alley, and signs that are found in both. The map's
 // frame is turned in all directions against the plan's, as its first pose was.
 class FloorPlanScene {

@@ -19,8 +19,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr double kPickNoise = 0.03;  // metres
-
 std::vector<std::string> outliers_of(const std::vector<PlanCorrespondence>& correspondences, const PlanFit& fit) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < correspondences.size(); ++i) {

@@ -9,7 +9,7 @@ namespace {
 
 using testing::IsEmpty;
 
-constexpr int kAll = std::numeric_limits<int>::max();
+constexpr int kEvery = std::numeric_limits<int>::max();
 
 // The same map, one thing after the other.
 Map grown(const MapParts& parts) {
@@ -22,7 +22,7 @@ Map grown(const MapParts& parts) {
 
 std::vector<std::pair<KeyframeId, int>> covisible(const Map& map, KeyframeId id) {
   std::vector<std::pair<KeyframeId, int>> all;
-  for (const auto& [keyframe, shared] : map.covisible_keyframes(id, kAll)) all.emplace_back(keyframe, shared);
+  for (const auto& [keyframe, shared] : map.covisible_keyframes(id, kEvery)) all.emplace_back(keyframe, shared);
   return all;
 }
 

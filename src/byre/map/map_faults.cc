@@ -27,11 +27,6 @@ bool is_sound(const Pose& pose) {
   return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1.0) < kTolerance;
 }
 
-bool is_unit(const Eigen::Vector3f& direction) {
-  constexpr float kTolerance = 1e-3f;
-  return std::abs(direction.norm() - 1.0f) < kTolerance;
-}
-
 bool is_observed(const Map& map, PointId point, const Observation& observation) {
   return std::ranges::binary_search(map.observations(point), observation);
 }

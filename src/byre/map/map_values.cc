@@ -21,11 +21,6 @@ bool is_image_size(int width, int height) {
   return width >= 1 && height >= 1 && width <= kMaxImageSize && height <= kMaxImageSize;
 }
 
-bool is_unit(const Eigen::Vector3f& direction) {
-  constexpr float kTolerance = 1e-3f;
-  return std::abs(direction.norm() - 1.0f) < kTolerance;
-}
-
 // Pixels have their centres at whole numbers, so an image begins half a pixel before zero.
 bool is_in_image(const Eigen::Vector2f& pixel, const Rig& rig) {
   return pixel.x() >= -0.5f && pixel.y() >= -0.5f && pixel.x() <= static_cast<float>(rig.width) - 0.5f &&
@@ -38,6 +33,11 @@ std::string_view fault_in(const StereoPartner& right) {
 }
 
 }  // namespace
+
+bool is_unit(const Eigen::Vector3f& direction) {
+  constexpr float kTolerance = 1e-3f;
+  return std::abs(direction.norm() - 1.0f) < kTolerance;
+}
 
 std::string_view fault_in(const Pose& pose) {
   constexpr double kTolerance = 1e-6;

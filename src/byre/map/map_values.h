@@ -22,4 +22,6 @@ std::string_view fault_in(const Sighting& sighting);
 std::string_view fault_in(const MapPoint& point);
 std::string_view fault_in(const PlanRegistration& registration);
 
+bool is_unit(const Eigen::Vector3f& direction);
+
 }  // namespace byre

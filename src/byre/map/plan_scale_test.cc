@@ -17,7 +17,6 @@ using testing::Lt;
 using testing::Not;
 using testing::Optional;
 
-constexpr double kPickNoise = 0.03;  // metres
 constexpr double kTooLarge = 1.016;  // metres in the map of a metre on the plan
 constexpr int kTrials = 100;
 

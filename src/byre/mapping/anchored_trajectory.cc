@@ -94,11 +94,11 @@ void AnchoredTrajectory::settle(const RememberedFrame& seen, const MapView& map,
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 
-Trajectory AnchoredTrajectory::in_map_frame(const MapView& map, const Segments& segments, const Rig& rig) const {
+Trajectory AnchoredTrajectory::in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const {
   Trajectory trajectory;
   trajectory.reserve(poses_.size());
   for (const AnchoredPose& pose : poses_) {
-    if (segments.frame(pose.segment) != Segments::kMapFrame) continue;
+    if (submaps.frame(pose.submap) != Submaps::kMapFrame) continue;
     trajectory.push_back({pose.time, body_pose(rig, camera_from_world(map, pose))});
   }
   return trajectory;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/map_view.h"
-#include "byre/mapping/segments.h"
+#include "byre/mapping/submaps.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/hindsight.h"
 #include "byre/trajectory.h"
@@ -30,7 +30,7 @@ struct AnchoredPose {
   Timestamp time{};
   KeyframeId keyframe;
   Pose camera_from_keyframe;
-  std::size_t segment = 0;
+  std::size_t submap = 0;
 };
 
 Pose camera_from_world(const MapView& map, const AnchoredPose& pose);
@@ -74,7 +74,7 @@ class AnchoredTrajectory {
   void settle_all(const MapView& map, const TrackOptions& tracking);
 
   // The poses in the reports' frame. world_from_body.
-  Trajectory in_map_frame(const MapView& map, const Segments& segments, const Rig& rig) const;
+  Trajectory in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const;
 
  private:
   void settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking);

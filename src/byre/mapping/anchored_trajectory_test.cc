@@ -20,10 +20,10 @@ class AnchoredFrames : public ::testing::Test {
   Map map_ = true_map(mission_, 8, Origin::online);
   const std::vector<KeyframeId> keyframes_ = map_.keyframe_ids();
   AnchoredTrajectory trajectory_{HindsightOptions{}};
-  Segments segments_;
+  Submaps submaps_;
 
   void SetUp() override {
-    segments_.begin_in_map_frame(0);
+    submaps_.begin_in_map_frame(0);
     for (const KeyframeId id : keyframes_) trajectory_.add({time_of(id), id, kAhead, 0});
   }
   Timestamp time_of(KeyframeId id) const { return map_.find_keyframe(id)->frame.time; }
@@ -32,7 +32,7 @@ class AnchoredFrames : public ::testing::Test {
 TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
   const Pose moved = exp_pose((Vector6() << 1.0, 2.0, 3.0, 0.1, 0.2, 0.3).finished());
   map_.move_keyframe(keyframes_[1], moved, Matrix6::Identity());
-  const Trajectory poses = trajectory_.in_map_frame(map_, segments_, mission_.rig);
+  const Trajectory poses = trajectory_.in_map_frame(map_, submaps_, mission_.rig);
   ASSERT_THAT(poses, SizeIs(2));
   EXPECT_THAT(poses[0].world_from_body,
               PoseNear(body_pose(mission_.rig, kAhead * map_.camera_from_world(keyframes_[0])), 1e-12, 1e-12));
@@ -65,12 +65,12 @@ TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
   }
 }
 
-TEST_F(AnchoredFrames, AreToldWhereTheirSegmentLiesInTheMapFrameAlone) {
-  segments_.begin_in_own_frame(7);
+TEST_F(AnchoredFrames, AreToldWhereTheirSubmapLiesInTheMapFrameAlone) {
+  submaps_.begin_in_own_frame(7);
   trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 1});
-  EXPECT_THAT(trajectory_.in_map_frame(map_, segments_, mission_.rig), SizeIs(2));
-  segments_.join_map_frame(segments_.frame());
-  EXPECT_THAT(trajectory_.in_map_frame(map_, segments_, mission_.rig), SizeIs(3));
+  EXPECT_THAT(trajectory_.in_map_frame(map_, submaps_, mission_.rig), SizeIs(2));
+  submaps_.join_map_frame(submaps_.frame());
+  EXPECT_THAT(trajectory_.in_map_frame(map_, submaps_, mission_.rig), SizeIs(3));
 }
 
 TEST_F(AnchoredFrames, AreDroppedWhereTheyAreNotBelieved) {

@@ -20,7 +20,7 @@ Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Exe
 }
 
 std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
-  return newest_ && segments_.is_in_present_frame(*newest_) ? newest_ : std::nullopt;
+  return newest_ && submaps_.is_in_present_frame(*newest_) ? newest_ : std::nullopt;
 }
 
 void Mapper::continue_map(Map online) {
@@ -29,7 +29,7 @@ void Mapper::continue_map(Map online) {
   initialiser_.reset();
   for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
   newest_ = online_.keyframe_ids().back();
-  segments_.begin_in_map_frame(0);
+  submaps_.begin_in_map_frame(0);
 }
 
 void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
@@ -52,8 +52,7 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
                                        const AnchoredTrajectory& trajectory) {
   auto first = initialise_stereo(frame, rig, options_.min_initial_points);
   if (!first) return {};
-  offline_ ? segments_.begin_in_own_frame(next_keyframe_number())
-           : segments_.begin_in_map_frame(next_keyframe_number());
+  offline_ ? submaps_.begin_in_own_frame(next_keyframe_number()) : submaps_.begin_in_map_frame(next_keyframe_number());
   if (online_.keyframe_count() == 0) {
     online_ = *std::move(first);
     return {{online_.keyframe_ids().front()}};
@@ -67,7 +66,7 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
   return {{id}};
 }
 
-// The keyframe from which the way to a new segment was told; none in a mission, where the two lie in frames of their
+// The keyframe from which the way to a new submap was told; none in a mission, where the two lie in frames of their
 // own.
 std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& trajectory) const {
   return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
@@ -86,13 +85,13 @@ Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Pose& camera
                                       options_.recording, online_);
     if (keyframes.empty()) return {};
     initialiser_.reset();
-    segments_.begin_in_map_frame(first_number);
+    submaps_.begin_in_map_frame(first_number);
     pending_.push_back(keyframes.back());
     return {keyframes, attempt.failure};
   }
   initialiser_.reset();
   online_ = std::move(attempt.start->map);
-  segments_.begin_in_map_frame(0);
+  submaps_.begin_in_map_frame(0);
   pending_.push_back(attempt.start->second);
   return {{attempt.start->first, attempt.start->second}, attempt.failure};
 }
@@ -108,9 +107,9 @@ void Mapper::expect_beginning_beside(const Rig& rig, bool is_told) {
 
 void Mapper::begin_where_found(const HybridTrack& found) {
   if (found.online_reference) {
-    segments_.begin_beside(*found.online_reference, next_keyframe_number());
+    submaps_.begin_beside(*found.online_reference, next_keyframe_number());
   } else {
-    segments_.begin_in_map_frame(next_keyframe_number());
+    submaps_.begin_in_map_frame(next_keyframe_number());
   }
 }
 
@@ -238,10 +237,10 @@ bool Mapper::correct_online() {
   const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   std::vector<KeyframeId> path = online_.keyframe_ids();
   std::erase_if(path, [&](KeyframeId id) {
-    return id.number < correction.first_keyframe || segments_.frame(id) != correction.frame;
+    return id.number < correction.first_keyframe || submaps_.frame(id) != correction.frame;
   });
   apply(correction_of(online_, path, correction.offline_from_online, correction.shape), online_);
-  segments_.join_map_frame(correction.frame);
+  submaps_.join_map_frame(correction.frame);
   ++revision_;
   if (newest_ && pending_.empty()) pending_.push_back(*newest_);
   return true;

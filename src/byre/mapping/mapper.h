@@ -5,8 +5,8 @@
 #include "byre/mapping/global_lane.h"
 #include "byre/mapping/loop_closer.h"
 #include "byre/mapping/mapper_options.h"
-#include "byre/mapping/segments.h"
 #include "byre/mapping/shutter.h"
+#include "byre/mapping/submaps.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/registration.h"
@@ -22,7 +22,7 @@ namespace byre {
 
 // Where a part of the online map really lies in the offline one.
 struct OnlineCorrection {
-  Segments::Frame frame = Segments::kMapFrame;
+  Submaps::Frame frame = Submaps::kMapFrame;
   std::uint32_t first_keyframe = 0;  // number of the first one in that frame that moves
   Pose offline_from_online;
   CorrectionShape shape = CorrectionShape::spread;
@@ -43,7 +43,7 @@ class Mapper {
 
   MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
   const Map& online() const { return online_; }
-  const Segments& segments() const { return segments_; }
+  const Submaps& submaps() const { return submaps_; }
   const PlaceIndex* places() const { return places_ ? &*places_ : nullptr; }  // index of online keyframes
   const std::vector<LoopEdge>& loops() const { return loop_closer_.loops(); }
   const Calibrator* calibrator() const { return calibrator_ ? &*calibrator_ : nullptr; }
@@ -57,10 +57,10 @@ class Mapper {
   void continue_map(Map online);
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Begins a segment with a frame, seen from there or, in an empty map, from where the map's frame is. One camera knows
+  // Begins a submap with a frame, seen from there or, in an empty map, from where the map's frame is. One camera knows
   // no scale: it begins one map, and beside another where the trajectory goes on by what is told of the motion.
   struct Beginning {
-    std::vector<KeyframeId> keyframes;  // empty: no segment was begun
+    std::vector<KeyframeId> keyframes;  // empty: no submap was begun
     TwoViewFailure failure = TwoViewFailure::none;
   };
   Beginning begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
@@ -71,8 +71,8 @@ class Mapper {
   void expect_beginning_beside(const Rig& rig, bool is_told);
   // Begins one where a frame was found from nothing.
   void begin_where_found(const HybridTrack& found);
-  // The present segment does not lie in the map's frame as was believed.
-  void leave_map_frame() { segments_.leave_map_frame(); }
+  // The present submap does not lie in the map's frame as was believed.
+  void leave_map_frame() { submaps_.leave_map_frame(); }
 
   KeyframeId add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig);
   // Once for each frame, unless offline points hold it. Whether a loop was found.
@@ -120,7 +120,7 @@ class Mapper {
   std::optional<Calibrator> calibrator_;
   Map online_{Origin::online};
   int revision_ = 0;
-  Segments segments_;
+  Submaps submaps_;
   std::optional<PlaceIndex> places_;
   LoopCloser loop_closer_;
   std::optional<KeyframeId> newest_;

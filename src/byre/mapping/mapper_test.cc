@@ -37,7 +37,7 @@ TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
   ASSERT_EQ(begun.keyframes.size(), 1u);
   EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[0]);
-  EXPECT_TRUE(mapper.segments().is_registered());
+  EXPECT_TRUE(mapper.submaps().is_registered());
   EXPECT_GT(mapper.online().point_count(), 100);
 }
 
@@ -45,7 +45,7 @@ TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
   Mapper mapper = this->mapper(make_inline_executor());
   const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
   EXPECT_THAT(mapper.begin(blank, mission_.rig, Pose{}, AnchoredTrajectory({})).keyframes, IsEmpty());
-  EXPECT_TRUE(mapper.segments().empty());
+  EXPECT_TRUE(mapper.submaps().empty());
   EXPECT_EQ(mapper.revision(), 0);
 }
 
@@ -112,10 +112,10 @@ TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
 TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
   mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
-  EXPECT_FALSE(mapper.segments().is_registered()) << "nobody knows yet where it lies";
+  EXPECT_FALSE(mapper.submaps().is_registered()) << "nobody knows yet where it lies";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const Pose offline_from_online{rotation_exp({0.0, 0.0, 0.4}), {1.0, 2.0, 0.0}};
-  mapper.correct_later({mapper.segments().frame(), 0, offline_from_online, CorrectionShape::rigid});
+  mapper.correct_later({mapper.submaps().frame(), 0, offline_from_online, CorrectionShape::rigid});
   EXPECT_TRUE(mapper.has_correction());
   EXPECT_FALSE(mapper.correct_online()) << "a job works on what would move";
   mapper.collect();
@@ -123,7 +123,7 @@ TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   const Pose before = mapper.online().camera_from_world(id);
   EXPECT_TRUE(mapper.correct_online());
   EXPECT_FALSE(mapper.has_correction());
-  EXPECT_TRUE(mapper.segments().is_registered());
+  EXPECT_TRUE(mapper.submaps().is_registered());
   EXPECT_THAT(mapper.online().camera_from_world(id), PoseNear(before * inverse(offline_from_online), 1e-9, 1e-9));
 }
 

@@ -18,12 +18,6 @@ namespace {
 using testing::Each;
 using testing::Lt;
 
-BundleOptions patient() {
-  BundleOptions options;
-  options.max_iterations = 50;
-  return options;
-}
-
 void expect_recovered(const BundleResult& result, const BundleProblem& truth, double tolerance) {
   ASSERT_TRUE(result.usable);
   for (std::size_t i = 0; i < truth.poses.size(); ++i) {

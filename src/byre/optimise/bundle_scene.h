@@ -82,6 +82,13 @@ inline BundleProblem true_problem(const BundleSceneOptions& options, Draw& draw)
   return problem;
 }
 
+// For scenes that are to be solved to the last digit.
+inline BundleOptions patient() {
+  BundleOptions options;
+  options.max_iterations = 50;
+  return options;
+}
+
 inline BundleScene make_scene(unsigned seed, const BundleSceneOptions& options) {
   Draw draw(seed);
   BundleScene scene;

@@ -59,12 +59,6 @@ class CalibratedBundle : public testing::TestWithParam<int> {  // poses that mov
   BundleScene scene_;
 };
 
-BundleOptions patient() {
-  BundleOptions options;
-  options.max_iterations = 50;
-  return options;
-}
-
 TEST_P(CalibratedBundle, FindsTheChangeThatExplainsAllWithPosesAndPoints) {
   const BundleResult result = bundle_adjust(scene_.problem, patient());
   ASSERT_TRUE(result.usable);

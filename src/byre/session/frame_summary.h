@@ -25,11 +25,10 @@ struct FrameSummary {
   const OfflineTracker* mission = nullptr;  // on an offline map
   Timestamp first_frame{};
 
-  bool is_registered() const { return mapper.segments().is_registered(); }
+  bool is_registered() const { return mapper.submaps().is_registered(); }
   // The pose goes on by what is told, from one in the map.
   bool is_bridged_in_map() const {
-    return whereabouts.bridge() &&
-           mapper.segments().frame(whereabouts.trajectory().back().segment) == Segments::kMapFrame;
+    return whereabouts.bridge() && mapper.submaps().frame(whereabouts.trajectory().back().submap) == Submaps::kMapFrame;
   }
 };
 

@@ -65,12 +65,12 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   const Stopwatch mapping_after;
   keyframe_watch_.note_frame(input.frame, rig_);
   report.start_failure = located.start_failure;
-  report.keyframe_added = located.begins_segment;
+  report.keyframe_added = located.begins_submap;
   if (located.track) {
     remember(input, located, report);
     extend_map(input, *located.track, report);
-  } else if (located.begins_segment) {
-    const bool is_first = mapper_.segments().size() == 1;
+  } else if (located.begins_submap) {
+    const bool is_first = mapper_.submaps().size() == 1;
     report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
   } else {
     lose_pose(input.fault, report);
@@ -187,10 +187,10 @@ Session::Located Session::locate(const InputFrame& input) {
     if (located.track) mapper_.begin_where_found(*located.track);
   }
   mapper_.expect_beginning_beside(rig_, !located.track && whereabouts_.bridge());
-  return located.track || !may_begin_segment(input) ? located : begin_segment(frame);
+  return located.track || !may_begin_submap(input) ? located : begin_submap(frame);
 }
 
-bool Session::may_begin_segment(const InputFrame& input) const {
+bool Session::may_begin_submap(const InputFrame& input) const {
   if (!options_.map_online || !mapper_.can_begin(rig_)) return false;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
   if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || (mission_ && rig_.is_stereo());
@@ -199,24 +199,24 @@ bool Session::may_begin_segment(const InputFrame& input) const {
   return to_seconds(input.frame.time - last_seen) >= options_.mission.restart_after;
 }
 
-Session::Located Session::begin_segment(const Frame& frame) {
+Session::Located Session::begin_submap(const Frame& frame) {
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
   const Pose camera_from_last =
       trajectory.empty() ? Pose{}
                          : whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
   const Mapper::Beginning begun = mapper_.begin(frame, rig_, camera_from_last, trajectory);
   if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
-  whereabouts_.begin(begun.keyframes, mapper_.segments().present(), rig_, mapper_.online());
+  whereabouts_.begin(begun.keyframes, mapper_.submaps().present(), rig_, mapper_.online());
   tracker_.restart_from(begun.keyframes.back());
   keyframe_watch_.restart();
-  if (mission_) mission_->begin_segment();
-  return {.track = {}, .begins_segment = true, .start_failure = begun.failure};
+  if (mission_) mission_->begin_submap();
+  return {.track = {}, .begins_submap = true, .start_failure = begun.failure};
 }
 
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
   const HybridTrack& track = *located.track;
   const Whereabouts::Progress progress = whereabouts_.note(
-      {input.frame, track, located.from_nothing, is_registered(), mapper_.segments().present()}, rig_, map());
+      {input.frame, track, located.from_nothing, is_registered(), mapper_.submaps().present()}, rig_, map());
   tracker_.note(track);
   keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
   if (progress.was_proven && !located.from_nothing) {
@@ -293,7 +293,7 @@ void Session::finish_mission(const FinishHooks& hooks) {
 }
 
 Trajectory Session::final_trajectory() const {
-  return whereabouts_.trajectory().in_map_frame(map(), mapper_.segments(), rig_);
+  return whereabouts_.trajectory().in_map_frame(map(), mapper_.submaps(), rig_);
 }
 
 }  // namespace byre

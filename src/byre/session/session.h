@@ -92,7 +92,7 @@ class Session {
   struct Located {
     std::optional<HybridTrack> track;
     bool from_nothing = false;
-    bool begins_segment = false;  // a first keyframe was made of it
+    bool begins_submap = false;  // a first keyframe was made of it
     TwoViewFailure start_failure = TwoViewFailure::none;
   };
 
@@ -101,8 +101,8 @@ class Session {
   void take_turn(const RigTurn& turn);
   InputFrame input_of(const Frame& rectified);
   Located locate(const InputFrame& input);
-  bool may_begin_segment(const InputFrame& input) const;
-  Located begin_segment(const Frame& frame);
+  bool may_begin_submap(const InputFrame& input) const;
+  Located begin_submap(const Frame& frame);
   void remember(const InputFrame& input, const Located& located, FrameReport& report);
   void extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report);
   bool may_add_keyframe(const InputFrame& input, const HybridTrack& track) const;
@@ -110,7 +110,7 @@ class Session {
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
   bool is_navigation_error(double seconds_without_pose) const;
-  bool is_registered() const { return mapper_.segments().is_registered(); }
+  bool is_registered() const { return mapper_.submaps().is_registered(); }
 
   SessionOptions options_;  // constant after construction
 

@@ -17,14 +17,14 @@ namespace {
 constexpr int kFrames = 90;
 
 // Pixels at the corners of the image, as an error of focal length, of the principal point and of the lens makes them.
-struct CalibrationError {
+struct SeenError {
   double zoom = 0.0;
   double shift = 0.0;
   double lens = 0.0;
   double disparity = 0.0;
 };
 
-Frame seen_through(const CalibrationError& error, const Frame& frame, const Rig& rig) {
+Frame seen_through(const SeenError& error, const Frame& frame, const Rig& rig) {
   std::vector<Keypoint> keypoints = frame.features->keypoints();
   for (Keypoint& keypoint : keypoints) {
     const double x = 2.0 * keypoint.pixel.x() / rig.width - 1.0;
@@ -46,11 +46,11 @@ SimulatedMission visit(std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(kFrames, 10.0, 2.0, 0.75), options);
 }
 
-std::shared_ptr<const OfflineMap> mapped() {
+std::shared_ptr<const OfflineMap> mapped_circle() {
   return offline_map_of(visit(1));
 }
 
-struct Outcome {
+struct CalibrationOutcome {
   double error = 0.0;            // metres, root mean square over the frames that have a pose
   double worst_trusted = 0.0;    // metres
   double offline_inliers = 0.0;  // a frame
@@ -61,8 +61,8 @@ double error_of(const Pose& body, const StampedPose& truth) {
   return (body.translation - truth.world_from_body.translation).norm();
 }
 
-Outcome outcome_of(Session session, const SimulatedMission& mission, const CalibrationError& error) {
-  Outcome outcome;
+CalibrationOutcome outcome_of(Session session, const SimulatedMission& mission, const SeenError& error) {
+  CalibrationOutcome outcome;
   double squared = 0.0;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const FrameReport report = session.process(seen_through(error, mission.frames[i], mission.rig));
@@ -78,8 +78,8 @@ Outcome outcome_of(Session session, const SimulatedMission& mission, const Calib
   return outcome;
 }
 
-Outcome mission_outcome(bool map_online, const CalibrationError& error) {
-  static const std::shared_ptr<const OfflineMap> offline = mapped();
+CalibrationOutcome mission_outcome(bool map_online, const SeenError& error) {
+  static const std::shared_ptr<const OfflineMap> offline = mapped_circle();
   const SimulatedMission mission = visit(2);
   SessionOptions options;
   options.map_online = map_online;
@@ -88,7 +88,7 @@ Outcome mission_outcome(bool map_online, const CalibrationError& error) {
 }
 
 // Without any map, laid over the truth as well as it goes.
-double error_without_map(const CalibrationError& error) {
+double error_without_map(const SeenError& error) {
   const SimulatedMission mission = visit(2);
   Session session(mission.rig, {}, Lanes(make_inline_executor()));
   std::vector<Eigen::Vector3d> estimated, truth;
@@ -104,12 +104,12 @@ double error_without_map(const CalibrationError& error) {
   return std::sqrt(squared / static_cast<double>(truth.size()));
 }
 
-class MissionWithCalibrationError : public ::testing::TestWithParam<CalibrationError> {};
+class MissionWithCalibrationError : public ::testing::TestWithParam<SeenError> {};
 
 TEST_P(MissionWithCalibrationError, IsNoWorseForMappingBesideTheOfflineMap) {
   constexpr double kNoise = 0.002;  // metres: what two runs differ by anyhow
-  const Outcome hybrid = mission_outcome(true, GetParam());
-  const Outcome localised = mission_outcome(false, GetParam());
+  const CalibrationOutcome hybrid = mission_outcome(true, GetParam());
+  const CalibrationOutcome localised = mission_outcome(false, GetParam());
   EXPECT_EQ(hybrid.poses, kFrames);
   EXPECT_LE(hybrid.error, 1.1 * localised.error + kNoise);
   // An error of the zoom shifts every pose on an exact map: no mission that does not calibrate itself can know.
@@ -118,11 +118,10 @@ TEST_P(MissionWithCalibrationError, IsNoWorseForMappingBesideTheOfflineMap) {
   EXPECT_LT(hybrid.worst_trusted, 0.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Errors, MissionWithCalibrationError,
-    ::testing::Values(CalibrationError{}, CalibrationError{.zoom = 1.0}, CalibrationError{.shift = 1.0},
-                      CalibrationError{.lens = 2.0}, CalibrationError{.disparity = 0.3},
-                      CalibrationError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
+INSTANTIATE_TEST_SUITE_P(Errors, MissionWithCalibrationError,
+                         ::testing::Values(SeenError{}, SeenError{.zoom = 1.0}, SeenError{.shift = 1.0},
+                                           SeenError{.lens = 2.0}, SeenError{.disparity = 0.3},
+                                           SeenError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
 
 // As the simulated rig has it.
 Calibration calibration_of(const Rig& rig) {

@@ -33,10 +33,6 @@ Session session_on(std::shared_ptr<const OfflineMap> offline, const SessionOptio
           std::move(offline)};
 }
 
-Frame without_features(const Frame& frame) {
-  return {frame.time, std::make_shared<const Features>()};
-}
-
 Frame frame_of(Timestamp time, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors) {
   const Rig rig = simulated_rig();
   return {time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), std::move(descriptors),

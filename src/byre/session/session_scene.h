@@ -6,9 +6,14 @@
 #include "byre/slam/mission_scene.h"
 #include "byre/slam/place_scene.h"
 
+#include <memory>
 #include <vector>
 
 namespace byre {
+
+inline Frame without_features(const Frame& frame) {
+  return {frame.time, std::make_shared<const Features>()};
+}
 
 inline std::vector<FrameReport> reports_of(Session& session, const std::vector<Frame>& frames) {
   std::vector<FrameReport> reports;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kReadoutTime = 0.02;  // seconds
 
-SimulatedMission visit(std::uint64_t noise_seed) {
+SimulatedMission visit_by_rolling_shutter(std::uint64_t noise_seed) {
   SimulationOptions options;
   options.noise_seed = noise_seed;
   options.pixel_sigma = 0.2;
@@ -27,14 +27,14 @@ RefinedCalibration given() {
   return calibration;
 }
 
-struct Outcome {
+struct ShutterOutcome {
   double error = 0.0;  // metres, root mean square over the second half
   double readout_time = 0.0;
 };
 
 // On the map of a visit by another camera; or plain SLAM, laid over the truth as well as it goes.
-Outcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
-  static const std::shared_ptr<const OfflineMap> offline = offline_map_of(visit(1));
+ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
+  static const std::shared_ptr<const OfflineMap> offline = offline_map_of(visit_by_rolling_shutter(1));
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary(), has_map ? offline : nullptr);
   if (is_refined) session.refine_readout(given());
   std::vector<Eigen::Vector3d> estimated, truth;
@@ -44,7 +44,7 @@ Outcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refine
     estimated.push_back(report.map_from_body->translation);
     truth.push_back(mission.truth[i].world_from_body.translation);
   }
-  Outcome outcome;
+  ShutterOutcome outcome;
   if (const auto calibration = session.self_calibration()) outcome.readout_time = calibration->calibration.readout_time;
   const Similarity truth_from_map = has_map ? Similarity{} : align(estimated, truth, Scale::fixed).value();
   for (std::size_t i = 0; i < truth.size(); ++i)
@@ -54,15 +54,16 @@ Outcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refine
 }
 
 TEST(SessionShutter, FindsOutInAMissionHowLongTheRowsTake) {
-  const SimulatedMission mission = rolling(visit(2), kReadoutTime);
-  const Outcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
+  const SimulatedMission mission = rolling(visit_by_rolling_shutter(2), kReadoutTime);
+  const ShutterOutcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
   EXPECT_NEAR(refined.readout_time, kReadoutTime, 2e-3);
   EXPECT_LT(refined.error, 0.5 * as_given.error);
 }
 
 TEST(SessionShutter, IsNoneWhereAllRowsAreSeenAtOnce) {
   for (const bool has_map : {true, false}) {
-    const Outcome refined = outcome_of(visit(2), has_map, true), as_given = outcome_of(visit(2), has_map, false);
+    const ShutterOutcome refined = outcome_of(visit_by_rolling_shutter(2), has_map, true),
+                         as_given = outcome_of(visit_by_rolling_shutter(2), has_map, false);
     EXPECT_EQ(refined.readout_time, 0.0);
     EXPECT_EQ(refined.error, as_given.error);
   }

@@ -4,6 +4,7 @@
 
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/session/session_scene.h"
 #include "byre/slam/mission_scene.h"
 #include "byre/trajectory_error.h"
 
@@ -53,7 +54,7 @@ Outcome run(const SimulatedMission& mission) {
   return run(mission.rig, mission.frames, make_inline_executor());
 }
 
-SimulatedMission circling(int frames = 120, const SimulationOptions& options = {}) {
+SimulatedMission circling_robot(int frames = 120, const SimulationOptions& options = {}) {
   return simulate_mission(simulated_rig(robot_from_camera()),
                           circling_trajectory(frames, 15.0, 2.0, frames / 120.0, robot_from_camera()), options);
 }
@@ -72,10 +73,6 @@ SimulatedMission figure_eight() {
 AbsoluteTrajectoryError error_of(const Trajectory& estimate, const Trajectory& truth) {
   const Pose& start = truth.front().world_from_body;
   return absolute_trajectory_error(associate(estimate, truth, {}), {1.0, start.rotation, start.translation});
-}
-
-Frame without_features(const Frame& frame) {
-  return {frame.time, std::make_shared<const Features>()};
 }
 
 struct NamedMission {
@@ -111,13 +108,13 @@ TEST_P(EveryMission, LeavesASoundMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(On, EveryMission,
-                         ::testing::Values(NamedMission{"Circling", [] { return circling(); }},
+                         ::testing::Values(NamedMission{"Circling", [] { return circling_robot(); }},
                                            NamedMission{"TurningInPlace", [] { return turning(); }},
                                            NamedMission{"FigureEight", [] { return figure_eight(); }}),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(Session, TakesTheFirstBodyForTheWorld) {
-  const SimulatedMission mission = circling(2);
+  const SimulatedMission mission = circling_robot(2);
   Session session(mission.rig, {}, make_inline_executor());
   EXPECT_THAT(session.process(mission.frames[0]).map_from_body.value(), PoseNear(Pose{}, 1e-12, 1e-7));
 }
@@ -125,7 +122,7 @@ TEST(Session, TakesTheFirstBodyForTheWorld) {
 TEST(Session, ToleratesOutliers) {
   SimulationOptions options;
   options.outlier_ratio = 0.2;
-  const SimulatedMission mission = circling(60, options);
+  const SimulatedMission mission = circling_robot(60, options);
   const Outcome result = run(mission);
   EXPECT_THAT(result.causal, SizeIs(mission.frames.size()));
   EXPECT_LT(error_of(result.causal, mission.truth).translation.rmse, kMaxError);
@@ -154,18 +151,18 @@ void expect_identical(const Outcome& first, const Outcome& second) {
 }
 
 TEST(Session, RepeatsItselfInline) {
-  const SimulatedMission mission = circling(60);
+  const SimulatedMission mission = circling_robot(60);
   expect_identical(run(mission), run(mission));
 }
 
 TEST(Session, RepeatsItselfPaced) {
-  const SimulatedMission mission = circling(60);
+  const SimulatedMission mission = circling_robot(60);
   expect_identical(run(mission.rig, mission.frames, make_paced_executor(3)),
                    run(mission.rig, mission.frames, make_paced_executor(3)));
 }
 
 TEST(Session, StaysNearTheTruthWhileMappingRunsBeside) {
-  const SimulatedMission mission = circling(60);
+  const SimulatedMission mission = circling_robot(60);
   for (const auto make : {+[] { return make_paced_executor(3); }, +[] { return make_live_executor(); }}) {
     const Outcome result = run(mission.rig, mission.frames, make());
     EXPECT_THAT(result.causal, SizeIs(mission.frames.size()));
@@ -282,7 +279,7 @@ class SessionOfACircle : public ::testing::Test {
   State process(std::size_t frame) { return session_.process(mission_.frames[frame]).state; }
   FrameReport blind(std::size_t frame) { return session_.process(without_features(mission_.frames[frame])); }
 
-  const SimulatedMission mission_ = circling(40);
+  const SimulatedMission mission_ = circling_robot(40);
   Session session_{mission_.rig, {}, make_inline_executor()};
 };
 
@@ -320,7 +317,7 @@ TEST_F(SessionOfACircle, NeverInitialisesWithoutDisparities) {
 TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
   SimulationOptions another_room;
   another_room.seed = 99;
-  const SimulatedMission elsewhere = circling(40, another_room);
+  const SimulatedMission elsewhere = circling_robot(40, another_room);
   for (std::size_t i = 0; i < 10; ++i) ASSERT_EQ(process(i), State::tracking);
   for (std::size_t i = 10; i < 40; ++i) {
     const FrameReport report = session_.process(elsewhere.frames[i]);
@@ -337,7 +334,7 @@ TEST(Session, FinishesWithoutAnyFrame) {
 }
 
 TEST(Session, TakesOverAllThatMappingHasLeftWhenItFinishes) {
-  const SimulatedMission mission = circling(30);
+  const SimulatedMission mission = circling_robot(30);
   Session session(mission.rig, {}, make_paced_executor(1000));  // longer than the mission
   for (const Frame& frame : mission.frames) session.process(frame);
   const std::size_t before = session.map().online().point_ids().size();

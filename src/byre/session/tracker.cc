@@ -34,7 +34,7 @@ HybridTrack found_in(Origin origin, const TrackedFrame& tracked) {
 // lost, is not where the pose says.
 bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const {
   return reference && mapper.online().find_keyframe(*reference) != nullptr &&
-         mapper.segments().is_in_present_frame(*reference);
+         mapper.submaps().is_in_present_frame(*reference);
 }
 
 const std::vector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
@@ -65,7 +65,7 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     return tracked ? std::optional(found_in(Origin::online, *tracked)) : std::nullopt;
   }
   std::vector<PointId> candidates;
-  if (scene.mapper.segments().is_registered()) {
+  if (scene.mapper.submaps().is_registered()) {
     candidates = scene.mission->candidates(offline_points_around(predicted, *scene.mission));
   }
   candidates.insert(candidates.end(), online.begin(), online.end());

@@ -31,7 +31,7 @@ class Tracker {
     KeyframeId keyframe;  // it lay around
   };
 
-  // From where the motion leads. Precondition: the map has a segment.
+  // From where the motion leads. Precondition: the map has a submap.
   std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
                                    const MotionModel& motion);
   // Anywhere in the maps, the offline one first. What is found is online or offline by its references.

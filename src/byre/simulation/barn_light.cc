@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kCornerRays = 14;
 
 // Directions about the z axis, more of them near it as the cosine law has it (a spiral of Fibonacci).
@@ -46,7 +45,7 @@ float light_from_piece(const Vector3f& piece, const WindowLight& window, float a
   const float leaving = -way.dot(window.normal);
   const float arriving = way.dot(normal);
   if (leaving <= 0.0f || arriving <= 0.0f || !still.is_free(point, piece)) return 0.0f;
-  return window.radiance * area * leaving * arriving / (kPi * squared * squared);
+  return window.radiance * area * leaving * arriving / (std::numbers::pi_v<float> * squared * squared);
 }
 
 float light_from_window(const WindowLight& window, const Vector3f& point, const Vector3f& normal,

@@ -12,7 +12,6 @@ namespace {
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kMetresPerStride = 1.5f;
 
 // Where a walk has led: the cow turns within the last metre before either end.
@@ -24,18 +23,19 @@ struct Whereabouts {
 
 Whereabouts whereabouts(const Cow& cow, float time_s) {
   if (!cow.walks) return {cow.position, cow.heading, 0.0f};
-  constexpr float kHalfLoop = 0.5f * kPi * 0.5f;  // metres: half a circle of a radius of 0.25
+  constexpr float kHalfLoop = 0.5f * std::numbers::pi_v<float> * 0.5f;  // metres: half a circle of a radius of 0.25
   const float half = cow.reach + kHalfLoop;
   const float way = cow.speed * (time_s + cow.phase);
   const float along = std::fmod(way, half);
   const bool is_way_back = std::fmod(way, 2.0f * half) >= half;
   Whereabouts here{{std::min(along, cow.reach), 0.0f}, 0.0f, way};
   if (along > cow.reach) {
-    const float turned = (along - cow.reach) / kHalfLoop * kPi;
+    const float turned = (along - cow.reach) / kHalfLoop * std::numbers::pi_v<float>;
     here.position += 0.25f * Eigen::Vector2f(std::sin(turned), 1.0f - std::cos(turned));
     here.heading = turned;
   }
-  if (is_way_back) here = {Eigen::Vector2f(cow.reach, 0.5f) - here.position, here.heading + kPi, way};
+  if (is_way_back)
+    here = {Eigen::Vector2f(cow.reach, 0.5f) - here.position, here.heading + std::numbers::pi_v<float>, way};
   here.position += cow.position;
   return here;
 }
@@ -44,7 +44,7 @@ void add_legs(QuadMesh& mesh, const Isometry3f& world_from_cow, float stride, co
   for (int leg = 0; leg < 4; ++leg) {
     const bool is_front = leg < 2;
     const float y = leg % 2 == 0 ? -0.2f : 0.2f;
-    const float beat = stride + (leg == 0 || leg == 3 ? 0.0f : kPi);  // opposite legs together
+    const float beat = stride + (leg == 0 || leg == 3 ? 0.0f : std::numbers::pi_v<float>);  // opposite legs together
     const Vector3f hip(is_front ? 0.52f : -0.6f, y, 0.85f);
     const Vector3f knee = hip + Vector3f(0.07f * std::sin(beat), 0.0f, -0.42f);
     const Vector3f hoof(hip.x() + 0.18f * std::sin(beat), y, std::max(0.08f * std::cos(beat), 0.0f));
@@ -66,7 +66,7 @@ void add_head(QuadMesh& mesh, const Isometry3f& world_from_cow, float nod, const
 
 void add_cow(QuadMesh& mesh, const Cow& cow, float time_s, std::size_t number) {
   const Whereabouts here = whereabouts(cow, time_s);
-  const float stride = 2.0f * kPi * here.way / kMetresPerStride;
+  const float stride = 2.0f * std::numbers::pi_v<float> * here.way / kMetresPerStride;
   const float bob = cow.walks ? 0.02f * std::sin(2.0f * stride) : 0.0f;
   const float nod = cow.walks ? 0.12f * std::sin(stride) : 0.85f + 0.25f * std::sin(1.1f * (time_s + cow.phase));
   Isometry3f world_from_cow = placed({here.position.x(), here.position.y(), 0.0f}, here.heading);
@@ -95,7 +95,7 @@ std::vector<Cow> cows_of(const CowshedOptions& options, int count) {
     cow.size = draws.between(0.88f, 1.05f);
     cow.speed = cow.walks ? draws.between(0.4f, 0.8f) : 0.0f;
     cow.reach = draws.between(8.0f, 20.0f);
-    cow.heading = -0.5f * kPi * side;  // with the head through the fence
+    cow.heading = -0.5f * std::numbers::pi_v<float> * side;  // with the head through the fence
     const float x = draws.between(2.0f, 26.0f - (cow.walks ? cow.reach : 0.0f));
     cow.position = {x, side * (cow.walks ? 4.6f : 3.55f) - (cow.walks ? 0.25f : 0.0f)};
     cows.push_back(cow);

@@ -58,16 +58,16 @@ FloorPlanImage draw_floor_plan(const std::vector<PlanOutline>& outlines) {
   return plan;
 }
 
-std::vector<PlanPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body) {
+std::vector<MarkPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body) {
   const Pose map_from_world = inverse(world_from_first_body);
-  std::vector<PlanPick> picks;
+  std::vector<MarkPick> picks;
   for (const NamedPoint& mark : marks) {
     picks.push_back({mark.name, map_from_world * mark.point_in_world, mark.point_in_world.head<2>()});
   }
   return picks;
 }
 
-void write_floor_plan(const FloorPlanImage& plan, const std::vector<PlanPick>& picks,
+void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& picks,
                       const std::vector<MarkSighting>& sightings, const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
@@ -78,7 +78,7 @@ void write_floor_plan(const FloorPlanImage& plan, const std::vector<PlanPick>& p
   });
   write_text(folder / "picks.csv", [&](std::ostream& file) {
     file << "#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n";
-    for (const PlanPick& pick : picks) {
+    for (const MarkPick& pick : picks) {
       for (const double value : pick.point_in_map) file << value << ",";
       for (const double value : pick.point_in_plan) file << value << ",";
       file << pick.name << "\n";

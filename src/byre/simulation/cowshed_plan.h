@@ -19,7 +19,7 @@ struct FloorPlanImage {
 FloorPlanImage draw_floor_plan(const std::vector<PlanOutline>& outlines);
 
 // A point as somebody would pick it for a registration of the map on the plan.
-struct PlanPick {
+struct MarkPick {
   std::string name;
   Eigen::Vector3d point_in_map;
   Eigen::Vector2d point_in_plan;
@@ -27,7 +27,7 @@ struct PlanPick {
 
 // The named points of a barn, in the frame that a map has when it is made from a recording whose first frame has the
 // body there (docs/conventions.md: the world of a map).
-std::vector<PlanPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body);
+std::vector<MarkPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body);
 
 // Where a named point is seen in an image of the left camera.
 struct MarkSighting {
@@ -38,7 +38,7 @@ struct MarkSighting {
 
 // Writes plan.png, plan.yaml, picks.csv and pick_pixels.csv into a folder. Throws InputError when a file cannot be
 // written.
-void write_floor_plan(const FloorPlanImage& plan, const std::vector<PlanPick>& picks,
+void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& picks,
                       const std::vector<MarkSighting>& sightings, const std::filesystem::path& folder);
 
 }  // namespace byre

@@ -147,7 +147,7 @@ TEST_F(CowshedVisit, KnowsItsTruthAtEachFrameAndBetween) {
 
 TEST_F(CowshedVisit, GivesPicksInTheFrameOfAMapThatBeginsWithItsFirstFrame) {
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
-  const std::vector<PlanPick> picks = picks_of(recording.barn().marks, world_from_first_body);
+  const std::vector<MarkPick> picks = picks_of(recording.barn().marks, world_from_first_body);
   ASSERT_EQ(picks.size(), recording.barn().marks.size());
   for (std::size_t i = 0; i < picks.size(); ++i) {
     const Vector3d in_world = world_from_first_body * picks[i].point_in_map;

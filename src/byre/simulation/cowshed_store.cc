@@ -12,33 +12,34 @@ using Eigen::Vector3f;
 
 constexpr float kWest = kCowshedSize.length + 0.15f;
 constexpr float kEast = kCowshedSize.length + kCowshedSize.store_length;
-constexpr float kHalfWidth = kCowshedSize.store_half_width;
+constexpr float kStoreHalfWidth = kCowshedSize.store_half_width;
 constexpr float kHeight = kCowshedSize.store_height;
-constexpr float kPlinth = 1.2f;  // metres: the height of concrete walls
+constexpr float kStorePlinth = 1.2f;  // metres: the height of concrete walls
 
 const SurfaceLook kStoreConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
-const SurfaceLook kPlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
-const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.1f};
+const SurfaceLook kStorePlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
+const SurfaceLook kStoreTimber{.picture = BarnPicture::timber, .picture_width = 1.1f};
 
 // A wall between two points on the floor, seen from its right; concrete up to the plinth, planks above.
 void add_wall(QuadMesh& mesh, const Vector3f& from, const Vector3f& to) {
-  add_panel(mesh, from, to - from, {0.0f, 0.0f, kPlinth}, kStoreConcrete);
-  add_panel(mesh, from + Vector3f(0.0f, 0.0f, kPlinth), to - from, {0.0f, 0.0f, kHeight - kPlinth}, kPlanks);
+  add_panel(mesh, from, to - from, {0.0f, 0.0f, kStorePlinth}, kStoreConcrete);
+  add_panel(mesh, from + Vector3f(0.0f, 0.0f, kStorePlinth), to - from, {0.0f, 0.0f, kHeight - kStorePlinth},
+            kStorePlanks);
 }
 
 void add_walls(Cowshed& barn) {
   QuadMesh& mesh = barn.still;
   constexpr float kGate = kCowshedSize.gate_half_width;
-  add_wall(mesh, {kEast, -kHalfWidth, 0.0f}, {kWest, -kHalfWidth, 0.0f});
-  add_wall(mesh, {kWest, -kHalfWidth, 0.0f}, {kWest, -kGate, 0.0f});
-  add_wall(mesh, {kWest, kGate, 0.0f}, {kWest, kHalfWidth, 0.0f});
-  add_wall(mesh, {kWest, kHalfWidth, 0.0f}, {kEast, kHalfWidth, 0.0f});
-  add_wall(mesh, {kEast, kHalfWidth, 0.0f}, {kEast, -kHalfWidth, 0.0f});
+  add_wall(mesh, {kEast, -kStoreHalfWidth, 0.0f}, {kWest, -kStoreHalfWidth, 0.0f});
+  add_wall(mesh, {kWest, -kStoreHalfWidth, 0.0f}, {kWest, -kGate, 0.0f});
+  add_wall(mesh, {kWest, kGate, 0.0f}, {kWest, kStoreHalfWidth, 0.0f});
+  add_wall(mesh, {kWest, kStoreHalfWidth, 0.0f}, {kEast, kStoreHalfWidth, 0.0f});
+  add_wall(mesh, {kEast, kStoreHalfWidth, 0.0f}, {kEast, -kStoreHalfWidth, 0.0f});
   const float lintel = kCowshedSize.gate_height;
-  add_panel(mesh, {kWest, -kGate, lintel}, {0.0f, 2.0f * kGate, 0.0f}, {0.0f, 0.0f, kHeight - lintel}, kPlanks);
+  add_panel(mesh, {kWest, -kGate, lintel}, {0.0f, 2.0f * kGate, 0.0f}, {0.0f, 0.0f, kHeight - lintel}, kStorePlanks);
   const float middle = 0.5f * (kWest + kEast);
-  add_outline_of_box(barn, placed({kEast, 0.0f, 0.0f}), {0.1f, kHalfWidth, 1.0f});
-  for (const float y : {-kHalfWidth, kHalfWidth}) {
+  add_outline_of_box(barn, placed({kEast, 0.0f, 0.0f}), {0.1f, kStoreHalfWidth, 1.0f});
+  for (const float y : {-kStoreHalfWidth, kStoreHalfWidth}) {
     add_outline_of_box(barn, placed({middle, y, 0.0f}), {0.5f * (kEast - kWest), 0.1f, 1.0f});
   }
 }
@@ -51,13 +52,14 @@ void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
     add_panel(barn.still, {kWest, to_y, kHeight}, {length, 0.0f, 0.0f}, {0.0f, from_y - to_y, 0.0f}, look);
   };
   const SurfaceLook sheet{.picture = BarnPicture::roof_sheet, .picture_width = 2.2f};
-  add_part(-kHalfWidth, -kStrip, sheet);
-  add_part(kStrip, kHalfWidth, sheet);
+  add_part(-kStoreHalfWidth, -kStrip, sheet);
+  add_part(kStrip, kStoreHalfWidth, sheet);
   SurfaceLook sky = sheet;
   sky.glow = daylight;
   add_part(-kStrip, kStrip, sky);
   for (float x = kWest + 1.2f; x < kEast; x += 2.1f) {
-    add_box(barn.still, placed({x, 0.0f, kHeight - 0.13f}), {0.07f, kHalfWidth, 0.12f}, varied(kTimber, draws));
+    add_box(barn.still, placed({x, 0.0f, kHeight - 0.13f}), {0.07f, kStoreHalfWidth, 0.12f},
+            varied(kStoreTimber, draws));
   }
   barn.light.windows.push_back({{0.5f * (kWest + kEast), 0.0f, kHeight},
                                 {0.5f * length, 0.0f, 0.0f},
@@ -74,10 +76,10 @@ void add_bales(Cowshed& barn, SeededDraws& draws) {
     const int layers = 2 + draws.below(5);
     for (int layer = 0; layer < layers; ++layer) {
       const float z = (2.0f * static_cast<float>(layer) + 1.0f) * half_size.z();
-      const Vector3f place(x + draws.between(-0.05f, 0.05f), kHalfWidth - 0.4f - draws.between(0.0f, 0.3f), z);
+      const Vector3f place(x + draws.between(-0.05f, 0.05f), kStoreHalfWidth - 0.4f - draws.between(0.0f, 0.3f), z);
       add_box(barn.still, placed(place, draws.between(-0.12f, 0.12f)), half_size, varied(straw, draws));
     }
-    add_outline_of_box(barn, placed({x, kHalfWidth - 0.5f, 0.0f}), half_size);
+    add_outline_of_box(barn, placed({x, kStoreHalfWidth - 0.5f, 0.0f}), half_size);
   }
 }
 
@@ -89,7 +91,7 @@ void add_heap(QuadMesh& mesh, float x, float length, SeededDraws& draws) {
     const float slope = std::cos(0.5f * std::numbers::pi_v<float> * v);
     const float uneven = 1.0f + 0.13f * std::sin(11.0f * u + phases[0]) + 0.1f * std::sin(7.0f * v + 17.0f * u) +
                          0.06f * std::sin(31.0f * u + 19.0f * v + phases[1]);
-    return {x + u * length, -kHalfWidth + v * (0.6f + 1.4f * end), 1.7f * end * slope * uneven + 0.004f};
+    return {x + u * length, -kStoreHalfWidth + v * (0.6f + 1.4f * end), 1.7f * end * slope * uneven + 0.004f};
   };
   const SurfaceLook feed{.picture = BarnPicture::feed, .brightness = 0.9f, .picture_width = 1.1f};
   add_grid(
@@ -111,7 +113,7 @@ void add_stock(Cowshed& barn, SeededDraws& draws) {
     add_outline_of_box(barn, placed(foot), {0.29f, 0.29f, 0.9f});
   }
   for (const float z : {1.5f, 2.1f}) {
-    add_box(barn.still, placed({kEast - 0.2f, 0.4f, z}), {0.2f, 2.8f, 0.02f}, varied(kTimber, draws));
+    add_box(barn.still, placed({kEast - 0.2f, 0.4f, z}), {0.2f, 2.8f, 0.02f}, varied(kStoreTimber, draws));
     for (float y = -2.2f; y < 3.0f; y += 0.3f) {
       const float height = draws.between(0.05f, 0.2f);
       add_box(barn.still, placed({kEast - 0.2f, y, z + height}, draws.between(-0.4f, 0.4f)), {0.1f, 0.1f, height},
@@ -124,8 +126,8 @@ void add_stock(Cowshed& barn, SeededDraws& draws) {
 
 void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed) {
   SeededDraws draws(seed, 25);
-  add_panel(barn.still, {kCowshedSize.length, -kHalfWidth, 0.0f}, {kEast - kCowshedSize.length, 0.0f, 0.0f},
-            {0.0f, 2.0f * kHalfWidth, 0.0f}, kStoreConcrete, 0.4f);
+  add_panel(barn.still, {kCowshedSize.length, -kStoreHalfWidth, 0.0f}, {kEast - kCowshedSize.length, 0.0f, 0.0f},
+            {0.0f, 2.0f * kStoreHalfWidth, 0.0f}, kStoreConcrete, 0.4f);
   add_walls(barn);
   add_ceiling(barn, time == BarnTime::day ? 3.0f : 0.12f, draws);
   add_bales(barn, draws);

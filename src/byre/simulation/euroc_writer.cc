@@ -70,7 +70,7 @@ void write_camera(const fs::path& folder, const Camera& camera, const Pose& body
   fs::create_directories(folder / "data", failure);
 }
 
-void write_image(const fs::path& folder, const Image& image, Timestamp time) {
+void write_recorded_image(const fs::path& folder, const Image& image, Timestamp time) {
   const fs::path path = folder / "data" / image_name(time);
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
@@ -139,8 +139,8 @@ void write_true_calibration(const Calibration& calibration, const std::vector<Ti
 }
 
 void EurocWriter::write(const ImageFrame& frame) const {
-  write_image(mav_ / "cam0", frame.left, frame.time);
-  if (frame.right) write_image(mav_ / "cam1", *frame.right, frame.time);
+  write_recorded_image(mav_ / "cam0", frame.left, frame.time);
+  if (frame.right) write_recorded_image(mav_ / "cam1", *frame.right, frame.time);
 }
 
 }  // namespace byre

@@ -10,20 +10,19 @@
 namespace byre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStep_s = 0.005;          // time between samples of the way travelled
 constexpr double kOverlap = 1.0;           // metres driven beyond a whole lap
 constexpr double kShortestStraight = 4.0;  // metres
 constexpr int kTurnSteps = 2000;
 
-double smooth_step(double x) {
+double eased(double x) {
   const double part = std::clamp(x, 0.0, 1.0);
   return part * part * (3.0 - 2.0 * part);
 }
 
 // Radians turned after a part of a half turn: the curvature rises from nothing and falls back to it.
 double turned(double part) {
-  return kPi * part - 0.5 * std::sin(2.0 * kPi * part);
+  return std::numbers::pi * part - 0.5 * std::sin(2.0 * std::numbers::pi * part);
 }
 
 // Positions along a half turn to the left of length 1 that begins at the origin along x.
@@ -42,7 +41,7 @@ double vibration(double time_s, double amplitude, std::uint64_t seed, std::uint6
   double sum = 0.0;
   for (const float fastest : {1.6f, 3.5f, 7.0f}) {  // hertz
     const double frequency = draws.between(0.6f * fastest, fastest);
-    sum += std::sin(2.0 * kPi * (frequency * time_s + draws.between(0.0f, 1.0f))) / std::sqrt(fastest);
+    sum += std::sin(2.0 * std::numbers::pi * (frequency * time_s + draws.between(0.0f, 1.0f))) / std::sqrt(fastest);
   }
   return 0.7 * amplitude * sum;
 }
@@ -103,8 +102,8 @@ std::vector<double> FeedingCourse::drive(double straight) const {
     const double to_turn = std::min(along, straight - along);  // negative in the turn
     constexpr double kSlowing = 1.5;                           // metres
     const double speed =
-        options_.turn_speed + (options_.cruise_speed - options_.turn_speed) * smooth_step(to_turn / kSlowing);
-    travelled.push_back(travelled.back() + kStep_s * speed * smooth_step((i + 0.5) * kStep_s / kStart_s));
+        options_.turn_speed + (options_.cruise_speed - options_.turn_speed) * eased(to_turn / kSlowing);
+    travelled.push_back(travelled.back() + kStep_s * speed * eased((i + 0.5) * kStep_s / kStart_s));
   }
   return travelled;
 }
@@ -138,7 +137,7 @@ FeedingCourse::PathPoint FeedingCourse::path_point(double along_lap) const {
     point.position.x() += straight_;
   }
   point.position -= Eigen::Vector2d(0.5 * straight_, 0.5 * options_.lane_distance);
-  if (is_way_back) point = {-point.position, point.heading + kPi};
+  if (is_way_back) point = {-point.position, point.heading + std::numbers::pi};
   point.position += Eigen::Vector2d(far_x() - 0.5 * straight_, options_.shift_y);
   return point;
 }
@@ -148,7 +147,7 @@ Pose FeedingCourse::world_from_body(double time_s) const {
   constexpr double kBounce = 0.002;  // metres
   const double way = travelled(time_s);
   const PathPoint point = path_point(lap_length() * options_.start + way);
-  const double driving = smooth_step(way / 0.5);  // nothing shakes while the robot stands
+  const double driving = eased(way / 0.5);  // nothing shakes while the robot stands
   const auto shake = [&](double amplitude, std::uint64_t axis) {
     return driving * vibration(time_s, amplitude, options_.seed, axis);
   };

@@ -8,15 +8,16 @@ namespace {
 using Eigen::Vector2f;
 using ::testing::FloatNear;
 
-constexpr int kSize = 64;
-constexpr float kTexel = 1.0f / kSize;
+constexpr int kTextureSize = 64;
+constexpr float kTexel = 1.0f / kTextureSize;
 constexpr float kStep = 1.0f / 255.0f;  // step between values that are stored
 
 // Columns of 0 and 1 in turn, so many texels wide.
 MipTexture columns(int width) {
   std::vector<float> texels;
-  for (int i = 0; i < kSize * kSize; ++i) texels.push_back(i % kSize / width % 2 == 0 ? 0.0f : 1.0f);
-  return {kSize, texels};
+  for (int i = 0; i < kTextureSize * kTextureSize; ++i)
+    texels.push_back(i % kTextureSize / width % 2 == 0 ? 0.0f : 1.0f);
+  return {kTextureSize, texels};
 }
 
 TEST(MipTexture, GivesItsTexelsAtTheirCentres) {

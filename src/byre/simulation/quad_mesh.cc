@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kFullTurn = 2.0f * std::numbers::pi_v<float>;
+constexpr float kRound = 2.0f * std::numbers::pi_v<float>;
 
 int facets_along(float length, float max_facet) {
   return std::max(1, static_cast<int>(std::ceil(length / max_facet - 1e-3f)));
@@ -41,19 +41,19 @@ void add_mantle(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float 
   const auto [first, second] = across(bar.normalized());
   const auto point_at = [&, first = first, second = second](float u, float v) -> Vector3f {
     const float radius = from_radius + v * (to_radius - from_radius);
-    return from + v * bar + radius * (std::cos(kFullTurn * u) * first + std::sin(kFullTurn * u) * second);
+    return from + v * bar + radius * (std::cos(kRound * u) * first + std::sin(kRound * u) * second);
   };
   add_grid(mesh, facets, facets_along(bar.norm(), 1.0f), point_at,
-           {kFullTurn * std::max(from_radius, to_radius), bar.norm()}, look);
+           {kRound * std::max(from_radius, to_radius), bar.norm()}, look);
 }
 
 void add_disc(QuadMesh& mesh, const Vector3f& centre, const Vector3f& normal, float radius, const SurfaceLook& look) {
   const auto [first, second] = across(normal);
   const auto point_at = [&, first = first, second = second](float u, float v) -> Vector3f {
     const float distance = radius * std::max(1.0f - v, 1e-3f);
-    return centre + distance * (std::cos(kFullTurn * u) * first + std::sin(kFullTurn * u) * second);
+    return centre + distance * (std::cos(kRound * u) * first + std::sin(kRound * u) * second);
   };
-  add_grid(mesh, 12, 1, point_at, {kFullTurn * radius, radius}, look);
+  add_grid(mesh, 12, 1, point_at, {kRound * radius, radius}, look);
 }
 
 }  // namespace
@@ -131,11 +131,11 @@ void add_ellipsoid(QuadMesh& mesh, const Eigen::Isometry3f& world_from_ellipsoid
                    const SurfaceLook& look, int facets) {
   const auto point_at = [&](float u, float v) -> Vector3f {
     const float height = std::numbers::pi_v<float> * (v - 0.5f) * 0.998f;  // the poles have a little width
-    const Vector3f direction(std::cos(height) * std::cos(kFullTurn * u), std::cos(height) * std::sin(kFullTurn * u),
+    const Vector3f direction(std::cos(height) * std::cos(kRound * u), std::cos(height) * std::sin(kRound * u),
                              std::sin(height));
     return world_from_ellipsoid * Vector3f(radii.cwiseProduct(direction));
   };
-  const Vector2f size(kFullTurn * std::max(radii.x(), radii.y()), std::numbers::pi_v<float> * radii.z());
+  const Vector2f size(kRound * std::max(radii.x(), radii.y()), std::numbers::pi_v<float> * radii.z());
   add_grid(mesh, 2 * facets, facets, point_at, size, look);
 }
 

@@ -12,14 +12,14 @@ namespace {
 using ::testing::Each;
 using ::testing::FloatNear;
 
-constexpr int kSize = 32;
+constexpr int kCanvasSize = 32;
 
 float texel(const TilingCanvas& canvas, int column, int row) {
-  return canvas.texels()[static_cast<std::size_t>(row * kSize + column)];
+  return canvas.texels()[static_cast<std::size_t>(row * kCanvasSize + column)];
 }
 
 TEST(TilingCanvas, DrawsAStrokeAsLongAndWideAsAskedFor) {
-  TilingCanvas canvas(kSize, 0.0f);
+  TilingCanvas canvas(kCanvasSize, 0.0f);
   canvas.draw({.x = 4.0f, .y = 10.0f, .direction = 0.0f, .length = 12.0f, .width = 3.0f, .reflectance = 1.0f});
   EXPECT_EQ(texel(canvas, 8, 10), 1.0f);
   EXPECT_EQ(texel(canvas, 8, 11), 1.0f);
@@ -29,7 +29,7 @@ TEST(TilingCanvas, DrawsAStrokeAsLongAndWideAsAskedFor) {
 }
 
 TEST(TilingCanvas, ContinuesAStrokeOnTheOtherSide) {
-  TilingCanvas canvas(kSize, 0.0f);
+  TilingCanvas canvas(kCanvasSize, 0.0f);
   constexpr float kUp = 0.5f * std::numbers::pi_v<float>;
   canvas.draw({.x = 5.0f, .y = 28.0f, .direction = kUp, .length = 10.0f, .width = 1.0f, .reflectance = 1.0f});
   EXPECT_NEAR(texel(canvas, 5, 30), 1.0f, 1e-4f);
@@ -38,21 +38,21 @@ TEST(TilingCanvas, ContinuesAStrokeOnTheOtherSide) {
 }
 
 TEST(TilingCanvas, FillsEachTexel) {
-  TilingCanvas canvas(kSize, 0.25f);
+  TilingCanvas canvas(kCanvasSize, 0.25f);
   canvas.fill([](int, int, float before) { return before + 0.5f; });
   EXPECT_THAT(canvas.texels(), Each(FloatNear(0.75f, 1e-6f)));
 }
 
 TEST(TilingNoise, VariesWithoutAStepWhereItRepeats) {
-  const std::vector<float> noise = tiling_noise(kSize, 4, 4, 1, 7);
-  const auto at = [&](int column, int row) { return noise[static_cast<std::size_t>(row * kSize + column)]; };
+  const std::vector<float> noise = tiling_noise(kCanvasSize, 4, 4, 1, 7);
+  const auto at = [&](int column, int row) { return noise[static_cast<std::size_t>(row * kCanvasSize + column)]; };
   float largest_step = 0.0f;
-  for (int i = 0; i < kSize; ++i) {
-    for (int j = 0; j + 1 < kSize; ++j) largest_step = std::max(largest_step, std::abs(at(j, i) - at(j + 1, i)));
+  for (int i = 0; i < kCanvasSize; ++i) {
+    for (int j = 0; j + 1 < kCanvasSize; ++j) largest_step = std::max(largest_step, std::abs(at(j, i) - at(j + 1, i)));
   }
-  for (int i = 0; i < kSize; ++i) {
-    EXPECT_LE(std::abs(at(kSize - 1, i) - at(0, i)), 1.5f * largest_step);
-    EXPECT_LE(std::abs(at(i, kSize - 1) - at(i, 0)), 1.5f * largest_step);
+  for (int i = 0; i < kCanvasSize; ++i) {
+    EXPECT_LE(std::abs(at(kCanvasSize - 1, i) - at(0, i)), 1.5f * largest_step);
+    EXPECT_LE(std::abs(at(i, kCanvasSize - 1) - at(i, 0)), 1.5f * largest_step);
   }
   EXPECT_GT(*std::ranges::max_element(noise) - *std::ranges::min_element(noise), 0.5f);
 }

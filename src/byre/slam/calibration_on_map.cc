@@ -11,20 +11,20 @@
 namespace byre {
 namespace {
 
-constexpr int kMinPoints = 40;  // offline points in a frame that counts
-constexpr int kMaxRows = 60;    // stereo matches of a frame whose rows are looked at
+constexpr int kMinOfflinePoints = 40;  // offline points in a frame that counts
+constexpr int kMaxRows = 60;           // stereo matches of a frame whose rows are looked at
 // Weight of a frame: points and their places err together from frame to frame.
 constexpr double kIndependence = 0.1;
 
-constexpr double kHuberWidth = 2.0;       // sigmas
-constexpr double kSystematicSigma = 0.2;  // pixels, errors that neither noise nor the calibration explains
-constexpr int kMaxPoints = 120;           // most points of a frame that are asked
+constexpr double kCalibrationHuberWidth = 2.0;  // sigmas
+constexpr double kSystematicSigma = 0.2;        // pixels, errors that neither noise nor the calibration explains
+constexpr int kMaxPoints = 120;                 // most points of a frame that are asked
 
 using ByPose = Eigen::Matrix<double, 3, 6>;
 using ByCalibration = Eigen::Matrix<double, 3, kCalibrationParameters>;
 
 // One offline point in a frame: what was measured less what pose and point say, and how both answer; in sigmas.
-struct Row {
+struct CalibrationRow {
   Eigen::Vector3d residual;
   ByPose by_pose;
   ByCalibration by_calibration;
@@ -39,8 +39,9 @@ Eigen::Vector3d sigmas_of(const TrackedFeature& feature, const Keypoint& keypoin
   return (Eigen::Vector3d(pixel, pixel, disparity) + of_point).cwiseSqrt();
 }
 
-std::optional<Row> row_of(const TrackedFeature& feature, const Keypoint& keypoint, const MapPoint& point,
-                          const Pose& camera_from_world, const Rig& rig, const CalibrationSensitivity& sensitivity) {
+std::optional<CalibrationRow> row_of(const TrackedFeature& feature, const Keypoint& keypoint, const MapPoint& point,
+                                     const Pose& camera_from_world, const Rig& rig,
+                                     const CalibrationSensitivity& sensitivity) {
   const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
   if (point_in_camera.z() <= 0.0) return std::nullopt;
   const StereoJacobian by_camera = rig.projection_jacobian(point_in_camera);
@@ -50,14 +51,14 @@ std::optional<Row> row_of(const TrackedFeature& feature, const Keypoint& keypoin
   if (!keypoint.has_disparity()) weights.z() = 0.0;
   const StereoPixel measured(feature.pixel.x(), feature.pixel.y(), keypoint.disparity);
   StereoPixel expected = rig.project(point_in_camera);
-  Row row;
+  CalibrationRow row;
   row.residual = weights.asDiagonal() * (measured - expected);
   row.by_pose << by_camera, -by_camera * skew(point_in_camera);
   row.by_pose = weights.asDiagonal() * row.by_pose;
   if (!keypoint.has_disparity()) expected.z() = 0.0;
   row.by_calibration = weights.asDiagonal() * sensitivity.at(expected).topRows<3>();
-  const double influence = std::sqrt(huber_weight(row.residual.squaredNorm(), kHuberWidth));
-  return Row{influence * row.residual, influence * row.by_pose, influence * row.by_calibration};
+  const double influence = std::sqrt(huber_weight(row.residual.squaredNorm(), kCalibrationHuberWidth));
+  return CalibrationRow{influence * row.residual, influence * row.by_pose, influence * row.by_calibration};
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFram
   for (const TrackedFeature& feature : tracked.features) {
     if (feature.point.origin == Origin::offline) offline.push_back(&feature);
   }
-  if (static_cast<int>(offline.size()) < kMinPoints) return;
+  if (static_cast<int>(offline.size()) < kMinOfflinePoints) return;
   const std::size_t stride = 1 + offline.size() / kMaxPoints;
   Matrix6 pose_pose = Matrix6::Zero();
   Eigen::Matrix<double, 6, kCalibrationParameters> pose_calibration;
@@ -111,7 +112,7 @@ void CalibrationOnMap::add_rows(const Features& features, const CalibrationVecto
         sensitivity_.at({keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity}).row(3);
     const double sigma = std::hypot(static_cast<double>(keypoint.disparity_sigma), kSystematicSigma);
     const double residual = keypoint.row_offset / sigma;
-    const double weight = kIndependence * huber_weight(residual * residual, kHuberWidth) / (sigma * sigma);
+    const double weight = kIndependence * huber_weight(residual * residual, kCalibrationHuberWidth) / (sigma * sigma);
     information_.noalias() += weight * row.transpose() * row;
     right_side_ += weight * (keypoint.row_offset + row.dot(change)) * row.transpose();
   }

@@ -13,7 +13,7 @@ namespace {
 using ::testing::IsEmpty;
 
 constexpr WindowOptions kWindow{.movable = 6, .anchors = 4};
-constexpr KeyframeId kNewest{Origin::online, 19};
+constexpr KeyframeId kNewestKeyframe{Origin::online, 19};
 
 // Outliers leave features that see no point.
 Map make_map() {
@@ -174,7 +174,7 @@ void expect_same(const Map& map, const MapWindow& window) {
 
 TEST(Difference, OfAnUnchangedWindowIsNothing) {
   const Map map = make_map();
-  const MapWindow window = cut_window(map, {kNewest}, kWindow);
+  const MapWindow window = cut_window(map, {kNewestKeyframe}, kWindow);
   const MapDelta delta = difference(window, window);
   EXPECT_THAT(delta.moved_keyframes, IsEmpty());
   EXPECT_THAT(delta.updated_points, IsEmpty());
@@ -213,7 +213,7 @@ class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
   }
 
   Map map_ = make_map();
-  const MapWindow before_ = cut_window(map_, {kNewest}, kWindow);
+  const MapWindow before_ = cut_window(map_, {kNewestKeyframe}, kWindow);
   const MapWindow after_ = changed(before_, GetParam());
 };
 
@@ -243,10 +243,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomDelta, ::testing::Range(std::uint64_t{1}, 
 // A window over a map of which some points are seen once only.
 TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
   Map map = make_map();
-  const PointId id = *map.find_keyframe(kNewest)->sightings.front().point;
+  const PointId id = *map.find_keyframe(kNewestKeyframe)->sightings.front().point;
   const std::vector<Observation> seen_by = map.observations(id);
   for (std::size_t i = 1; i < seen_by.size(); ++i) map.remove_observation(seen_by[i]);
-  const MapWindow before = cut_window(map, {kNewest}, kWindow);
+  const MapWindow before = cut_window(map, {kNewestKeyframe}, kWindow);
 
   MapWindow after = before;
   const auto point = static_cast<int>(std::ranges::find(after.points, id, &WindowPoint::id) - after.points.begin());
@@ -268,12 +268,12 @@ TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
 class DeltaOfForeignViews : public ::testing::Test {
  protected:
   DeltaOfForeignViews() {
-    for (const Sighting& sighting : scene_.online.find_keyframe(kNewest)->sightings) {
+    for (const Sighting& sighting : scene_.online.find_keyframe(kNewestKeyframe)->sightings) {
       if (sighting.point && sighting.point->origin == Origin::online) points_.push_back(*sighting.point);
     }
     const WindowOptions options{.movable = 1, .anchors = 0, .offline_anchors = 1};
     EXPECT_TRUE(scene_.online.add_foreign_view(view_of(0, points_[0])));
-    before_ = cut_window(scene_.view(), {kNewest}, options);
+    before_ = cut_window(scene_.view(), {kNewestKeyframe}, options);
     after_ = before_;
   }
 
@@ -340,7 +340,7 @@ TEST_F(DeltaOfForeignViews, ComeWithANewPoint) {
       static_cast<int>(std::ranges::find_if(features, [](int point) { return point >= 0; }) - features.begin());
   remove_observation(after_, {0, own});
   WindowPoint made;
-  made.point.reference = {kNewest, own};
+  made.point.reference = {kNewestKeyframe, own};
   after_.points.push_back(made);
   const int index = static_cast<int>(after_.points.size()) - 1;
   add_observation(after_, index, {0, own}, {});
@@ -348,7 +348,7 @@ TEST_F(DeltaOfForeignViews, ComeWithANewPoint) {
   apply_difference();
   const auto point = scene_.online.point_of_foreign_view({kOffline, free_feature(1)});
   ASSERT_TRUE(point);
-  EXPECT_EQ(scene_.online.find_keyframe(kNewest)->sightings[static_cast<std::size_t>(own)].point, point);
+  EXPECT_EQ(scene_.online.find_keyframe(kNewestKeyframe)->sightings[static_cast<std::size_t>(own)].point, point);
 }
 
 TEST_F(DeltaOfForeignViews, KeepAFeatureThatAnotherPointWasGivenMeanwhile) {
@@ -361,7 +361,7 @@ TEST_F(DeltaOfForeignViews, KeepAFeatureThatAnotherPointWasGivenMeanwhile) {
 
 TEST(Apply, DropsANewPointThatOnlyOneKeyframeCanStillSee) {
   Map map = make_map();
-  const MapWindow before = cut_window(map, {kNewest}, kWindow);
+  const MapWindow before = cut_window(map, {kNewestKeyframe}, kWindow);
   MapWindow after = before;
   WindowPoint made;
   made.point.reference = {after.keyframes[0].id, 0};

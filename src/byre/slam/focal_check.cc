@@ -11,10 +11,10 @@ namespace {
 // sigmas. Of an error of 0.05 they say 0.013 at least, and four sigmas: points that would tell of more are not found
 // where they are expected.
 constexpr double kMaxError = 0.01;
-constexpr double kMinSigmas = 3.0;  // sigmas by which an error differs from none
-constexpr double kRelease = 0.5;    // share of both bounds below which a focal length is right again
-constexpr int kMinPoints = 60;      // points of a frame that counts
-constexpr double kMemory = 0.85;    // share of what earlier frames told that is kept from frame to frame
+constexpr double kMinSigmas = 3.0;     // sigmas by which an error differs from none
+constexpr double kRelease = 0.5;       // share of both bounds below which a focal length is right again
+constexpr int kMinFramePoints = 60;    // points of a frame that counts
+constexpr double kFocalMemory = 0.85;  // share of what earlier frames told that is kept from frame to frame
 
 double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations) {
   constexpr double kMaxSquaredError = 16.0;  // pixels: what is farther off is something else
@@ -62,9 +62,9 @@ bool FocalCheck::is_due() {
 }
 
 void FocalCheck::note(const FocalEvidence& evidence) {
-  if (evidence.points < kMinPoints) return;
+  if (evidence.points < kMinFramePoints) return;
   ++asked_;
-  const auto blend = [](double& sum, double now) { sum = kMemory * sum + now; };
+  const auto blend = [](double& sum, double now) { sum = kFocalMemory * sum + now; };
   blend(sum_.shorter, evidence.shorter);
   blend(sum_.as_it_is, evidence.as_it_is);
   blend(sum_.longer, evidence.longer);

@@ -213,7 +213,7 @@ bool scale_may_drift(const MapWindow& window) {
 MapWindow whole_map(const MapView& map) {
   MapWindow window = window_of(map, map.online().keyframe_ids());
   for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = true;
-  hold_the_world(window, kMinOfflineSightings);
+  fix_gauge(window, kMinOfflineSightings);
   return window;
 }
 

@@ -38,17 +38,17 @@ std::optional<Projection> project_from_origin(const MapPoint& point) {
   return project_point(point, Pose{}, Eigen::Vector3d::Zero(), simulated_rig());
 }
 
-struct Corner {
+struct CornerShape {
   Eigen::Vector2f pixel;
   Descriptor descriptor{};
   std::uint8_t octave = 0;
   float disparity = -1.0f;
 };
 
-Features make_features(const std::vector<Corner>& corners) {
+Features make_features(const std::vector<CornerShape>& corners) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
-  for (const Corner& corner : corners) {
+  for (const CornerShape& corner : corners) {
     Keypoint keypoint;
     keypoint.pixel = corner.pixel;
     keypoint.octave = corner.octave;

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-constexpr double kMinShare = 0.7;  // share of the points still in the map that agree on the pose
+constexpr double kMinShareAgreeing = 0.7;  // share of the points still in the map that agree on the pose
 
 RememberedPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
   return {seen.point,
@@ -68,7 +68,7 @@ std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& 
       observations.push_back(observation_of(seen, *point, tracking.offline_weight));
     }
   }
-  const double needed = kMinShare * static_cast<double>(observations.size());
+  const double needed = kMinShareAgreeing * static_cast<double>(observations.size());
   PoseRefinementOptions refinement;
   refinement.rounds = 2;  // from where it is nearly right
   const auto refined =

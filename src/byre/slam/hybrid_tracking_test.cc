@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kFrame = 20;
+constexpr std::size_t kFrameTracked = 20;
 
 Pose shift_by(double metres) {
   return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
@@ -55,7 +55,7 @@ class TrackHybrid : public ::testing::Test {
     candidates.insert(candidates.end(), online.begin(), online.end());
     TrackOptions options;
     options.offline_policy = policy;
-    return track_hybrid(now_.frames[kFrame], predicted, now_.rig, {&offline_, online_}, candidates, options);
+    return track_hybrid(now_.frames[kFrameTracked], predicted, now_.rig, {&offline_, online_}, candidates, options);
   }
 
   // What the offline map has in this share of the image's width, from the left.
@@ -85,7 +85,7 @@ class TrackHybrid : public ::testing::Test {
   const SimulatedMission before_ = quarter_circle(visit(1));
   const SimulatedMission earlier_ = quarter_circle(visit(2));
   const SimulatedMission now_ = quarter_circle(visit(3));
-  const Pose truth_ = true_camera_from_world(now_, kFrame);
+  const Pose truth_ = true_camera_from_world(now_, kFrameTracked);
   Map offline_ = true_map(before_, 4, Origin::offline);
   Map online_ = true_map(earlier_, 4, Origin::online);
 };
@@ -183,7 +183,7 @@ TEST_F(TrackHybrid, LooksForPointsWithoutGivingThemASay) {
   std::vector<PointId> shelf;
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
   const auto look = [&] {
-    return look_for_points(now_.frames[kFrame], truth_, now_.rig, {&offline_, online_}, shelf, {});
+    return look_for_points(now_.frames[kFrameTracked], truth_, now_.rig, {&offline_, online_}, shelf, {});
   };
   const PlacedPoints before = look();
   EXPECT_GT(before.agreed.size(), 10U);
@@ -246,7 +246,8 @@ TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
   for (const double weight : {0.2, 1.0, 20.0}) {
     TrackOptions options;
     options.offline_weight = weight;
-    const auto track = track_hybrid(now_.frames[kFrame], truth_, now_.rig, {&offline_, online_}, candidates, options);
+    const auto track =
+        track_hybrid(now_.frames[kFrameTracked], truth_, now_.rig, {&offline_, online_}, candidates, options);
     ASSERT_TRUE(track);
     EXPECT_GT(track->online_inliers(), 30);
     errors.push_back((inverse(track->tracked.camera_from_world).translation - inverse(truth_).translation).norm());
@@ -259,7 +260,7 @@ TEST_F(TrackHybrid, FindsNothingInAnotherRoom) {
   another_room.seed = 99;
   const SimulatedMission elsewhere = quarter_circle(another_room);
   const auto track =
-      track_hybrid(elsewhere.frames[kFrame], truth_, now_.rig, {&offline_, online_}, offline_.point_ids(), {});
+      track_hybrid(elsewhere.frames[kFrameTracked], truth_, now_.rig, {&offline_, online_}, offline_.point_ids(), {});
   EXPECT_FALSE(track);
 }
 

@@ -14,9 +14,9 @@ using ::testing::Gt;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr KeyframeId kFirst{Origin::online, 0};
-constexpr KeyframeId kNewest{Origin::online, 19};
-constexpr WindowOptions kSmall{
+constexpr KeyframeId kFirstOnline{Origin::online, 0};
+constexpr KeyframeId kNewestOnline{Origin::online, 19};
+constexpr WindowOptions kSmallHybrid{
     .movable = 5, .anchors = 4, .offline_anchors = 3, .sightings_in_place_of_anchors = 100000};
 
 const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservation& seen) {
@@ -31,7 +31,7 @@ int count(const MapWindow& window, bool offline, bool movable) {
 
 class HybridWindow : public ::testing::Test {
  protected:
-  MapWindow cut(KeyframeId newest, const WindowOptions& options = kSmall) const {
+  MapWindow cut(KeyframeId newest, const WindowOptions& options = kSmallHybrid) const {
     return cut_window(scene_.view(), {newest}, options);
   }
 
@@ -54,28 +54,28 @@ class HybridWindow : public ::testing::Test {
 };
 
 TEST_F(HybridWindow, NeedsNoOnlineAnchorsWhereEnoughOfflinePointsHoldIt) {
-  WindowOptions options = kSmall;
+  WindowOptions options = kSmallHybrid;
   options.sightings_in_place_of_anchors = 50;
-  const MapWindow window = cut_window(scene_.view(), {kNewest}, options);
-  EXPECT_EQ(count(window, false, true), kSmall.movable);
+  const MapWindow window = cut_window(scene_.view(), {kNewestOnline}, options);
+  EXPECT_EQ(count(window, false, true), kSmallHybrid.movable);
   EXPECT_EQ(count(window, false, false), 0);
-  EXPECT_EQ(count(window, true, false), kSmall.offline_anchors);
+  EXPECT_EQ(count(window, true, false), kSmallHybrid.offline_anchors);
 }
 
 TEST_F(HybridWindow, HoldsAnchorsOfBothMaps) {
-  const MapWindow window = cut(kNewest);
-  EXPECT_EQ(count(window, false, true), kSmall.movable);
-  EXPECT_EQ(count(window, false, false), kSmall.anchors);
-  EXPECT_EQ(count(window, true, false), kSmall.offline_anchors);
+  const MapWindow window = cut(kNewestOnline);
+  EXPECT_EQ(count(window, false, true), kSmallHybrid.movable);
+  EXPECT_EQ(count(window, false, false), kSmallHybrid.anchors);
+  EXPECT_EQ(count(window, true, false), kSmallHybrid.offline_anchors);
   EXPECT_EQ(count(window, true, true), 0);
-  EXPECT_EQ(window.keyframes.front().id, kNewest);
+  EXPECT_EQ(window.keyframes.front().id, kNewestOnline);
   for (const WindowKeyframe& keyframe : window.keyframes) {
-    EXPECT_EQ(keyframe.is_new, keyframe.id == kNewest);
+    EXPECT_EQ(keyframe.is_new, keyframe.id == kNewestOnline);
   }
 }
 
 TEST_F(HybridWindow, TakesThoseOfflineKeyframesThatSeeMostPointsOfTheNewest) {
-  const MapWindow window = cut(kNewest);
+  const MapWindow window = cut(kNewestOnline);
   std::set<PointId> seen;
   for (const Sighting& sighting : window.keyframes.front().keyframe.sightings) {
     if (sighting.point) seen.insert(*sighting.point);
@@ -103,14 +103,14 @@ TEST_F(HybridWindow, KnowsTheRigsOfBothMaps) {
   offline.add_rig(other);
   for (const PointId id : scene_.offline.point_ids()) offline.add_point(*scene_.offline.find_point(id));
   for (const KeyframeId id : scene_.offline.keyframe_ids()) offline.add_keyframe(*scene_.offline.find_keyframe(id));
-  const MapWindow window = cut_window({&offline, scene_.online}, {kNewest}, kSmall);
+  const MapWindow window = cut_window({&offline, scene_.online}, {kNewestOnline}, kSmallHybrid);
   for (const WindowKeyframe& keyframe : window.keyframes) {
     EXPECT_EQ(window.rig_of(keyframe).baseline, is_offline(keyframe) ? other.baseline : scene_.first.rig.baseline);
   }
 }
 
 TEST_F(HybridWindow, HoldsAllPointsOfMovableAndOfOfflineKeyframes) {
-  const MapWindow window = cut(kNewest);
+  const MapWindow window = cut(kNewestOnline);
   for (const WindowKeyframe& keyframe : window.keyframes) {
     if (keyframe.movable || is_offline(keyframe)) {
       EXPECT_THAT(keyframe.point_of_feature, Each(Not(kPointElsewhere)));
@@ -119,7 +119,7 @@ TEST_F(HybridWindow, HoldsAllPointsOfMovableAndOfOfflineKeyframes) {
 }
 
 TEST_F(HybridWindow, LinksOfflinePointsToTheKeyframesOfBothMaps) {
-  const MapWindow window = cut(kNewest);
+  const MapWindow window = cut(kNewestOnline);
   int by_online = 0;
   for (const WindowPoint& point : window.points) {
     const std::size_t all =
@@ -132,12 +132,12 @@ TEST_F(HybridWindow, LinksOfflinePointsToTheKeyframesOfBothMaps) {
 }
 
 TEST_F(HybridWindow, LinksForeignViews) {
-  const KeyframeId offline = cut(kNewest).keyframes[static_cast<std::size_t>(kSmall.movable)].id;
-  const PointId point = first_point(kNewest, Origin::online);
+  const KeyframeId offline = cut(kNewestOnline).keyframes[static_cast<std::size_t>(kSmallHybrid.movable)].id;
+  const PointId point = first_point(kNewestOnline, Origin::online);
   const int free = free_feature(offline);
   ASSERT_TRUE(scene_.online.add_foreign_view({{offline, free}, {point, {3.0f, 4.0f}, 0.5f}}));
 
-  const MapWindow window = cut(kNewest);
+  const MapWindow window = cut(kNewestOnline);
   const auto linked = std::ranges::find(window.points, std::optional(point), &WindowPoint::id);
   ASSERT_NE(linked, window.points.end());
   const auto seen = std::ranges::find_if(linked->observations, [&](const WindowObservation& observation) {
@@ -148,29 +148,29 @@ TEST_F(HybridWindow, LinksForeignViews) {
   EXPECT_EQ(copy.sightings[static_cast<std::size_t>(free)].pixel, Eigen::Vector2f(3.0f, 4.0f));
   EXPECT_EQ(linked->foreign_views_elsewhere, 0);
 
-  WindowOptions without_offline = kSmall;
+  WindowOptions without_offline = kSmallHybrid;
   without_offline.offline_anchors = 0;
-  const MapWindow alone = cut(kNewest, without_offline);
+  const MapWindow alone = cut(kNewestOnline, without_offline);
   EXPECT_EQ(std::ranges::find(alone.points, std::optional(point), &WindowPoint::id)->foreign_views_elsewhere, 1);
 }
 
 TEST_F(HybridWindow, LetsTheFirstKeyframeMoveWhereOfflinePointsHoldTheWorld) {
-  const MapWindow window = cut(kFirst);
-  EXPECT_EQ(window.keyframes.front().id, kFirst);
+  const MapWindow window = cut(kFirstOnline);
+  EXPECT_EQ(window.keyframes.front().id, kFirstOnline);
   EXPECT_TRUE(window.keyframes.front().movable);
 }
 
 TEST_F(HybridWindow, HoldsTheFirstKeyframeWhereOfflinePointsAreTooFew) {
-  WindowOptions demanding = kSmall;
+  WindowOptions demanding = kSmallHybrid;
   demanding.min_offline_sightings = 1'000'000;
-  EXPECT_FALSE(cut(kFirst, demanding).keyframes.front().movable);
+  EXPECT_FALSE(cut(kFirstOnline, demanding).keyframes.front().movable);
 }
 
 TEST_F(HybridWindow, HoldsItsOldestKeyframeWhenNothingElseDoes) {
-  WindowOptions demanding = kSmall;
+  WindowOptions demanding = kSmallHybrid;
   demanding.min_offline_sightings = 1'000'000;
   demanding.anchors = 0;
-  const MapWindow window = cut(kNewest, demanding);
+  const MapWindow window = cut(kNewestOnline, demanding);
   const WindowKeyframe* held = nullptr;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     if (is_offline(keyframe) || keyframe.movable) continue;
@@ -192,8 +192,8 @@ TEST_F(HybridWindow, IsThatOfTheOnlineMapWhereTheOfflineOneIsFar) {
       if (point && point->origin == Origin::offline) scene_.online.remove_observation({id, feature});
     }
   }
-  const MapWindow beside = cut(kNewest);
-  const MapWindow alone = cut_window(scene_.online, {kNewest}, kSmall);
+  const MapWindow beside = cut(kNewestOnline);
+  const MapWindow alone = cut_window(scene_.online, {kNewestOnline}, kSmallHybrid);
   ASSERT_EQ(beside.keyframes.size(), alone.keyframes.size());
   for (std::size_t i = 0; i < alone.keyframes.size(); ++i) {
     EXPECT_EQ(beside.keyframes[i].id, alone.keyframes[i].id);

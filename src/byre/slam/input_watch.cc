@@ -10,8 +10,8 @@
 namespace byre {
 namespace {
 
-constexpr int kMinFeatures = 100;  // corners of a frame whose pair is judged
-constexpr double kMemory = 0.7;    // share of earlier measures that is kept from frame to frame
+constexpr int kMinFeaturesJudged = 100;  // corners of a frame whose pair is judged
+constexpr double kMemory = 0.7;          // share of earlier measures that is kept from frame to frame
 
 double blend(std::optional<double> before, double now) {
   return before ? kMemory * *before + (1.0 - kMemory) * now : now;
@@ -37,7 +37,7 @@ void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
 void InputWatch::note_pair(const Frame& frame, InputEvidence& evidence) {
   if (fault_of(*frame.condition, image_) != ImageFault::none) return;
   evidence.right_fault = fault_of(*frame.right_condition, image_);
-  if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeatures) return;
+  if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeaturesJudged) return;
   std::vector<float> row_errors;
   for (const Keypoint& keypoint : frame.features->keypoints()) {
     if (keypoint.has_disparity()) row_errors.push_back(std::abs(keypoint.row_offset));

@@ -13,13 +13,13 @@
 namespace byre {
 namespace {
 
-constexpr PlaceQueryOptions kPlaces{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
+constexpr PlaceQueryOptions kLoopPlaces{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
 // As strict as finding a frame from nothing, however that is set: a wrong loop spoils the map.
 constexpr LocaliseOptions kStrictness{};
 constexpr float kMinScoreShare = 0.5f;   // share of a covisible neighbour's similarity, below which a place is another
 constexpr double kMaxDriftTurn = 0.2;    // radians of drift
 constexpr double kMaxDriftDepths = 0.1;  // median depths of drift without stereo, in place of max_drift
-constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians, between two frames' drifts
+constexpr double kMaxDriftDisagreement = 0.01;  // share of the median depth, and radians, between two frames' drifts
 
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
 std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
@@ -62,7 +62,7 @@ std::vector<PlaceCandidate> find_old_places(const Map& map, const MapView& view,
   const auto is_near = [&](KeyframeId other) {
     return other.number + options.min_gap > id.number || surroundings.contains(other);
   };
-  std::vector<PlaceCandidate> places = find_places(index, view, words, kPlaces, is_near);
+  std::vector<PlaceCandidate> places = find_places(index, view, words, kLoopPlaces, is_near);
   if (places.empty()) return places;
   disturb(places, noise, id);
   const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
@@ -169,8 +169,8 @@ LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, 
   }
   const Pose motion = tracked->camera_from_world * inverse(predicted_camera_from_old);
   const double depth = median_depth(*tracked, view);
-  const bool agrees =
-      motion.translation.norm() <= kMaxDisagreement * depth && rotation_log(motion.rotation).norm() <= kMaxDisagreement;
+  const bool agrees = motion.translation.norm() <= kMaxDriftDisagreement * depth &&
+                      rotation_log(motion.rotation).norm() <= kMaxDriftDisagreement;
   if (!agrees) {
     ++checked.misses;
     return checked;

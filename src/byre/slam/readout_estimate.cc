@@ -16,15 +16,15 @@ constexpr int kMinBlocks = 4;      // blocks that are asked at least
 // that only drives ahead or in the first seconds, is less.
 constexpr double kMinFirst = 0.006;
 constexpr double kMinEffect = 0.2;
-constexpr double kMinFurther = 0.001;    // seconds of a change after the first
-constexpr double kMinSigmas = 5.0;       // sigmas of a change
-constexpr double kLeastReadout = 0.002;  // seconds of the shortest time that is seen
-constexpr double kMaxReadout = 0.1;      // seconds of the longest time
+constexpr double kMinFurther = 0.001;      // seconds of a change after the first
+constexpr double kMinReadoutSigmas = 5.0;  // sigmas of a change
+constexpr double kLeastReadout = 0.002;    // seconds of the shortest time that is seen
+constexpr double kMaxReadout = 0.1;        // seconds of the longest time
 
-constexpr double kHuberWidth = 2.0;       // sigmas
-constexpr double kSystematicSigma = 0.2;  // pixels, of what neither noise nor the shutter explains
+constexpr double kReadoutHuberWidth = 2.0;  // sigmas
+constexpr double kUnexplainedSigma = 0.2;   // pixels, of what neither noise nor the shutter explains
 
-using Row = Eigen::Matrix<double, 2, 3>;
+using ReadoutRow = Eigen::Matrix<double, 2, 3>;
 
 // One point in a frame, pixels: what was measured less what pose and point say, and how both answer.
 struct Answer {
@@ -38,16 +38,16 @@ struct Answer {
 Answer answer_of(const TrackedFeature& feature, double row_time, const MapPoint& point, const Pose& camera_from_world,
                  const Rig& rig, const Vector6& velocity) {
   const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
-  const Row by_camera = rig.projection_jacobian(point_in_camera).topRows<2>();
-  const Row by_world = by_camera * camera_from_world.rotation.toRotationMatrix();
+  const ReadoutRow by_camera = rig.projection_jacobian(point_in_camera).topRows<2>();
+  const ReadoutRow by_world = by_camera * camera_from_world.rotation.toRotationMatrix();
   Eigen::Matrix2d covariance = by_world * point.covariance * by_world.transpose();
-  covariance.diagonal().array() += feature.pixel_sigma * feature.pixel_sigma + kSystematicSigma * kSystematicSigma;
+  covariance.diagonal().array() += feature.pixel_sigma * feature.pixel_sigma + kUnexplainedSigma * kUnexplainedSigma;
   Answer answer;
   answer.residual = feature.pixel.cast<double>() - rig.project(point_in_camera).head<2>();
   answer.by_pose << by_camera, -by_camera * skew(point_in_camera);
   answer.by_readout = row_time * answer.by_pose * velocity;
   const Eigen::Matrix2d information = covariance.inverse();
-  answer.weight = huber_weight(answer.residual.dot(information * answer.residual), kHuberWidth) * information;
+  answer.weight = huber_weight(answer.residual.dot(information * answer.residual), kReadoutHuberWidth) * information;
   return answer;
 }
 
@@ -128,7 +128,7 @@ bool ReadoutEstimator::is_sure() const {
   const double size = std::abs(blocks_.change());
   const bool is_first = readout_time_ == 0.0;
   return size > (is_first ? kMinFirst : kMinFurther) && (!is_first || blocks_.effect() > kMinEffect) &&
-         size > kMinSigmas * blocks_.sigma() && std::abs(readout_time_ + blocks_.change()) <= kMaxReadout;
+         size > kMinReadoutSigmas * blocks_.sigma() && std::abs(readout_time_ + blocks_.change()) <= kMaxReadout;
 }
 
 void ReadoutEstimator::note(const ReadoutEvidence& evidence) {

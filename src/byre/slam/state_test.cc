@@ -26,7 +26,7 @@ TEST_P(NextState, FollowsTheTable) {
 
 constexpr Evidence kNothing{.pose_found = false, .pose_confirmed = true, .seconds_without_pose = 1.0};
 constexpr Evidence kNothingForLong{.pose_found = false, .pose_confirmed = true, .seconds_without_pose = 10.0};
-constexpr Evidence kPose{.pose_found = true, .pose_confirmed = true, .seconds_without_pose = 0.0};
+constexpr Evidence kKeptPose{.pose_found = true, .pose_confirmed = true, .seconds_without_pose = 0.0};
 constexpr Evidence kDoubtfulPose{.pose_found = true, .pose_confirmed = false, .seconds_without_pose = 1.0};
 constexpr Evidence kDoubtfulForLong{.pose_found = true, .pose_confirmed = false, .seconds_without_pose = 10.0};
 
@@ -34,18 +34,18 @@ INSTANTIATE_TEST_SUITE_P(Table, NextState,
                          ::testing::Values(Transition{State::initialising, kNothing, State::initialising},
                                            Transition{State::initialising, kNothingForLong, State::initialising},
                                            Transition{State::initialising, kDoubtfulPose, State::relocalising},
-                                           Transition{State::initialising, kPose, State::tracking},
-                                           Transition{State::tracking, kPose, State::tracking},
+                                           Transition{State::initialising, kKeptPose, State::tracking},
+                                           Transition{State::tracking, kKeptPose, State::tracking},
                                            Transition{State::tracking, kNothing, State::relocalising},
                                            Transition{State::tracking, kNothingForLong, State::lost},
                                            Transition{State::relocalising, kNothing, State::relocalising},
                                            Transition{State::relocalising, kDoubtfulPose, State::relocalising},
                                            Transition{State::relocalising, kNothingForLong, State::lost},
                                            Transition{State::relocalising, kDoubtfulForLong, State::lost},
-                                           Transition{State::relocalising, kPose, State::tracking},
+                                           Transition{State::relocalising, kKeptPose, State::tracking},
                                            Transition{State::lost, kNothing, State::lost},
                                            Transition{State::lost, kDoubtfulPose, State::lost},
-                                           Transition{State::lost, kPose, State::tracking}));
+                                           Transition{State::lost, kKeptPose, State::tracking}));
 
 TEST(ToString, TellsStatesApart) {
   EXPECT_EQ(to_string(State::initialising), "initialising");

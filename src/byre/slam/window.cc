@@ -206,7 +206,7 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
   }
   link_observations(window, map);
   link_foreign_views(window, map);
-  hold_the_world(window, options.min_offline_sightings);
+  fix_gauge(window, options.min_offline_sightings);
   return window;
 }
 
@@ -220,7 +220,7 @@ MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes
   return window;
 }
 
-void hold_the_world(MapWindow& window, int min_offline_sightings) {
+void fix_gauge(MapWindow& window, int min_offline_sightings) {
   int sightings = 0;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     if (keyframe.movable) sightings += count_offline_sightings(window, keyframe);

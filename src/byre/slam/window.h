@@ -49,7 +49,7 @@ struct WindowOptions {
   int movable = 16;                // online keyframes
   int anchors = 16;                // online keyframes
   int offline_anchors = 8;         // offline keyframes
-  int min_offline_sightings = 30;  // see hold_the_world
+  int min_offline_sightings = 30;  // see fix_gauge
   // Sightings of offline points by the movable keyframes: so many hold the window better than online anchors, which may
   // have drifted and are left out then.
   int sightings_in_place_of_anchors = 200;
@@ -65,7 +65,7 @@ MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes
 
 // Many enough sightings of offline points tell where the world is. With fewer, the very first keyframe of the online
 // map becomes an anchor, or, should a window with a few have no online anchor at all, its oldest keyframe.
-void hold_the_world(MapWindow& window, int min_offline_sightings);
+void fix_gauge(MapWindow& window, int min_offline_sightings);
 
 inline bool is_offline(const WindowKeyframe& keyframe) {
   return keyframe.id.origin == Origin::offline;

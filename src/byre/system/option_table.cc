@@ -304,11 +304,11 @@ void add_mission(Table& table) {
       "corners below which the camera is blinded"));
   table.push_back(number(
       "mission.frames_to_suspend", "frames", 1, 3e4,
-      [](auto& o) -> auto& { return o.session.mission.suspension.frames; },
+      [](auto& o) -> auto& { return o.session.mission.moved_points.frames; },
       "frames by which an offline point was found elsewhere more often than in its place"));
   table.push_back(number(
       "mission.frames_to_return", "frames", 1, 3e4,
-      [](auto& o) -> auto& { return o.session.mission.suspension.frames_to_return; },
+      [](auto& o) -> auto& { return o.session.mission.moved_points.frames_to_return; },
       "frames in a row that show a suspended point in its place again"));
   table.push_back(number(
       "mission.hindsight_frames", "frames", 0, kMany, [](auto& o) -> auto& { return o.session.hindsight.frames; },

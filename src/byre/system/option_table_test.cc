@@ -57,7 +57,7 @@ TEST(OptionTable, ListsEveryLeaf) {
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
                  HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>();
   const std::size_t in_mission =
-      member_count<MissionOptions>() - 3 + members_of<OfflineViewOptions, SuspensionOptions, RegistrationOptions>();
+      member_count<MissionOptions>() - 3 + members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>();
   const std::size_t in_extract = member_count<ExtractOptions>() - 1 + member_count<DepthOptions>();
   EXPECT_EQ(option_table().size(),
             in_engine + in_session + in_groups + in_mission + in_extract + member_count<SelfCalibrationOptions>());

@@ -44,7 +44,7 @@ Trajectory causal(Slam& slam, const std::vector<ImageFrame>& frames) {
   return poses;
 }
 
-std::string error_of(const std::function<void()>& attempt) {
+std::string error_by(const std::function<void()>& attempt) {
   try {
     attempt();
   } catch (const InputError& error) {
@@ -122,7 +122,7 @@ TEST_F(SlamWithAFile, LeavesAMapAloneInWhichItNeverFoundItself) {
   std::ranges::fill(dark.left.pixels, std::uint8_t{0});
   slam.process(view_of(dark));
   slam.finish();
-  EXPECT_THAT(error_of([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
 }
 
 TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
@@ -148,7 +148,7 @@ TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
 TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration());
-  EXPECT_THAT(error_of([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("nothing was mapped yet"));
   EXPECT_FALSE(fs::exists(map_));
   int keyframes_before = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -167,7 +167,7 @@ TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
 
 TEST(Slam, NeedsACalibrationThatMakesSense) {
   const Calibration sound = open_shared()->calibration();
-  const auto error_with = [](const Calibration& calibration) { return error_of([&] { Slam::mapping(calibration); }); };
+  const auto error_with = [](const Calibration& calibration) { return error_by([&] { Slam::mapping(calibration); }); };
   Calibration unknown = sound;
   unknown.left.fx = unknown.left.fy = 0.0;
   EXPECT_THAT(error_with(unknown), HasSubstr("has no proper camera"));
@@ -181,12 +181,12 @@ TEST(Slam, NeedsACalibrationThatMakesSense) {
 }
 
 TEST(Slam, NeedsAMapThatCanBeLoaded) {
-  EXPECT_THAT(error_of([] { Slam::on_map(open_shared()->calibration(), "no/such.byre"); }), HasSubstr("no/such.byre"));
-  EXPECT_THAT(error_of([] { Slam::extending(open_shared()->calibration(), "no/such.byre"); }),
+  EXPECT_THAT(error_by([] { Slam::on_map(open_shared()->calibration(), "no/such.byre"); }), HasSubstr("no/such.byre"));
+  EXPECT_THAT(error_by([] { Slam::extending(open_shared()->calibration(), "no/such.byre"); }),
               HasSubstr("no/such.byre"));
   SlamOptions options;
   options.vocabulary = "no/such.vocabulary";
-  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
+  EXPECT_THAT(error_by([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
 }
 
 TEST(Slam, TakesOptionsByName) {
@@ -196,11 +196,11 @@ TEST(Slam, TakesOptionsByName) {
   Slam slam = Slam::mapping(open_shared()->calibration(), options);
   EXPECT_LE(slam.process(view_of(frames[0])).features, 150);
   options.settings = {{"features.max_counts", "150"}};
-  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }),
+  EXPECT_THAT(error_by([&] { Slam::mapping(open_shared()->calibration(), options); }),
               HasSubstr("SlamOptions::settings: there is no option 'features.max_counts' (did you mean "
                         "'features.max_count'?)"));
   options.settings = {{"features.max_count", "nan"}};
-  EXPECT_THAT(error_of([&] { Slam::mapping(open_shared()->calibration(), options); }),
+  EXPECT_THAT(error_by([&] { Slam::mapping(open_shared()->calibration(), options); }),
               HasSubstr("(give from 1 to 100000, in corners)"));
 }
 

@@ -11,7 +11,7 @@ namespace asio = boost::asio;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-constexpr std::size_t kMaxMessageBytes = 64 << 10;  // message from a client, which lists subscriptions
+constexpr std::size_t kMaxClientMessageBytes = 64 << 10;  // message from a client, which lists subscriptions
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void FoxgloveListener::start(const WebUpgrade& request, std::string_view protoco
   stream_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
     response.set(boost::beast::http::field::sec_websocket_protocol, {protocol.data(), protocol.size()});
   }));
-  stream_.read_message_max(kMaxMessageBytes);
+  stream_.read_message_max(kMaxClientMessageBytes);
   stream_.async_accept(request, [self = shared_from_this()](error_code error) {
     if (error) return;
     self->is_open_ = true;

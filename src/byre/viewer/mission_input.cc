@@ -27,7 +27,7 @@ Pose pose_of(const json& frame) {
   return {Eigen::Quaterniond(xyzw[3], xyzw[0], xyzw[1], xyzw[2]), {position[0], position[1], position[2]}};
 }
 
-PlanPath path_of(const json& stats, const std::string& file) {
+PlanPath path_in_stats(const json& stats, const std::string& file) {
   PlanPath path;
   for (const json& frame : stats.at("frames")) {
     if (!frame.contains("position_m")) continue;
@@ -49,7 +49,7 @@ PlanPath load_mission(const std::filesystem::path& stats) {
       throw InputError(stats.string(), "has its poses on the floor plan, not in the map",
                        "run the mission without --frame plan");
     }
-    return path_of(content, stats.string());
+    return path_in_stats(content, stats.string());
   } catch (const json::exception&) {
     throw InputError(stats.string(), "is no statistics of a mission", "name what byre run --stats has written");
   }

@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 constexpr double kCasing = 1.5;  // pixels of white at either side of a way, so that it stands out from the points
 constexpr std::array kVerdicts = {Verdict::trusted, Verdict::degraded, Verdict::untrusted};
 
-double median_step(const std::vector<Vector2d>& pixels) {
+double median_pixel_step(const std::vector<Vector2d>& pixels) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < pixels.size(); ++i) steps.push_back((pixels[i] - pixels[i - 1]).norm());
   return median_or(std::move(steps), 0.0);
@@ -135,7 +135,7 @@ ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
   }
   if (keyframes.empty()) return {};
   ExplainedMarks all;
-  const double farthest = kFarthest * median_step(symbols.centres);
+  const double farthest = kFarthest * median_pixel_step(symbols.centres);
   for (std::size_t i = 1; i < keyframes.size(); ++i) {
     const std::vector<Vector2d> step = {symbols.centres[i - 1], symbols.centres[i]};
     if (keyframes[i].origin != keyframes[i - 1].origin || (step[1] - step[0]).norm() > farthest) continue;

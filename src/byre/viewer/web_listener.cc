@@ -9,13 +9,13 @@ namespace {
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-constexpr std::size_t kMaxMessageBytes = 1 << 10;  // message from a page, which has nothing to say there
+constexpr std::size_t kMaxPageMessageBytes = 1 << 10;  // message from a page, which has nothing to say there
 
 }  // namespace
 
 void WebListener::start(const WebUpgrade& request) {
   stream_.set_option(websocket::stream_base::timeout::suggested(boost::beast::role_type::server));
-  stream_.read_message_max(kMaxMessageBytes);
+  stream_.read_message_max(kMaxPageMessageBytes);
   stream_.async_accept(request, [self = shared_from_this()](error_code error) {
     if (error) return;
     self->is_open_ = true;

@@ -21,12 +21,12 @@ std::optional<Text::Finished> collect_when_ready(Text& worker) {
   return finished;
 }
 
-struct NamedExecutor {
+struct WorkerExecutor {
   const char* name;
   std::unique_ptr<Executor> (*make)();
 };
 
-class WorkerOnEveryExecutor : public ::testing::TestWithParam<NamedExecutor> {
+class WorkerOnEveryExecutor : public ::testing::TestWithParam<WorkerExecutor> {
  protected:
   Text worker_{GetParam().make()};
 };
@@ -68,9 +68,9 @@ TEST_P(WorkerOnEveryExecutor, WorksOnAfterAnException) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, WorkerOnEveryExecutor,
-                         ::testing::Values(NamedExecutor{"Inline", [] { return make_inline_executor(); }},
-                                           NamedExecutor{"Paced", [] { return make_paced_executor(3); }},
-                                           NamedExecutor{"Live", [] { return make_live_executor(); }}),
+                         ::testing::Values(WorkerExecutor{"Inline", [] { return make_inline_executor(); }},
+                                           WorkerExecutor{"Paced", [] { return make_paced_executor(3); }},
+                                           WorkerExecutor{"Live", [] { return make_live_executor(); }}),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(Worker, HandsAResultOverInTheFrameThatAPacedExecutorSays) {

@@ -14,8 +14,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kRoom = RenderedFixture::shared().folder().string();
-
 class BagProgram : public ProgramTest {
  protected:
   void write_scene(const std::string& name, std::size_t left_out = 0) const {
@@ -64,7 +62,7 @@ TEST_F(BagProgram, ListsTopicsWhereANameIsWrong) {
 }
 
 TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
-  const Outcome mapped = run("map " + kRoom +
+  const Outcome mapped = run("map " + rendered_room() +
                              " --frames :6 --no-loops --pace inline --quiet --trajectory walk.txt "
                              "--record walk.mcap --record-images");
   ASSERT_EQ(mapped.exit_code, 0) << mapped.errors;

@@ -14,7 +14,7 @@ struct CameraCommand {
   Action (*declare)(CLI::App& command);
 };
 
-constexpr std::array kCommands = {
+constexpr std::array kCameraCommands = {
     CameraCommand{"list", "Tell which cameras there are, and what they offer", declare_camera_list},
     CameraCommand{"show", "Look at what a camera gives: rate, stamps, brightness, corners", declare_camera_show},
     CameraCommand{"record", "Record cameras as a EuRoC folder or an MCAP file", declare_camera_record},
@@ -25,7 +25,7 @@ constexpr std::array kCommands = {
 Action declare_camera(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   command.require_subcommand(1);
-  for (const CameraCommand& each : kCommands) {
+  for (const CameraCommand& each : kCameraCommands) {
     CLI::App* const declared = command.add_subcommand(each.name, each.summary);
     declared->callback([chosen, run = each.declare(*declared)] { *chosen = run; });
   }

@@ -57,7 +57,7 @@ std::string other_names(const fs::path& device) {
   return names;
 }
 
-std::string describe(const VideoFormats::Size& size) {
+std::string describe_camera(const VideoFormats::Size& size) {
   std::string text = formatted(size.is_range ? "up to %d x %d" : "%d x %d", size.width, size.height);
   for (std::size_t i = 0; i < size.rates_hz.size(); ++i) {
     text += (i == 0 ? " at " : ", ") + formatted("%g", size.rates_hz[i]);
@@ -65,12 +65,12 @@ std::string describe(const VideoFormats::Size& size) {
   return size.rates_hz.empty() ? text : text + " Hz";
 }
 
-std::string describe(const fs::path& device, const VideoFormats& formats) {
+std::string describe_camera(const fs::path& device, const VideoFormats& formats) {
   std::string text = row("camera", device.string() + ": " + formats.name + ", " + formats.bus + other_names(device));
   for (const VideoFormats::Format& format : formats.formats) {
     const std::string unread = is_readable(format.code) ? "" : "; byre does not read it";
     text += row(("  " + four_characters(format.code)).c_str(), format.name + unread);
-    for (const VideoFormats::Size& size : format.sizes) text += row("", describe(size));
+    for (const VideoFormats::Size& size : format.sizes) text += row("", describe_camera(size));
   }
   if (formats.moment) text += row("  stamps", "of the " + std::string(to_string(*formats.moment)));
   return text;
@@ -88,7 +88,7 @@ std::optional<VideoFormats> formats_if_camera(const fs::path& device) {
 
 ExitCode list_named(const std::vector<fs::path>& devices, std::ostream& result) {
   for (const fs::path& device : devices) {
-    result << describe(device, formats_of(VideoDescriptor(device), device.string()));
+    result << describe_camera(device, formats_of(VideoDescriptor(device), device.string()));
   }
   return ExitCode::done;
 }
@@ -99,7 +99,7 @@ ExitCode list_all(std::ostream& result) {
     try {
       const auto formats = formats_if_camera(device);
       if (!formats) continue;
-      result << describe(device, *formats);
+      result << describe_camera(device, *formats);
       ++found;
     } catch (const InputError& fault) {
       result << row("no access", fault.what());

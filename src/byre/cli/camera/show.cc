@@ -22,7 +22,7 @@
 namespace byre::cli {
 namespace {
 
-struct ShowOptions {
+struct CameraShowOptions {
   CameraOptions cameras;
   double duration_s = 3.0;
   std::optional<std::filesystem::path> still;
@@ -52,7 +52,7 @@ std::string describe_intervals(const std::vector<Timestamp>& stamps) {
                    stamps.size(), 1e3 * intervals->deviation_s, 1e3 * intervals->longest_s);
 }
 
-std::string describe(const char* name, const Image& image) {
+std::string describe_image(const char* name, const Image& image) {
   const ImageCondition condition = measure_condition(image);
   const ImageFault fault = fault_of(condition, {});
   std::string text =
@@ -86,7 +86,7 @@ Shown look(CaptureThread& capture, double duration_s, const InterruptCatcher& in
   return shown;
 }
 
-ExitCode run_show(const ShowOptions& options, std::ostream& result) {
+ExitCode run_show(const CameraShowOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   CaptureThread capture(options.cameras.live(), KeptFrames::all);
   const Shown shown = look(capture, options.duration_s, interrupt);
@@ -96,8 +96,8 @@ ExitCode run_show(const ShowOptions& options, std::ostream& result) {
     throw std::runtime_error(options.cameras.name() + " gave no image");
   }
   result << row("rate", describe_intervals(shown.stamps));
-  result << describe(shown.newest->right ? "left" : "image", shown.newest->left);
-  if (shown.newest->right) result << describe("right", *shown.newest->right);
+  result << describe_image(shown.newest->right ? "left" : "image", shown.newest->left);
+  if (shown.newest->right) result << describe_image("right", *shown.newest->right);
   if (options.still) {
     const ImageFrame& frame = *shown.newest;
     const std::vector<std::uint8_t> png = png_of(frame.right ? side_by_side(frame.left, *frame.right) : frame.left);
@@ -110,7 +110,7 @@ ExitCode run_show(const ShowOptions& options, std::ostream& result) {
 }  // namespace
 
 Action declare_camera_show(CLI::App& command) {
-  const auto options = std::make_shared<ShowOptions>();
+  const auto options = std::make_shared<CameraShowOptions>();
   CLI::Option* const devices =
       add_text(command, "DEVICE", options->cameras.devices, kDevicesHelp)->type_name("DEVICE")->required();
   add_output(command, Output::picture, "-o,--output", options->still, "The newest image, of a pair both side by side")

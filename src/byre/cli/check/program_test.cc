@@ -12,12 +12,10 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string kRoom = RenderedFixture::shared().folder().string();
-
 class CheckProgram : public ProgramTest {};
 
 TEST_F(CheckProgram, FindsNothingInTheWayOfASoundRecording) {
-  const Outcome outcome = run("check " + kRoom + " --samples 3");
+  const Outcome outcome = run("check " + rendered_room() + " --samples 3");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output << outcome.errors;
   for (const char* const row : {"frames ", "left ", "right ", "pair ", "calibration ", "baseline "}) {
     EXPECT_THAT(outcome.output, HasSubstr(row));
@@ -25,7 +23,7 @@ TEST_F(CheckProgram, FindsNothingInTheWayOfASoundRecording) {
 }
 
 TEST_F(CheckProgram, TellsTheSameAsJson) {
-  const Outcome outcome = run("check " + kRoom + " --samples 3 --json");
+  const Outcome outcome = run("check " + rendered_room() + " --samples 3 --json");
   const json told = json::parse(outcome.output);
   EXPECT_EQ(told.at("program"), "byre check");
   EXPECT_EQ(told.at("looked_at"), 6);
@@ -34,13 +32,13 @@ TEST_F(CheckProgram, TellsTheSameAsJson) {
 }
 
 TEST_F(CheckProgram, OfOneCameraSaysNothingOfAPair) {
-  const json told = json::parse(run("check " + kRoom + " --camera left --samples 3 --json").output);
+  const json told = json::parse(run("check " + rendered_room() + " --camera left --samples 3 --json").output);
   EXPECT_TRUE(told.at("pair").is_null());
   EXPECT_EQ(told.at("without_right"), 0);
 }
 
 TEST_F(CheckProgram, ItsSummaryBeginsAMapping) {
-  const Outcome outcome = run("map " + kRoom + " --frames :4 --no-loops -o room.byre");
+  const Outcome outcome = run("map " + rendered_room() + " --frames :4 --no-loops -o room.byre");
   EXPECT_THAT(outcome.errors, HasSubstr("checked "));
 }
 

@@ -21,16 +21,15 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-const std::string kRoom = formatted("'%s'", RenderedFixture::shared().folder().c_str());
 constexpr const char* kPngBegin = "\x89PNG\r\n";
 
 class DrawProgram : public ProgramTest {
  protected:
-  DrawProgram() { EXPECT_EQ(run("map " + kRoom + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  DrawProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
 
   // Every other frame is the mission.
   Outcome draw_mission(const std::string& arguments) const {
-    return run("draw " + kRoom + " --map room.byre --frames 1: --stride 2 --quiet " + arguments);
+    return run("draw " + rendered_room() + " --map room.byre --frames 1: --stride 2 --quiet " + arguments);
   }
 };
 
@@ -59,7 +58,9 @@ TEST_F(DrawProgram, RepeatsItself) {
 }
 
 TEST_F(DrawProgram, DrawsWaysThatFilesTell) {
-  ASSERT_EQ(run("run " + kRoom + " --map room.byre --trajectory round.txt --stats stats.json --quiet").exit_code, 0);
+  ASSERT_EQ(
+      run("run " + rendered_room() + " --map room.byre --trajectory round.txt --stats stats.json --quiet").exit_code,
+      0);
   const Outcome outcome = run("draw room.byre --trajectory round.txt --mission stats.json -o ways.svg");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(read("ways.svg"),
@@ -124,7 +125,7 @@ TEST_F(DrawProgram, NamesBadInput) {
       {"room.byre --mission no.json -o a.svg", "byre: error: no.json: is no statistics of a mission"},
       {"room.byre --mission plan.json -o a.svg", "byre: error: plan.json: has its poses on the floor plan"},
       {"absent --map room.byre -o a.svg", "byre: error: absent: is no folder"},
-      {kRoom + " --map room.byre --start 0.5 --at 0.2 -o a.svg", "byre: error: "},
+      {rendered_room() + " --map room.byre --start 0.5 --at 0.2 -o a.svg", "byre: error: "},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run("draw " + arguments);

@@ -1,6 +1,7 @@
 #include "byre/archive/colmap_export.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/input/formatted.h"
 #include "byre/input_error.h"
@@ -32,12 +33,6 @@ constexpr const char* kExportColmapFooter = R"(Examples:
 The model is of the left images as the camera took them, with its lens; in COLMAP's programs name the folder that holds
 them as the image path (mav0/cam0/data of an EuRoC recording). Such a model has no place for disparities, and so for
 points that are known by their disparity in one image alone, nor for descriptors and covariances.)";
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "cannot be made", "name a folder");
-}
 
 ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   const StoredMap stored = load_map(options.map);

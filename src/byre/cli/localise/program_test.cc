@@ -20,22 +20,17 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-std::string quoted(const std::filesystem::path& path) {
-  return formatted("'%s'", path.c_str());
-}
-
-const std::string kRoom = quoted(RenderedFixture::shared().folder());
-
 // Every other frame of the room is mapped, and the others are looked for.
 class LocaliseProgram : public ProgramTest {
  protected:
-  LocaliseProgram() { EXPECT_EQ(run("map " + kRoom + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  LocaliseProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
 
   Outcome localise(const std::string& arguments) const { return run("localise room.byre " + arguments); }
 };
 
 TEST_F(LocaliseProgram, FindsTheOtherFrames) {
-  const Outcome outcome = localise(kRoom + " --frames 1: --stride 2 --trajectory found.txt --truth " + kRoom);
+  const Outcome outcome =
+      localise(rendered_room() + " --frames 1: --stride 2 --trajectory found.txt --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("found        12 of 12 frames (100.0 %)"));
   EXPECT_THAT(outcome.output, HasSubstr("found within 0.1 m and 2 deg"));
@@ -43,7 +38,8 @@ TEST_F(LocaliseProgram, FindsTheOtherFrames) {
 }
 
 TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
-  const Outcome outcome = localise(kRoom + " --frames 1:4 --stride 2 --json --quiet --truth " + kRoom);
+  const Outcome outcome =
+      localise(rendered_room() + " --frames 1:4 --stride 2 --json --quiet --truth " + rendered_room());
   const json report = json::parse(outcome.output);
   EXPECT_EQ(report.at("frames_found"), 2);
   ASSERT_EQ(report.at("per_frame").size(), 2);
@@ -55,7 +51,8 @@ TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
 
 TEST_F(LocaliseProgram, FindsTheBodyByEitherCameraAlone) {
   for (const char* const camera : {"left", "right"}) {
-    const Outcome outcome = localise(kRoom + " --frames 1: --stride 4 --json --camera " + camera + " --truth " + kRoom);
+    const Outcome outcome =
+        localise(rendered_room() + " --frames 1: --stride 4 --json --camera " + camera + " --truth " + rendered_room());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     const json report = json::parse(outcome.output);
     EXPECT_EQ(report.at("frames_found"), 6) << camera;
@@ -66,7 +63,7 @@ TEST_F(LocaliseProgram, FindsTheBodyByEitherCameraAlone) {
 TEST_F(LocaliseProgram, FindsImagesOfAFolderByTheTimesOfTheirNames) {
   const std::filesystem::path camera = RenderedFixture::shared().folder() / "mav0/cam1";
   const std::string images = quoted(camera / "data"), calibration = " --calibration " + quoted(camera / "sensor.yaml");
-  const Outcome outcome = localise(images + calibration + " --stride 6 --json --truth " + kRoom);
+  const Outcome outcome = localise(images + calibration + " --stride 6 --json --truth " + rendered_room());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const json report = json::parse(outcome.output);
   EXPECT_EQ(report.at("frames_found"), 4);
@@ -109,7 +106,7 @@ TEST_F(LocaliseProgram, GivesPosesOnThePlanThatTheMapLiesOn) {
   stored.plan.emplace();
   stored.plan->plan_from_map.target_from_source.translation << 1000.0, 2000.0, 0.0;
   save_map(stored, folder_ / "room.byre");
-  const std::string frames = kRoom + " --frames 1:4 --stride 2 --quiet --json";
+  const std::string frames = rendered_room() + " --frames 1:4 --stride 2 --quiet --json";
   localise(frames + " --trajectory map.txt");
   const json report = json::parse(localise(frames + " --trajectory plan.txt --frame plan").output);
   const Trajectory in_map = read_trajectory(folder_ / "map.txt");
@@ -165,14 +162,14 @@ TEST_F(LocaliseProgram, NamesBadInput) {
   EXPECT_THAT(localise("torn.png").errors, HasSubstr("torn.png: is not a whole image"));
   EXPECT_EQ(localise("absent").exit_code, 3);
   EXPECT_THAT(localise("absent").errors, HasSubstr("absent: does not exist"));
-  EXPECT_EQ(localise(kRoom + " torn.png").exit_code, 3);
-  EXPECT_THAT(localise(kRoom + " torn.png").errors, HasSubstr("one recording at a time"));
+  EXPECT_EQ(localise(rendered_room() + " torn.png").exit_code, 3);
+  EXPECT_THAT(localise(rendered_room() + " torn.png").errors, HasSubstr("one recording at a time"));
   write("torn.byre", read("room.byre").substr(0, 1000));
-  const Outcome outcome = run("localise torn.byre " + kRoom);
+  const Outcome outcome = run("localise torn.byre " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.errors, HasSubstr("torn.byre"));
   EXPECT_EQ(run("localise room.byre").exit_code, 2);
-  EXPECT_EQ(localise(kRoom + " --map-truth " + kRoom).exit_code, 2) << "without --truth";
+  EXPECT_EQ(localise(rendered_room() + " --map-truth " + rendered_room()).exit_code, 2) << "without --truth";
 }
 
 }  // namespace

@@ -26,10 +26,6 @@ using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
-std::string quoted(const fs::path& path) {
-  return formatted("'%s'", path.c_str());
-}
-
 class MapProgram : public ProgramTest {
  protected:
   Outcome map(const std::string& arguments) const {

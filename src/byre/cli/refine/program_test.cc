@@ -19,12 +19,12 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-const std::string kRoom = RenderedFixture::shared().folder().string();
-
 // The room's first half is mapped, and not finished.
 class RefineProgram : public ProgramTest {
  protected:
-  RefineProgram() { EXPECT_EQ(run("map " + kRoom + " --frames :14 --no-loops --quiet -o room.byre").exit_code, 0); }
+  RefineProgram() {
+    EXPECT_EQ(run("map " + rendered_room() + " --frames :14 --no-loops --quiet -o room.byre").exit_code, 0);
+  }
 
   void write_map_of_unknown_scale() const {
     StoredMap stored = StoredMapScene(4, 9).stored();
@@ -67,8 +67,8 @@ TEST_F(RefineProgram, NamesBadInput) {
 
 TEST_F(RefineProgram, ExtendsAMapByAnotherRecordingAndRemembersWhichIsWhich) {
   const std::string before = read("room.byre");
-  const Outcome outcome =
-      run("map " + kRoom + " --frames 8: --extend room.byre -o both.byre --trajectory second.txt --site Room");
+  const Outcome outcome = run("map " + rendered_room() +
+                              " --frames 8: --extend room.byre -o both.byre --trajectory second.txt --site Room");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("extended     room.byre, found in it after 0 frames\n"));
   EXPECT_EQ(read("room.byre"), before);
@@ -97,7 +97,7 @@ TEST_F(RefineProgram, ExtendsNoMapOfAnotherPlace) {
 
 TEST_F(RefineProgram, ExtendsNoMapOfUnknownScale) {
   write_map_of_unknown_scale();
-  const Outcome outcome = run("map " + kRoom + " --extend unknown.byre -o both.byre");
+  const Outcome outcome = run("map " + rendered_room() + " --extend unknown.byre -o both.byre");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.errors, StartsWith("byre: error: unknown.byre: has no metric scale"));
 }

@@ -29,15 +29,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-std::string quoted(const fs::path& path) {
-  return formatted("'%s'", path.c_str());
-}
-
-const std::string kRunRoom = quoted(RenderedFixture::shared().folder());
-
 class RunProgram : public ProgramTest {
  protected:
-  Outcome run_room(const std::string& arguments) const { return run("run " + kRunRoom + " " + arguments); }
+  Outcome run_room(const std::string& arguments) const { return run("run " + rendered_room() + " " + arguments); }
 
   std::vector<json> lines_of(const std::string& file) const {
     std::istringstream text(read(file));
@@ -56,7 +50,8 @@ TEST_F(RunProgram, ExplainsItself) {
 }
 
 TEST_F(RunProgram, DoesTheSameAsMapWithoutAMap) {
-  ASSERT_EQ(run("map " + kRunRoom + " --trajectory a.txt --causal-trajectory b.txt -o map.byre --quiet").exit_code, 0);
+  ASSERT_EQ(
+      run("map " + rendered_room() + " --trajectory a.txt --causal-trajectory b.txt -o map.byre --quiet").exit_code, 0);
   const Outcome outcome = run_room("--trajectory c.txt --causal-trajectory d.txt --save-online run.byre --quiet");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, IsEmpty());
@@ -67,7 +62,7 @@ TEST_F(RunProgram, DoesTheSameAsMapWithoutAMap) {
 }
 
 TEST_F(RunProgram, ComparesPosesWithTheTruthAfterAlignmentWhereThereIsNoMap) {
-  const Outcome outcome = run_room("--stats stats.json --truth " + kRunRoom);
+  const Outcome outcome = run_room("--stats stats.json --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("truth        causal and final poses are each aligned to it\n"));
   const json stats = json::parse(read("stats.json"));
@@ -95,7 +90,7 @@ TEST_F(RunProgram, TakesAClockErrorOutOfTheTruth) {
   Trajectory late = RenderedFixture::shared().truth();
   for (StampedPose& sample : late) sample.time += from_seconds(0.25);
   write_trajectory(late, folder_ / "late.txt");
-  EXPECT_NEAR(worst("--truth late.txt --time-offset -0.25"), worst("--truth " + kRunRoom), 1e-6);
+  EXPECT_NEAR(worst("--truth late.txt --time-offset -0.25"), worst("--truth " + rendered_room()), 1e-6);
 }
 
 TEST_F(RunProgram, WritesWhatHappensOneObjectALine) {
@@ -123,10 +118,10 @@ TEST_F(RunProgram, NamesBadInput) {
   write("torn.byre", "BYRE");
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"absent", "byre: error: absent: is no folder"},
-      {kRunRoom + " --map absent.byre", "byre: error: absent.byre: "},
-      {kRunRoom + " --map torn.byre", "byre: error: torn.byre: "},
-      {kRunRoom + " --truth absent.txt", "byre: error: absent.txt: "},
-      {kRunRoom + " --events nowhere/events.jsonl", "byre: error: nowhere/events.jsonl: cannot be written"},
+      {rendered_room() + " --map absent.byre", "byre: error: absent.byre: "},
+      {rendered_room() + " --map torn.byre", "byre: error: torn.byre: "},
+      {rendered_room() + " --truth absent.txt", "byre: error: absent.txt: "},
+      {rendered_room() + " --events nowhere/events.jsonl", "byre: error: nowhere/events.jsonl: cannot be written"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run("run " + arguments);
@@ -154,7 +149,7 @@ TEST_F(RunProgram, KeepsEverythingSoFarAtCtrlC) {
 // Every other frame of the room is mapped, and the others are the mission.
 class MissionProgram : public RunProgram {
  protected:
-  MissionProgram() { EXPECT_EQ(run("map " + kRunRoom + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  MissionProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
 
   Outcome mission(const std::string& arguments) const {
     return run_room("--map room.byre --frames 1: --stride 2 " + arguments);
@@ -172,7 +167,7 @@ TEST_F(MissionProgram, LeavesTheMapAsItWas) {
 }
 
 TEST_F(MissionProgram, PublishesPosesInTheMapsFrame) {
-  const Outcome outcome = mission("--causal-trajectory causal.txt --stats stats.json --truth " + kRunRoom);
+  const Outcome outcome = mission("--causal-trajectory causal.txt --stats stats.json --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(12));
   EXPECT_THAT(outcome.output, HasSubstr("truth        the map alone is aligned to it, by "));
@@ -190,7 +185,7 @@ TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
   ASSERT_EQ(mission("--causal-trajectory map.txt --odometry a.txt --quiet").exit_code, 0);
   const Outcome outcome = mission(
       "--frame plan --causal-trajectory plan.txt --odometry b.txt --events events.jsonl --stats stats.json --truth " +
-      kRunRoom);
+      rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("; poses on the plan plan.yaml\n"));
   const Pose in_map = read_trajectory(folder_ / "map.txt").back().world_from_body;
@@ -263,11 +258,11 @@ TEST_F(MissionProgram, MapsNothingWhenItIsToLocaliseOnly) {
 }
 
 TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
-  ASSERT_EQ(run("map " + kRunRoom + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
+  ASSERT_EQ(run("map " + rendered_room() + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
   const Outcome outcome = run_room("--map corner.byre --frames 3: --save-online online.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(run("validate online.byre").exit_code, 0);
-  const Outcome found = run("localise online.byre " + kRunRoom + " --frames 20:");
+  const Outcome found = run("localise online.byre " + rendered_room() + " --frames 20:");
   EXPECT_THAT(found.output, HasSubstr("found        4 of 4 frames"));
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/simulation/rendered_fixture.h"
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -17,6 +19,15 @@
 #include <sys/wait.h>
 
 namespace byre::cli {
+
+// As a word of the shell.
+inline std::string quoted(const std::filesystem::path& path) {
+  return "'" + path.string() + "'";
+}
+
+inline std::string rendered_room() {
+  return quoted(RenderedFixture::shared().folder());
+}
 
 struct Outcome {
   int exit_code = -1;

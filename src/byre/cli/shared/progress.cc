@@ -47,7 +47,7 @@ bool has_colours() {
   return (no_color == nullptr || *no_color == '\0') && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
-std::string describe(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
+std::string describe_progress(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
   std::string text =
       total == 0 ? formatted("%d %s", done, unit.c_str()) : formatted("%d of %d %s", done, total, unit.c_str());
   if (elapsed_s > 0.0) {
@@ -78,7 +78,7 @@ bool Progress::is_due(int done, double elapsed_s) const {
 void Progress::update(int done, double elapsed_s, std::string_view state, Tone tone) {
   if (!is_due(done, elapsed_s)) return;
   const std::string shown_state = style_ == ProgressStyle::coloured_bar ? coloured(state, tone) : std::string(state);
-  const std::string text = describe(done, total_, unit_, elapsed_s, shown_state);
+  const std::string text = describe_progress(done, total_, unit_, elapsed_s, shown_state);
   if (style_ != ProgressStyle::lines) {
     constexpr const char* kCutAtEdge = "\x1b[?7l";
     constexpr const char* kWrapAtEdge = "\x1b[?7h";

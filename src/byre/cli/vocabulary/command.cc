@@ -38,7 +38,7 @@ struct ImportOptions {
   fs::path output;
 };
 
-struct ShowOptions {
+struct VocabularyShowOptions {
   std::optional<fs::path> file;  // the vocabulary that comes with byre unless given
 };
 
@@ -107,7 +107,7 @@ void run_import(const ImportOptions& options, std::ostream& result) {
   result << to_text(vocabulary, options.output);
 }
 
-void run_show(const ShowOptions& options, std::ostream& result) {
+void run_show(const VocabularyShowOptions& options, std::ostream& result) {
   const fs::path path = options.file ? *options.file : default_vocabulary_path();
   result << to_text(Vocabulary::load(path), path);
 }
@@ -156,7 +156,7 @@ Action declare_vocabulary(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   const auto train = std::make_shared<TrainOptions>();
   const auto import = std::make_shared<ImportOptions>();
-  const auto show = std::make_shared<ShowOptions>();
+  const auto show = std::make_shared<VocabularyShowOptions>();
   command.require_subcommand(1);
 
   declare_train(add(command, "train", "Learn a vocabulary from images", train, run_train, chosen), *train);

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-struct SuspensionOptions {
+struct MovedPointsOptions {
   int frames = 8;            // surplus of frames that find a point elsewhere over frames that find it in its place
   int frames_to_return = 3;  // frames, one after the other, that find a suspended point in its place again
 };
@@ -21,9 +21,9 @@ std::vector<PointId> moved_together(const Map& offline, std::span<const PointId>
 
 // Offline points that are not where the map has them: what they belong to was moved. They are left out until they are
 // found in their places again; the map itself stays as it is.
-class Suspension {
+class MovedPoints {
  public:
-  explicit Suspension(const SuspensionOptions& options) : options_(options) {}
+  explicit MovedPoints(const MovedPointsOptions& options) : options_(options) {}
 
   // Notes one frame whose pose offline points hold: the points found in their places, and those found elsewhere.
   void note(std::span<const PointId> agreed, std::span<const PointId> moved);
@@ -41,7 +41,7 @@ class Suspension {
   };
   Record& record_of(PointId id);
 
-  SuspensionOptions options_;
+  MovedPointsOptions options_;
   std::vector<Record> records_;  // by point number
   int count_ = 0;
 };

@@ -1,4 +1,4 @@
-#include "byre/slam/suspension.h"
+#include "byre/slam/moved_points.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr std::size_t kNeighbours = 6;  // nearest judged points, which tell whether a point moved with others
-constexpr double kMinShare = 0.5;       // share of those that have moved too
+constexpr double kMinShareMoved = 0.5;  // share of those that have moved too
 
 struct JudgedPoint {
   Eigen::Vector3d position_in_world;
@@ -47,19 +47,19 @@ std::vector<PointId> moved_together(const Map& offline, std::span<const PointId>
   const std::vector<JudgedPoint> judged = judged_points(offline, agreed, moved);
   std::vector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (share_around(judged, i) >= kMinShare) {
+    if (share_around(judged, i) >= kMinShareMoved) {
       together.push_back(moved[i]);
     }
   }
   return together;
 }
 
-Suspension::Record& Suspension::record_of(PointId id) {
+MovedPoints::Record& MovedPoints::record_of(PointId id) {
   if (id.number >= records_.size()) records_.resize(id.number + std::size_t{1});
   return records_[id.number];
 }
 
-void Suspension::note(std::span<const PointId> agreed, std::span<const PointId> moved) {
+void MovedPoints::note(std::span<const PointId> agreed, std::span<const PointId> moved) {
   for (const PointId id : agreed) {
     Record& record = record_of(id);
     record.excess = static_cast<std::int16_t>(std::max(0, record.excess - 1));
@@ -72,7 +72,7 @@ void Suspension::note(std::span<const PointId> agreed, std::span<const PointId> 
   }
 }
 
-void Suspension::note_again(std::span<const PointId> agreed, std::span<const PointId> moved) {
+void MovedPoints::note_again(std::span<const PointId> agreed, std::span<const PointId> moved) {
   for (const PointId id : moved) record_of(id).in_place = 0;
   for (const PointId id : agreed) {
     Record& record = record_of(id);
@@ -82,7 +82,7 @@ void Suspension::note_again(std::span<const PointId> agreed, std::span<const Poi
   }
 }
 
-bool Suspension::is_suspended(PointId id) const {
+bool MovedPoints::is_suspended(PointId id) const {
   return id.origin == Origin::offline && id.number < records_.size() && records_[id.number].suspended;
 }
 

@@ -8,27 +8,27 @@
 
 namespace byre {
 
-// The segments of an online map, each tracked without a gap, in the order in which they were begun, and the frames they
+// The submaps of an online map, each tracked without a gap, in the order in which they were begun, and the frames they
 // lie in. Poses can be compared where the frame is the same. One frame is that of the reports: the offline map's where
 // there is one.
-class Segments {
+class Submaps {
  public:
   using Frame = int;
   static constexpr Frame kMapFrame = 0;
 
-  bool empty() const { return segments_.empty(); }
-  std::size_t size() const { return segments_.size(); }
-  // The present segment is the last one. Precondition: not empty.
-  std::size_t present() const { return segments_.size() - 1; }
-  Frame frame() const { return segments_.back().frame; }
-  Frame frame(std::size_t segment) const { return segments_[segment].frame; }
+  bool empty() const { return submaps_.empty(); }
+  std::size_t size() const { return submaps_.size(); }
+  // The present submap is the last one. Precondition: not empty.
+  std::size_t present() const { return submaps_.size() - 1; }
+  Frame frame() const { return submaps_.back().frame; }
+  Frame frame(std::size_t submap) const { return submaps_[submap].frame; }
   Frame frame(KeyframeId online) const;
-  // The present segment lies in the reports' frame.
+  // The present submap lies in the reports' frame.
   bool is_registered() const { return !empty() && frame() == kMapFrame; }
-  // The keyframe lies in the frame of the present segment.
+  // The keyframe lies in the frame of the present submap.
   bool is_in_present_frame(KeyframeId online) const { return frame(online) == frame(); }
 
-  // A new segment, whose keyframes will have this number and higher ones.
+  // A new submap, whose keyframes will have this number and higher ones.
   void begin_in_map_frame(std::uint32_t first_keyframe);
   void begin_in_own_frame(std::uint32_t first_keyframe);
   // One that goes on where an older keyframe was found.
@@ -36,16 +36,16 @@ class Segments {
 
   // It became known how a frame lies in the map's: what lies in it was moved there.
   void join_map_frame(Frame frame);
-  // The present segment does not lie in the map's frame as was believed; nobody knows how it does.
-  void leave_map_frame() { segments_.back().frame = next_frame_++; }
+  // The present submap does not lie in the map's frame as was believed; nobody knows how it does.
+  void leave_map_frame() { submaps_.back().frame = next_frame_++; }
 
  private:
-  struct Segment {
+  struct Submap {
     std::uint32_t first_keyframe = 0;
     Frame frame = kMapFrame;
   };
 
-  std::vector<Segment> segments_;
+  std::vector<Submap> submaps_;
   Frame next_frame_ = kMapFrame + 1;
 };
 

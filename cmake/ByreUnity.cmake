@@ -1,0 +1,21 @@
+# Several files as one: what they include is then read once for all of them, which is most of compiling a test or a
+# command. Names in anonymous namespaces must so be unique in a room, see tools/check_floors.py.
+option(BYRE_UNITY "Compile several files of a room as one: a build from scratch takes half the time" ON)
+
+# Rooms whose results are kept from one version to the next, bit by bit: what the compiler rounds where must not depend on
+# which files happen to be compiled together.
+set(BYRE_ROOMS_APART geometry motion features optimise map place simulation slam mapping localisation session system)
+
+# Rooms whose tests are apart: in so large a file the compiler no longer puts Eigen's allocation where it is called, see
+# tools/check_allocations.sh.
+set(BYRE_TESTS_APART optimise)
+
+# Files that include themselves once for each processor, and those whose objects are picked one by one.
+set(BYRE_FILES_APART features/downscale.cc features/remap.cc features/gaussian_blur.cc features/fast_corners.cc
+    dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc)
+list(TRANSFORM BYRE_FILES_APART PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
+set_source_files_properties(${BYRE_FILES_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+
+function(byre_unite target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BYRE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
