@@ -159,6 +159,7 @@ TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
   Calibration calibration = read_calibration(room.calibration());
   calibration.right.reset();
   Slam slam = Slam::on_map(calibration, room.map(), Room::options());
+  Texts health(peer_, "rt/byre/health", kVolatile);
   auto* const left =
       peer_.writer("rt/left/compressed", TypeSupport(new sensor_msgs::msg::CompressedImagePubSubType), kVolatile);
   NodeProcess node(folder_,
@@ -167,6 +168,7 @@ TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
                        "calibration:\n  file: " + room.calibration().string() + "\n",
                    domain_);
   ASSERT_TRUE(FastPeer::is_heard(left) && diagnostics_.first()) << node.said();
+  ASSERT_TRUE(settle(left, sensor_msgs::msg::CompressedImage()));
   std::vector<nav_msgs::msg::Odometry> answers;
   for (std::size_t i = 0; i < 20; ++i) {
     sensor_msgs::msg::CompressedImage message;
@@ -175,6 +177,11 @@ TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
     message.data(room.file("cam0", i));
     left->write(&message);
     const FrameReport expected = slam.process({view_of(room.frames()[i]).left});
+    // The newest frame wins, so the next one waits for the answer to this one.
+    const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
+    ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; }))
+        << "frame " << i << "\n"
+        << node.said();
     if (!expected.odometry_from_body) continue;
     const auto odometry =
         odometry_.find([&](const auto& answer) { return time_of(answer.header().stamp()) == room.frames()[i].time; });

@@ -115,11 +115,7 @@ bool CameraFeed::is_heard() const {
 bool CameraFeed::settle() {
   sensor_msgs::msg::Image image = image_message({1, 1, {0}}, {}, "left_optical");
   image.encoding("none");
-  left_->write(&image);
-  right_->write(&image);
-  const eprosima::fastrtps::Duration_t patience(20, 0);
-  return left_->wait_for_acknowledgments(patience) == ReturnCode_t::RETCODE_OK &&
-         right_->wait_for_acknowledgments(patience) == ReturnCode_t::RETCODE_OK;
+  return testing_ros2::settle(left_, image) && testing_ros2::settle(right_, image);
 }
 
 void CameraFeed::send_left(const ImageFrame& frame, Timestamp later) {

@@ -33,6 +33,14 @@ class NodeProcess {
   pid_t process_ = -1;
 };
 
+// Cyclone DDS leaves out what a reliable writer sends before its first heartbeat is in. Sends a message of no use, and
+// waits until it is acknowledged.
+template <typename Message>
+bool settle(eprosima::fastdds::dds::DataWriter* writer, Message message) {
+  writer->write(&message);
+  return writer->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(20, 0)) == ReturnCode_t::RETCODE_OK;
+}
+
 // A port of TCP that nobody listens at.
 int free_port();
 
@@ -50,9 +58,7 @@ class CameraFeed {
   explicit CameraFeed(FastPeer& peer, bool is_reliable = true);
 
   bool is_heard() const;
-  // Cyclone DDS leaves out what a reliable writer sends before its first heartbeat is in. Sends images of no use, and
-  // waits until they are acknowledged.
-  bool settle();
+  bool settle();  // as above, by images of no use
   void send(const ImageFrame& frame, Timestamp later = {}) {
     send_left(frame, later);
     if (frame.right) send_right(frame, later);
