@@ -48,7 +48,9 @@ struct OpenOptions {
   std::optional<std::string> right_topic{};
   std::optional<std::filesystem::path> wheels{};  // file of wheel odometry, in place of wheel.txt in the folder
   bool use_wheels = true;                         // whether wheel.txt is used where it is there
-  bool use_gyroscope = false;                     // whether imu0 of the folder is used
+  bool use_gyroscope = false;  // whether imu0 of the folder, or the only sensor_msgs/Imu of a bag is used
+  std::optional<std::string> wheels_topic{};  // topic of a bag's wheel odometry, nav_msgs/Odometry; empty: none
+  std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the

@@ -58,7 +58,7 @@ class CameraFeed {
   explicit CameraFeed(FastPeer& peer, bool is_reliable = true);
 
   bool is_heard() const;
-  bool settle();  // as above, by images of no use
+  bool settle();  // both writers, by images of no use
   void send(const ImageFrame& frame, Timestamp later = {}) {
     send_left(frame, later);
     if (frame.right) send_right(frame, later);

@@ -4,6 +4,7 @@
 #include "byre/calibration_file.h"
 #include "byre/dataset/bag_frames.h"
 #include "byre/dataset/bag_image.h"
+#include "byre/dataset/bag_motion.h"
 #include "byre/dataset/bag_topics.h"
 #include "byre/dataset/camera_info.h"
 #include "byre/dataset/frame_selection.h"
@@ -31,11 +32,12 @@ bool is_wanted(std::string_view type) {
 
 class BagRecording final : public Recording {
  public:
-  BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames, std::string place,
-               std::vector<std::string> warnings)
+  BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames,
+               MotionSamples motion, std::string place, std::vector<std::string> warnings)
       : bag_(std::move(bag)),
         calibration_(std::move(calibration)),
         frames_(std::move(frames)),
+        motion_(std::move(motion)),
         place_(std::move(place)),
         warnings_(std::move(warnings)) {
     for (const BagFrame& frame : frames_) times_.push_back(frame.time);
@@ -45,6 +47,7 @@ class BagRecording final : public Recording {
   const std::vector<Timestamp>& times() const override { return times_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
   std::optional<ImageFrame> read(int index) override;
+  const MotionSamples& motion() const override { return motion_; }
 
  private:
   std::optional<Image> read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera);
@@ -54,6 +57,7 @@ class BagRecording final : public Recording {
   PlacedCalibration calibration_;      // constant after construction
   std::vector<BagFrame> frames_;       // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
+  MotionSamples motion_;               // constant after construction
   std::string place_;                  // constant after construction
   std::vector<std::string> warnings_;  // grows with read
 };
@@ -208,7 +212,8 @@ std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const Place
 
 std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameRange& range,
                                               const OpenOptions& options) {
-  std::unique_ptr<Bag> bag = open_bag(path, is_wanted);
+  std::unique_ptr<Bag> bag =
+      open_bag(path, [&](std::string_view type) { return is_wanted(type) || is_of_motion(type, options); });
   const BagContent& content = bag->content();
   const std::string place = path.string();
   std::vector<std::string> warnings = content.damage;
@@ -224,13 +229,15 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
   frames = frames_of_choice(std::move(frames), calibration, options.camera);
   require_calibrated_sizes(*bag, frames, calibration, path);
+  auto [motion, motion_warnings] = read_bag_motion(*bag, options, place);
+  warnings.insert(warnings.end(), motion_warnings.begin(), motion_warnings.end());
 
   std::vector<Timestamp> times;
   for (const BagFrame& frame : frames) times.push_back(frame.time);
   std::vector<BagFrame> selected;
   for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(frames[i]);
-  return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), place,
-                                        std::move(warnings));
+  return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), std::move(motion),
+                                        place, std::move(warnings));
 }
 
 }  // namespace byre

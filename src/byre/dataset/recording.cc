@@ -129,13 +129,14 @@ void require_untimed(RecordingFormat format, const fs::path& path, const OpenOpt
 }
 
 void require_no_topics(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
-  if (format == RecordingFormat::bag || (!options.left_topic && !options.right_topic)) return;
+  const bool is_any_named = options.left_topic || options.right_topic || options.wheels_topic || options.imu_topic;
+  if (format == RecordingFormat::bag || !is_any_named) return;
   throw InputError(path.string(), "is no bag, so it has no topics", "leave them out");
 }
 
 void require_no_motion(const fs::path& path, const OpenOptions& options) {
   if (!options.wheels && !options.use_gyroscope) return;
-  throw InputError(path.string(), "is no folder, and wheels and gyroscopes are read beside folders of images",
+  throw InputError(path.string(), "is a video, and wheels and gyroscopes are read of bags and beside folders of images",
                    "leave them out, or extract the images");
 }
 
@@ -249,8 +250,10 @@ RecordingIndex index_recording(const fs::path& path, const OpenOptions& options)
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
   const RecordingFormat format = guess_format(path);
   require_no_topics(format, path, options);
-  if (format == RecordingFormat::video || format == RecordingFormat::bag) require_no_motion(path, options);
-  if (format == RecordingFormat::video) return open_video(path, range, options);
+  if (format == RecordingFormat::video) {
+    require_no_motion(path, options);
+    return open_video(path, range, options);
+  }
   if (format == RecordingFormat::bag) {
     require_untimed(format, path, options);
     return open_bag_recording(path, range, options);

@@ -43,6 +43,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       runner_(config),
       watchers_(config.http_port ? std::make_shared<LiveTopics>() : nullptr),
       outputs_(config, participant_, graph_, watchers_.get()),
+      motion_(config, participant_, graph_),
       pairs_(pairing_options(config)),
       watch_(config.topic(config.left), steady_now()) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
@@ -173,6 +174,8 @@ void Node::process(const Pairs::Pair& pair) {
     left.about.time = time;
     CameraImages images{left.view()};
     if (right) images.right = right->view();
+    motion_.take();
+    motion_.tell(clock_, runner_);
     const FrameReport report = runner_.process(images);
     outputs_.tell_images(pair.stamp, pair.left.bytes(),
                          pair.right ? pair.right->bytes() : std::span<const std::byte>());
@@ -268,6 +271,7 @@ void Node::run(const std::function<bool()>& should_stop) {
     take_calibration(now);
     take_requests();
     take_images(now);
+    motion_.take();
     if (runner_.is_running()) {
       if (const auto pair = pairs_.next(now)) process(*pair);
     }

@@ -7,6 +7,7 @@
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_message.h"
 #include "byre/node/image_pairs.h"
+#include "byre/node/motion_input.h"
 #include "byre/node/node_config.h"
 #include "byre/node/node_outputs.h"
 #include "byre/node/pose_frames.h"
@@ -63,6 +64,7 @@ class Node {
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
   std::optional<Subscriber> left_, right_, command_, initial_pose_;
+  MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
   CameraWatch watch_;

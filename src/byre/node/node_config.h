@@ -60,6 +60,9 @@ struct NodeConfig {
   double pair_tolerance = 0.0;             // seconds between left and right image; 0: equal stamps
   double pair_wait = 0.05;                 // seconds that a left image waits for its right one
 
+  std::string wheels;     // odometry by wheels alone; empty: none
+  std::string gyroscope;  // empty: none
+
   std::optional<std::filesystem::path> calibration;  // empty: by camera info
   std::string left_info = "/left/camera_info";
   std::string right_info = "/right/camera_info";

@@ -178,6 +178,15 @@ void add_frames(Table& table) {
       "time by which map->odom is stamped later than its image"));
 }
 
+void add_motion(Table& table) {
+  table.push_back(topic(
+      "motion.wheels", [](auto& c) -> auto& { return c.wheels; },
+      "nav_msgs/Odometry by wheels alone, docs/wheels.md; empty: none"));
+  table.push_back(topic(
+      "motion.gyroscope", [](auto& c) -> auto& { return c.gyroscope; },
+      "sensor_msgs/Imu, of which the angular rates are used; empty: none"));
+}
+
 void add_topics(Table& table) {
   table.push_back(topic(
       "topics.odometry", [](auto& c) -> auto& { return c.odometry; }, "smooth pose and motion"));
@@ -264,6 +273,7 @@ Table make_table() {
   Table table;
   add_slam(table);
   add_images(table);
+  add_motion(table);
   add_frames(table);
   add_topics(table);
   add_http(table);

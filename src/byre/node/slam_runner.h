@@ -21,6 +21,9 @@ class SlamRunner {
   void start(const Calibration& calibration);
 
   bool is_running() const { return slam_.has_value(); }
+  // What wheels and a gyroscope told before the next frame. Precondition: is_running().
+  void tell_wheels(const StampedPose& odometry_from_base) { slam_->tell_wheels(odometry_from_base); }
+  void tell_gyroscope(const AngularRate& rate) { slam_->tell_gyroscope(rate); }
   FrameReport process(const CameraImages& images);
 
   // A pose of the body, as it is published: on the floor plan where that is wanted.

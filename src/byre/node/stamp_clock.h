@@ -18,6 +18,9 @@ class StampClock {
   // arrival: by a clock that never goes back.
   Reading read(Timestamp stamp, Timestamp arrival);
 
+  // A stamp of another sensor by the same clock, without the jumps so far.
+  Timestamp without_jumps(Timestamp stamp) const { return stamp - jumped_; }
+
  private:
   struct Last {
     Timestamp stamp{};

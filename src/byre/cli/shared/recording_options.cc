@@ -49,7 +49,12 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
             "Wheel odometry, \"time_s tx ty tz qx qy qz qw\" a line, in place of wheel.txt in the folder")
       ->type_name("FILE");
   command.add_flag("!--no-wheels", options.use_wheels, "Leave wheel.txt in the folder out");
-  command.add_flag("--gyroscope", options.use_gyroscope, "Use the gyroscope in the folder: mav0/imu0/data.csv");
+  command.add_flag("--gyroscope", options.use_gyroscope,
+                   "Use the gyroscope in the folder, mav0/imu0/data.csv, or the only sensor_msgs/Imu of a bag");
+  add_text(command, "--wheels-topic", options.wheels_topic, "Topic of a bag's wheel odometry, nav_msgs/Odometry")
+      ->type_name("TOPIC");
+  add_text(command, "--imu-topic", options.imu_topic, "Topic of a bag's gyroscope that is used, sensor_msgs/Imu")
+      ->type_name("TOPIC");
   add_text(command, "--left", options.left_topic, "Topic of a bag's left images, or of its only camera's")
       ->type_name("TOPIC");
   add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");

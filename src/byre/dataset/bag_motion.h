@@ -1,0 +1,29 @@
+#pragma once
+
+#include "byre/bag/bag.h"
+#include "byre/body_motion.h"
+#include "byre/recording.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+struct BagMotion {
+  MotionSamples samples;
+  std::vector<std::string> warnings;
+};
+
+// Whether messages of a type are needed for what the options ask for, beside images.
+bool is_of_motion(std::string_view type, const OpenOptions& options);
+
+// What wheels and a gyroscope told, at the times of the messages' headers:
+//   wheels      nav_msgs/Odometry of the topic that the options name; or the file that they name
+//   gyroscope   sensor_msgs/Imu of the topic that they name; of the only one, where they ask for a gyroscope alone
+// place: how the bag is named in errors and warnings. Warnings count what is damaged or not finite, and what was
+// recorded after later ones. Throws InputError, listing the topics of that kind, for a topic that is not there, and
+// where that leaves a choice.
+BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place);
+
+}  // namespace byre

@@ -1,0 +1,105 @@
+#include "byre/dataset/bag_motion.h"
+
+#include "byre/bag/bag_scene.h"
+#include "byre/dataset/test_folder.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr const char* kOdometry = "/wheel/odometry";
+constexpr const char* kImuData = "/imu/data";
+
+Timestamp at_ms(int milliseconds) {
+  return std::chrono::milliseconds(milliseconds);
+}
+
+SceneMessage odometry(const std::string& topic, int stamp_ms, int log_ms, double x) {
+  ros::Odometry message{.header = {ros::to_time(at_ms(stamp_ms)), "odom"}, .child_frame_id = "base_link"};
+  message.pose.pose.position = {x, 2.0, 0.0};
+  message.pose.pose.orientation = {0.0, 0.0, 0.6, 0.8};
+  return scene_message(topic, at_ms(log_ms), message);
+}
+
+SceneMessage imu(const std::string& topic, int stamp_ms, double rate) {
+  ros::Imu message{.header = {ros::to_time(at_ms(stamp_ms)), "imu"}};
+  message.angular_velocity = {0.1, rate, -0.3};
+  return scene_message(topic, at_ms(stamp_ms + 2), message);
+}
+
+class BagMotions : public BagFolderTest {
+ protected:
+  BagMotion read(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
+    const auto bag = open_bag(write("walk.mcap", mcap_bytes(messages, "zstd")),
+                              [&](std::string_view type) { return is_of_motion(type, options); });
+    return read_bag_motion(*bag, options, "walk.mcap");
+  }
+  std::string read_error(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
+    return error_of([&] { read(messages, options); });
+  }
+};
+
+TEST_F(BagMotions, GiveWheelsAndRatesAtTheTimesOfTheirHeaders) {
+  const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2),
+                                 imu(kImuData, 1010, 0.25), odometry(kOdometry, 1020, 1023, 0.6)},
+                                {.wheels_topic = kOdometry, .imu_topic = kImuData});
+  EXPECT_THAT(motion.warnings, IsEmpty());
+  ASSERT_THAT(motion.samples.wheels, SizeIs(2));
+  EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1020));
+  EXPECT_TRUE(motion.samples.wheels[1].world_from_body.translation.isApprox(Eigen::Vector3d(0.6, 2.0, 0.0)));
+  EXPECT_NEAR(motion.samples.wheels[1].world_from_body.rotation.z(), 0.6, 1e-12);
+  ASSERT_THAT(motion.samples.rates, SizeIs(2));
+  EXPECT_EQ(motion.samples.rates[0].time, at_ms(1005));
+  EXPECT_TRUE(motion.samples.rates[0].rate.isApprox(Eigen::Vector3d(0.1, 0.2, -0.3)));
+}
+
+TEST_F(BagMotions, AreNotReadUnasked) {
+  const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2)}, {});
+  EXPECT_THAT(motion.samples.wheels, IsEmpty());
+  EXPECT_THAT(motion.samples.rates, IsEmpty());
+}
+
+TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
+  const OpenOptions options{.use_gyroscope = true};
+  EXPECT_THAT(read({imu(kImuData, 1005, 0.2)}, options).samples.rates, SizeIs(1));
+  const std::string error = read_error({imu(kImuData, 1005, 0.2), imu("/camera/imu", 1006, 0.2)}, options);
+  EXPECT_THAT(error, AllOf(HasSubstr("/imu/data"), HasSubstr("/camera/imu")));
+  EXPECT_THAT(error, HasSubstr("--imu-topic TOPIC"));
+}
+
+TEST_F(BagMotions, SayWhichTopicsThereAre) {
+  EXPECT_THAT(read_error({odometry(kOdometry, 1000, 1003, 0.5)}, {.wheels_topic = "/odom"}),
+              HasSubstr("has no nav_msgs/msg/Odometry of the topic /odom; its topics of that kind: /wheel/odometry"));
+  EXPECT_THAT(read_error({imu(kImuData, 1005, 0.2)}, {.wheels_topic = "/odom"}), HasSubstr("of that kind: none"));
+}
+
+TEST_F(BagMotions, AreInOrderWhateverWasRecorded) {
+  const BagMotion motion = read(
+      {odometry(kOdometry, 1000, 1003, 0.5), odometry(kOdometry, 1040, 1043, 0.7), odometry(kOdometry, 1020, 1050, 0.6),
+       odometry(kOdometry, 1020, 1060, 0.6), odometry(kOdometry, 1060, 1070, std::numeric_limits<double>::quiet_NaN())},
+      {.wheels_topic = kOdometry});
+  ASSERT_THAT(motion.samples.wheels, SizeIs(3));
+  EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1020));
+  EXPECT_THAT(motion.warnings,
+              ElementsAre(HasSubstr("recorded after later ones"), HasSubstr("1 messages are damaged")));
+}
+
+TEST_F(BagMotions, HaveTheTimesOfTheRecorderWhereHeadersHaveNone) {
+  const BagMotion motion =
+      read({odometry(kOdometry, 0, 1003, 0.5), odometry(kOdometry, 0, 1023, 0.6)}, {.wheels_topic = kOdometry});
+  ASSERT_THAT(motion.samples.wheels, SizeIs(2));
+  EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1023));
+  EXPECT_THAT(motion.warnings, ElementsAre(HasSubstr("those of the recorder")));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,93 @@
+// `byre node` and the odometry of wheels that another vendor's program sends.
+
+#include "node_fixture.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+namespace byre::testing_ros2 {
+namespace {
+
+constexpr double kFrameRate = 5.0;  // Hz
+constexpr int kFrames = 76;
+constexpr int kFirstDark = 70;  // frame from which on images are black
+constexpr int kWheelSamplesPerFrame = 4;
+
+// A base that drives three metres through the room's middle, in bends to the left and to the right.
+Pose room_from_base(double seconds) {
+  constexpr double kStep = 0.01;
+  constexpr double kSpeed = 0.22;  // metres per second
+  Pose pose{Eigen::Quaterniond::Identity(), {-1.5, 0.0, 0.0}};
+  for (double t = 0.0; t < seconds - 0.5 * kStep; t += kStep) {
+    pose = pose * Pose{rotation_exp({0.0, 0.0, 0.7 * std::cos(0.9 * t) * kStep}), {kSpeed * kStep, 0.0, 0.0}};
+  }
+  return pose;
+}
+
+nav_msgs::msg::Odometry wheel_message(Timestamp time) {
+  const Pose pose = room_from_base(to_seconds(time));
+  nav_msgs::msg::Odometry message;
+  message.header().stamp(ros_time(time));
+  message.header().frame_id("odom");
+  message.pose().pose().position().x(pose.translation.x());
+  message.pose().pose().position().y(pose.translation.y());
+  message.pose().pose().orientation().z(pose.rotation.z());
+  message.pose().pose().orientation().w(pose.rotation.w());
+  return message;
+}
+
+// What a camera on that base sees.
+class DriveThroughRoom {
+ public:
+  DriveThroughRoom() : rendered_("byre_ros2_drive", euroc_like_calibration(4), truth()) {
+    const auto recording = open_recording(rendered_.folder(), {});
+    for (int i = 0; i < recording->size(); ++i) frames_.push_back(*recording->read(i));
+    for (std::size_t i = kFirstDark; i < frames_.size(); ++i) {
+      std::ranges::fill(frames_[i].left.pixels, std::uint8_t{0});
+      std::ranges::fill(frames_[i].right->pixels, std::uint8_t{0});
+    }
+  }
+
+  const std::vector<ImageFrame>& frames() const { return frames_; }
+  Eigen::Vector3d position(std::size_t frame) const { return rendered_.truth()[frame].world_from_body.translation; }
+
+ private:
+  static Trajectory truth() {
+    const Pose base_from_body = robot_from_camera() * inverse(euroc_like_calibration(4).body_from_left);
+    Trajectory truth;
+    for (int i = 0; i < kFrames; ++i) {
+      truth.push_back({from_seconds(i / kFrameRate), room_from_base(i / kFrameRate) * base_from_body});
+    }
+    return truth;
+  }
+
+  RenderedFixture rendered_;
+  std::vector<ImageFrame> frames_;
+};
+
+TEST_F(ByreNode, GoesOnByWheelsWhereItSeesNothing) {
+  const DriveThroughRoom drive;
+  auto* const wheels = peer_.writer("rt/wheels", TypeSupport(new nav_msgs::msg::OdometryPubSubType), kVolatile);
+  NodeProcess node(folder_, mapping() + "motion:\n  wheels: /wheels\n", domain_);
+  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(FastPeer::is_heard(wheels) && settle(wheels, nav_msgs::msg::Odometry()));
+  std::vector<Eigen::Vector3d> positions;
+  for (std::size_t i = 0; i < drive.frames().size(); ++i) {
+    const Timestamp time = drive.frames()[i].time;
+    for (int j = kWheelSamplesPerFrame - 1; j >= 0 && i > 0; --j) {
+      nav_msgs::msg::Odometry message = wheel_message(time - from_seconds(j / kFrameRate / kWheelSamplesPerFrame));
+      wheels->write(&message);
+    }
+    const auto odometry = answer_to(feed_, odometry_, drive.frames()[i]);
+    ASSERT_TRUE(odometry) << "frame " << i << "\n" << node.said();
+    positions.push_back(vector_of(odometry->pose().pose().position()));
+  }
+  const double driven = (drive.position(kFrames - 1) - drive.position(kFirstDark - 1)).norm();
+  const double told = (positions.back() - positions[kFirstDark - 1]).norm();
+  EXPECT_NEAR(told, driven, 0.05 * driven);
+  EXPECT_EQ(node.stop(), 0);
+}
+
+}  // namespace
+}  // namespace byre::testing_ros2
