@@ -127,7 +127,8 @@ void MotionPrior::watch_for_slip(const SeenMotion& motion) {
   if (!mounting_) return;
   const auto base = base_between(motion.earlier, motion.later);
   if (!base) return;
-  if (disagreement(body_motion(*mounting_, *base), motion, mounting_->metres_per_unit) > 1.0) {
+  const Pose told = body_motion(*mounting_, without_turn_errors(mounting_->turn_errors, *base));
+  if (disagreement(told, motion, mounting_->metres_per_unit) > 1.0) {
     if (!is_slipping_) ++slips_;
     is_slipping_ = true;
     agreeing_ = 0;
@@ -147,16 +148,17 @@ std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earli
 std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
                                                  const std::optional<Eigen::Quaterniond>& turn) const {
   if (!mounting_ || is_slipping_) return {};
-  auto base = base_between(earlier, later);
-  if (!base) return {};
+  const auto told = base_between(earlier, later);
+  if (!told) return {};
+  Pose base = without_turn_errors(mounting_->turn_errors, *told);
   bool is_way_known = true;
   if (turn) {
     const Eigen::Quaterniond& base_from_body = mounting_->base_from_body.rotation;
     const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
-    is_way_known = !is_slip(base->rotation, base_turn, to_seconds(later - earlier));
-    base->rotation = base_turn;
+    is_way_known = !is_slip(base.rotation, base_turn, to_seconds(later - earlier));
+    base.rotation = base_turn;
   }
-  const Pose body = body_motion(*mounting_, *base);
+  const Pose body = body_motion(*mounting_, base);
   BodyMotion motion{body, covariance_of(body, *mounting_)};
   if (!is_way_known) forget_way(motion);
   return motion;

@@ -21,9 +21,11 @@ Eigen::Vector3d rate_of_body(const Drive& drive, double seconds) {
 struct Told {
   bool wheels = true;
   bool gyroscope = false;
-  double slip_from = 1e9;  // seconds, from when on the wheels spin
-  double slip_to = 1e9;    // seconds
-  double slip_turn = 0.0;  // radians that they seem to turn then, each time that they tell
+  double slip_from = 1e9;       // seconds, from when on the wheels spin
+  double slip_to = 1e9;         // seconds
+  double slip_turn = 0.0;       // radians that they seem to turn then, each time that they tell
+  double turn_scale = 1.0;      // radians that they tell of one
+  double turn_per_metre = 0.0;  // radians that they add
 };
 
 // A prior that has followed a drive: seen until dark, told until the end.
@@ -35,6 +37,8 @@ MotionPrior followed(const Drive& drive, const Told& told, double dark, double e
     const double t = step * 0.01;
     if (told.wheels && step % 2 == 0) {
       Pose motion = inverse(Drive::world_from_base(t - 0.02)) * Drive::world_from_base(t);
+      const Eigen::Vector3d turn = rotation_log(motion.rotation);
+      motion.rotation = rotation_exp(told.turn_scale * turn + Eigen::Vector3d(0.0, 0.0, 0.01 * told.turn_per_metre));
       if (t > told.slip_from && t < told.slip_to) {
         motion.translation.x() += 0.02;
         motion.rotation = motion.rotation * rotation_exp({0.0, 0.0, told.slip_turn});
@@ -96,6 +100,20 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05);  // metres, of 5
   EXPECT_LT(error.tail<3>().norm(), 0.02);
   EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
+// Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
+TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const Told wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
+  const MotionPrior prior = followed(drive, wrong, 60.0, 72.0);
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.wheels()->turn_errors.scale, 1.0 / 0.97, 0.003);
+  EXPECT_NEAR(prior.wheels()->turn_errors.per_metre, -0.004, 0.0015);
+  const BodyMotion told = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.tail<3>().norm(), 0.01);  // radians; 0.05 are told wrongly
+  EXPECT_LT(error.head<3>().norm(), 0.05);  // metres, of 5
 }
 
 // The last frames are led to by wheels that were heard up to then only, and tell what they did later.

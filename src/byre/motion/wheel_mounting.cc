@@ -44,6 +44,34 @@ std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions) {
   return median_or(std::move(errors), kMaxAxisError) < kMaxAxisError ? std::optional(up) : std::nullopt;
 }
 
+// Least squares with the weights of Geman and McClure, held to what wheels usually are.
+TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up) {
+  constexpr double kScaleSigma = 0.03;      // share, among wheels
+  constexpr double kPerMetreSigma = 0.005;  // radians per metre, among wheels
+  constexpr double kLeastError = 0.001;     // radians: no eyes are better
+  TurnErrors found;
+  double usual = 0.01;  // radians
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d normal =
+        Eigen::Vector2d(1.0 / (kScaleSigma * kScaleSigma), 1.0 / (kPerMetreSigma * kPerMetreSigma)).asDiagonal();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    std::vector<double> errors;
+    for (const MotionPair& motion : motions) {
+      const Eigen::Vector2d factors(yaw_of(motion.base), motion.base.translation.x());
+      const double extra = rotation_log(motion.body.rotation).dot(up) - factors[0];
+      const double error = std::abs(extra - factors.dot(Eigen::Vector2d(found.scale - 1.0, found.per_metre)));
+      const double weight = 1.0 / std::pow(usual * (1.0 + std::pow(error / (3.0 * usual), 2)), 2);
+      normal += weight * factors * factors.transpose();
+      right += weight * extra * factors;
+      errors.push_back(error);
+    }
+    const Eigen::Vector2d solved = normal.ldlt().solve(right);
+    found = {1.0 + solved[0], solved[1]};
+    usual = std::max(median_or(std::move(errors), usual), kLeastError);
+  }
+  return found;
+}
+
 // One motion as two equations, in metres, linear in (s cos, s sin, x, y): s the metres in a unit, the angle that from
 // the levelled body to the base, x and y the lever arm.
 struct PlanarMotion {
@@ -116,9 +144,12 @@ double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Ve
 
 }  // namespace
 
-std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions) {
-  const auto up = find_up(motions);
+std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& told) {
+  const auto up = find_up(told);
   if (!up) return {};
+  const TurnErrors turn_errors = find_turn_errors(told, *up);
+  std::vector<MotionPair> motions = told;
+  for (MotionPair& motion : motions) motion.base = without_turn_errors(turn_errors, motion.base);
   const Eigen::Quaterniond level_from_body = Eigen::Quaterniond::FromTwoVectors(*up, Eigen::Vector3d::UnitZ());
   std::vector<PlanarMotion> planar_motions;
   double way = 0.0;
@@ -145,7 +176,14 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   mounting.scale_sigma = scale_sigma;
   mounting.way_error = solved->way_error;
   mounting.turn_error = median_turn_error(motions, *up);
+  mounting.turn_errors = turn_errors;
   return mounting;
+}
+
+Pose without_turn_errors(const TurnErrors& errors, const Pose& base) {
+  const double extra = (errors.scale - 1.0) * yaw_of(base) + errors.per_metre * base.translation.x();
+  const Eigen::Quaterniond half = rotation_exp({0.0, 0.0, 0.5 * extra});
+  return {half * base.rotation * half, half * base.translation};
 }
 
 Pose body_motion(const WheelMounting& mounting, const Pose& base) {

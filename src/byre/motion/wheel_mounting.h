@@ -13,6 +13,16 @@ struct MotionPair {
   Pose body;  // in the lengths that the map has
 };
 
+// What wheels tell wrongly of turns, always alike: their distance is taken to be another, or one is larger than the
+// other (Borenstein and Feng, "Measurement and Correction of Systematic Odometry Errors in Mobile Robots", 1996).
+struct TurnErrors {
+  double scale = 1.0;      // true turn in a radian that is told
+  double per_metre = 0.0;  // radians to the left that a metre ahead, as it is told, adds
+};
+
+// The motion of a base without them, earlier_from_later as it is told; of a second at most.
+Pose without_turn_errors(const TurnErrors& errors, const Pose& base);
+
 // How the body is mounted on the base whose wheels tell its motion, and how long the map's unit is by them. The base
 // drives in its plane, so how high the body lies above it cannot be known, and is taken to be nothing.
 struct WheelMounting {
@@ -20,16 +30,17 @@ struct WheelMounting {
   double metres_per_unit = 1.0;  // metres by the wheels in a unit of the map's lengths
   double scale_sigma = 0.0;      // standard deviation of metres_per_unit as a share of it
   double way_error = 0.0;        // median distance between motions by wheels and by sight, as a share of the way
-  double turn_error = 0.0;       // median difference of turns, as a share of the turn
+  double turn_error = 0.0;       // median difference of turns, as a share of the turn, without turn_errors
+  TurnErrors turn_errors;
 };
 
-// The mounting by motions in which the base turned both ways or far, and drove: first the axis about which both turn,
-// then, linear in all that is left, the direction ahead, the lever arm and the scale (Heng, Li and Pollefeys,
-// "CamOdoCal", IROS 2013, sections III.A and III.B). Motions that disagree with most, as where a wheel slips, count for
-// nothing. Empty while the motions leave it open.
+// The mounting by motions in which the base turned both ways or far, and drove: first the axis about which both turn
+// and what is told wrongly of that, then, linear in all that is left, the direction ahead, the lever arm and the scale
+// (Heng, Li and Pollefeys, "CamOdoCal", IROS 2013, sections III.A and III.B). Motions that disagree with most, as where
+// a wheel slips, count for nothing. Empty while the motions leave it open.
 std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions);
 
-// The body's motion, in the map's lengths, by that of the base.
+// The body's motion, in the map's lengths, by that of the base as it was.
 Pose body_motion(const WheelMounting& mounting, const Pose& base);
 
 }  // namespace byre
