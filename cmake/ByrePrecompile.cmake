@@ -18,7 +18,8 @@ function(byre_precompile kind target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # without it ccache finds nothing
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # It takes what is precompiled for code of ours, and warns of the standard library's, falsely.
-    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-maybe-uninitialized)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
+                           -Wno-maybe-uninitialized -Wno-restrict)
   endif()
   get_property(first GLOBAL PROPERTY BYRE_PRECOMPILED_${kind}_BY)
   if(first)

@@ -69,8 +69,7 @@ double tolerance_of(const BundleObservation& observation) {
   return 1.0 + std::pow(systematic_sigma / sigma, 2);
 }
 
-bool is_outlier(const BundleObservation& observation, bool of_offline_point, double squared_error,
-                const MappingOptions& options) {
+bool is_outlier(const BundleObservation& observation, bool of_offline_point, double squared_error) {
   const double gate = observation.is_stereo() ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
   return !(squared_error <= gate * (of_offline_point ? tolerance_of(observation) : 1.0));
 }
@@ -98,12 +97,11 @@ void repair(MapWindow& window, int index) {
   point.point.reference = {window.keyframes[static_cast<std::size_t>(first->keyframe)].id, first->feature};
 }
 
-void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result,
-                     const MappingOptions& options) {
+void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result) {
   for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
     const BundleObservation& observation = bundle.problem.observations[i];
     const bool of_offline_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
-    if (!is_outlier(observation, of_offline_point, result.squared_errors[i], options)) continue;
+    if (!is_outlier(observation, of_offline_point, result.squared_errors[i])) continue;
     const WindowObservation& seen = bundle.observations[i];
     if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
             .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
@@ -143,7 +141,7 @@ void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, cons
     if (result.pose_covariance) {
       window.keyframes.front().keyframe.covariance = *result.pose_covariance + anchor_covariance(window);
     }
-    remove_outliers(window, bundle, result, options);
+    remove_outliers(window, bundle, result);
   }
 }
 
