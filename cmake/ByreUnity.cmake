@@ -2,8 +2,8 @@
 # command. Names in anonymous namespaces must so be unique in a room, see tools/check_floors.py.
 option(BYRE_UNITY "Compile several files of a room as one: a build from scratch takes half the time" ON)
 
-# Rooms whose results are kept from one version to the next, bit by bit: what the compiler rounds where must not depend on
-# which files happen to be compiled together.
+# Rooms whose results are kept from one version to the next, bit by bit: what the compiler rounds where must not depend
+# on which files happen to be compiled together.
 set(BYRE_ROOMS_APART geometry motion features optimise map place simulation slam mapping localisation session system)
 
 # Rooms whose tests are apart: in so large a file the compiler no longer puts Eigen's allocation where it is called, see

@@ -10,6 +10,7 @@ overloaded by types of byre. Those that take others, which convert into each oth
 one for what a header declares.
 Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 nothing to check.
 """
+import functools
 import pathlib
 import re
 import sys
@@ -145,7 +146,8 @@ def include_fault(room: str, header: str, is_test: bool) -> str | None:
     if found := re.match(r"byre/(\w+)/", header):
         return room_fault(room, found[1])
     if found := re.fullmatch(r"byre/(\w+\.h)", header):
-        return room_fault(room, PUBLIC[found[1]]) if found[1] in PUBLIC else f"'{header}' belongs to no room: see PUBLIC"
+        known = PUBLIC.get(found[1])
+        return room_fault(room, known) if known else f"'{header}' belongs to no room: see PUBLIC"
     return None if is_test else fence_fault(room, header)
 
 
@@ -170,7 +172,8 @@ OPENING = re.compile(
     r"namespace(?:\s+(?P<namespace>[\w:]+))?\s*\{"
     r"|\b(?:struct|class|enum(?:\s+class)?)\s+(?P<type>\w+)\s*(?:final\s*)?(?::[^:;{(][^;{(]*)?\{"
     r"|(?<=\n)(?:inline\s+)?const(?:expr)?\s[^;=({]*\b(?P<constant>k[A-Z]\w*)"
-    r"|(?<=\n)(?!return|using|template|static_assert|#)[A-Za-z_][^\n;{}=()]*[\s&*](?P<function>\w+)\((?:const\s+)?(?P<taken>[\w:]*)"
+    r"|(?<=\n)(?!return|using|template|static_assert|#)[A-Za-z_][^\n;{}=()]*[\s&*](?P<function>\w+)"
+    r"\((?:const\s+)?(?P<taken>[\w:]*)"
     r"|[{}]")
 
 
@@ -195,9 +198,14 @@ def definitions(text: str) -> Iterator[tuple[str, int]]:
             scopes.append((found["namespace"] or ANONYMOUS) if is_namespace else None)
 
 
+@functools.cache
+def definitions_in(path: pathlib.Path) -> tuple[tuple[str, int], ...]:
+    return tuple(definitions(path.read_text(encoding="utf-8")))
+
+
 def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathlib.Path]) -> Iterator[Fault]:
     for path in paths:
-        for name, line in definitions(path.read_text(encoding="utf-8")):
+        for name, line in definitions_in(path):
             if is_wanted(name) and first.setdefault(name, path) != path:
                 yield Fault(path, line, f"{name} is defined by {first[name]} too: name one of them otherwise")
 
@@ -212,7 +220,7 @@ def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[s
     for other, path in headers:
         is_of_tests = re.search("_(scene|fixture|matchers|images)$", path.stem)
         if not is_of_tests and (other == room or FLOOR[other] < FLOOR[room]):
-            for full_name, _ in definitions(path.read_text(encoding="utf-8")):
+            for full_name, _ in definitions_in(path):
                 scope, _, name = full_name.rpartition("::")
                 names[f"{scope}::{ANONYMOUS}::{name}"] = path
     return names

@@ -45,7 +45,8 @@ class Types(CheckFloorsTest):
         self.assertEqual([("byre::Light", 3), ("byre::Kind", 4)], self.defined(text))
 
     def test_what_is_defined_within_a_type_or_a_function_is_its_own(self):
-        text = "namespace byre {\nclass A final : public B {\n struct Impl { int x; };\n};\nint f(Map map) {\n struct C {}; }\n}\n"
+        text = ("namespace byre {\nclass A final : public B {\n struct Impl { int x; };\n};\n"
+                "int f(Map map) {\n struct C {}; }\n}\n")
         self.assertEqual([("byre::A", 2)], self.defined(text))
 
     def test_files_of_a_room_keep_nothing_of_one_name_to_themselves(self):
@@ -60,7 +61,8 @@ class Types(CheckFloorsTest):
 
     def test_a_function_that_is_kept_has_a_name_of_its_own(self):
         kept = "namespace byre {\nnamespace {\n\n%s {\n}\n}\n}\n"
-        self.write("geometry/pose.h", "namespace byre {\nstruct Pose {\n  int size() const;\n};\nPose inverse(int x);\n}\n")
+        self.write("geometry/pose.h",
+                   "namespace byre {\nstruct Pose {\n  int size() const;\n};\nPose inverse(int x);\n}\n")
         self.write("map/map.h", "namespace byre {\nint far(int x);\n}\n")
         self.write("dataset/a.cc", kept % "int inverse(int x)")
         self.write("dataset/b.cc", kept % "int far(int x)")  # of a floor above
@@ -79,7 +81,8 @@ class Types(CheckFloorsTest):
         self.assertEqual([("a.cc", 4)], [(fault.path.name, fault.line) for fault in found])
 
     def test_declared_types_are_not_defined(self):
-        self.assertEqual([("byre::f()", 3)], self.defined("namespace byre {\nclass Map;\nvoid f(const std::string& t);\n}\n"))
+        self.assertEqual([("byre::f()", 3)],
+                         self.defined("namespace byre {\nclass Map;\nvoid f(const std::string& t);\n}\n"))
 
     def test_two_headers_that_define_one_name_are_a_fault(self):
         self.write("camera/exposure.h", "namespace byre {\nstruct Exposure {\n};\n}\n")
@@ -182,7 +185,8 @@ class ForbiddenCalls(CheckFloorsTest):
                 self.assert_one_fault("cli/main.cc", 1, "seed")
 
     def test_names_that_only_resemble_a_call_are_no_fault(self):
-        self.write("map/map.cc", "int a = std::snprintf(b, 1, c); on_exit(1); region.exit(2); my_printf(x); brand(3);\n")
+        self.write("map/map.cc",
+                   "int a = std::snprintf(b, 1, c); on_exit(1); region.exit(2); my_printf(x); brand(3);\n")
         self.assertEqual([], self.found())
 
     def test_comments_and_strings_are_not_code(self):

@@ -2,6 +2,7 @@
 
 #include "node_fixture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>

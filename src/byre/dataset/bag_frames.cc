@@ -2,6 +2,7 @@
 
 #include "byre/dataset/bag_image.h"
 #include "byre/dataset/timed_files.h"
+#include "byre/dataset/timed_messages.h"
 #include "byre/geometry/median.h"
 #include "byre/input_error.h"
 
@@ -10,42 +11,6 @@
 
 namespace byre {
 namespace {
-
-// A message of images and its time.
-struct TimedMessage {
-  Timestamp time{};
-  BagMessage message;
-};
-
-struct TimedMessages {
-  std::vector<TimedMessage> messages;
-  std::vector<std::string> warnings;
-};
-
-// The messages of a topic in the order of their time stamps, each of which is later than the one before. What that
-// leaves out is told.
-TimedMessages timed_messages(const BagContent& content, std::size_t topic, const std::string& place) {
-  TimedMessages timed;
-  auto& [messages, warnings] = timed;
-  for (const BagMessage& message : content.messages) {
-    if (message.topic == topic) messages.push_back({stamp_of(content, message), message});
-  }
-  const std::string name = place + ": " + content.topics[topic].name + ": ";
-  if (std::ranges::all_of(messages, [](const TimedMessage& each) { return each.time == Timestamp(0); })) {
-    warnings.push_back(name + "has no time stamps in its headers, so those of the recorder are taken");
-    for (TimedMessage& each : messages) each.time = each.message.log_time;
-  }
-  std::size_t late = 0;
-  for (std::size_t i = 1; i < messages.size(); ++i) late += messages[i].time < messages[i - 1].time ? 1 : 0;
-  if (late > 0) warnings.push_back(name + std::to_string(late) + " images were recorded after later ones");
-  std::ranges::stable_sort(messages, {}, &TimedMessage::time);
-  const auto repeated = std::ranges::unique(messages, {}, &TimedMessage::time);
-  if (!repeated.empty()) {
-    warnings.push_back(name + std::to_string(repeated.size()) + " images bear the time of another and are left out");
-  }
-  messages.erase(repeated.begin(), repeated.end());
-  return timed;
-}
 
 std::vector<Timestamp> times_of(const std::vector<TimedMessage>& messages) {
   std::vector<Timestamp> times;
@@ -100,11 +65,11 @@ BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const
   const auto tell = [&result](const std::vector<std::string>& warnings) {
     result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
   };
-  const TimedMessages left = timed_messages(content, topics.left, place);
+  const TimedMessages left = timed_messages(content, topics.left, {place, "images"});
   tell(left.warnings);
   for (const TimedMessage& each : left.messages) result.frames.push_back({each.time, each.message});
   if (!topics.right) return result;
-  const TimedMessages right = timed_messages(content, *topics.right, place);
+  const TimedMessages right = timed_messages(content, *topics.right, {place, "images"});
   tell(right.warnings);
   tell(add_right(result.frames, right.messages, place));
   return result;

@@ -90,7 +90,8 @@ TEST_F(BagMotions, AreInOrderWhateverWasRecorded) {
   ASSERT_THAT(motion.samples.wheels, SizeIs(3));
   EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1020));
   EXPECT_THAT(motion.warnings,
-              ElementsAre(HasSubstr("recorded after later ones"), HasSubstr("1 messages are damaged")));
+              ElementsAre(HasSubstr("1 messages were recorded after later ones"),
+                          HasSubstr("1 messages bear the time of another"), HasSubstr("1 messages are damaged")));
 }
 
 TEST_F(BagMotions, HaveTheTimesOfTheRecorderWhereHeadersHaveNone) {

@@ -1,7 +1,8 @@
 #include "byre/features/fast_corners.h"
 
+#include "byre/features/test_images.h"
+
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,11 +13,7 @@ namespace byre {
 namespace {
 
 cv::Mat noise_to_search(int width, int height, double blur) {
-  cv::Mat image(height, width, CV_8U);
-  std::mt19937 random(7);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random());
-  }
+  cv::Mat image = white_noise({width, height}, 7);
   if (blur > 0.0) cv::GaussianBlur(image, image, {0, 0}, blur);
   return image;
 }

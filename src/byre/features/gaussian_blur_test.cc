@@ -1,7 +1,7 @@
 #include "byre/features/gaussian_blur.h"
 
-#include <cstdint>
-#include <random>
+#include "byre/features/test_images.h"
+
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -10,19 +10,10 @@
 namespace byre {
 namespace {
 
-cv::Mat noise_to_blur(cv::Size size, unsigned seed) {
-  cv::Mat image(size, CV_8U);
-  std::mt19937 random(seed);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random());
-  }
-  return image;
-}
-
 class GaussianBlurOf : public testing::TestWithParam<std::pair<int, int>> {};  // width and height, pixels
 
 TEST_P(GaussianBlurOf, GivesTheValuesOfOpenCv) {
-  const cv::Mat image = noise_to_blur({GetParam().first, GetParam().second}, 3);
+  const cv::Mat image = white_noise({GetParam().first, GetParam().second}, 3);
   cv::Mat blurred, expected;
   gaussian_blur(image, blurred);
   cv::GaussianBlur(image, expected, {7, 7}, 2.0, 2.0, cv::BORDER_REFLECT_101);
@@ -43,7 +34,7 @@ TEST(GaussianBlur, LeavesAnEvenImageAsItIs) {
 }
 
 TEST(GaussianBlur, TakesPartOfAnImage) {
-  const cv::Mat whole = noise_to_blur({120, 60}, 5);
+  const cv::Mat whole = white_noise({120, 60}, 5);
   const cv::Mat part = whole(cv::Rect(7, 9, 81, 33));
   cv::Mat blurred, expected;
   gaussian_blur(part, blurred);

@@ -104,8 +104,7 @@ std::vector<MotionPair> MotionPrior::pairs() const {
 void MotionPrior::ask_gyroscope() {
   for (auto motion = seen_.rbegin(); motion != seen_.rend() && !motion->gyroscope_turn; ++motion) {
     const auto turn = rates_.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
-    if (!turn) break;
-    motion->gyroscope_turn = rotation_log(*turn);
+    if (turn) motion->gyroscope_turn = rotation_log(*turn);
   }
 }
 

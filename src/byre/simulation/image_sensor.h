@@ -34,7 +34,7 @@ struct ImageSensorOptions {
   float noise = 1.0f;        // times that of a usual sensor
   float gain = 1.0f;         // times what the exposure asks for
   float offset = 0.0f;       // grey values without light
-  LensBlurOptions blur;
+  LensBlurOptions blur{};
   std::uint64_t seed = 1;
 };
 
