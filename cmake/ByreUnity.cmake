@@ -1,6 +1,6 @@
 # Several files as one: what they include is then read once for all of them, which is most of compiling a test or a
 # command. Names in anonymous namespaces must so be unique in a room, see tools/check_floors.py.
-option(BYRE_UNITY "Compile several files of a room as one: a build from scratch takes half the time" ON)
+option(BYRE_UNITY "Compile several files of a room as one: a build from scratch has half the objects" ON)
 
 # Rooms whose results are kept from one version to the next, bit by bit: what the compiler rounds where must not depend
 # on which files happen to be compiled together.
@@ -12,7 +12,7 @@ set(BYRE_TESTS_APART optimise)
 
 # Files that include themselves once for each processor, and those whose objects are picked one by one.
 set(BYRE_FILES_APART features/downscale.cc features/remap.cc features/gaussian_blur.cc features/fast_corners.cc
-    dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc)
+    dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc viewer/web_library.cc)
 list(TRANSFORM BYRE_FILES_APART PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
 set_source_files_properties(${BYRE_FILES_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 

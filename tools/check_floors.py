@@ -161,8 +161,12 @@ def line_messages(room: str, line: str, is_test: bool) -> Iterator[str]:
             yield f"'{call[0].rstrip('( ')}' in {room}: {rule.reason}"
 
 
+def is_of_tests(path: pathlib.Path) -> bool:
+    return re.search("_(test|scene|fixture|matchers|images)$", path.stem) is not None
+
+
 def file_faults(path: pathlib.Path, room: str) -> Iterator[Fault]:
-    is_test = path.stem.endswith("_test")
+    is_test = is_of_tests(path)
     for number, line in enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1):
         for message in line_messages(room, line, is_test):
             yield Fault(path, number, message)
@@ -218,8 +222,7 @@ def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
 def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[str, pathlib.Path]:
     names = {}
     for other, path in headers:
-        is_of_tests = re.search("_(scene|fixture|matchers|images)$", path.stem)
-        if not is_of_tests and (other == room or FLOOR[other] < FLOOR[room]):
+        if not is_of_tests(path) and (other == room or FLOOR[other] < FLOOR[room]):
             for full_name, _ in definitions_in(path):
                 scope, _, name = full_name.rpartition("::")
                 names[f"{scope}::{ANONYMOUS}::{name}"] = path
@@ -233,7 +236,7 @@ def clash_faults(source: pathlib.Path, public: pathlib.Path) -> Iterator[Fault]:
     for path in source_files(source):
         room = path.relative_to(source).parts[0]
         if path.suffix == ".cc":
-            together.setdefault((room, path.stem.endswith("_test")), []).append(path)
+            together.setdefault((room, is_of_tests(path)), []).append(path)
         elif room in EVERY_ROOM:
             headers.append((room, path))
     for (room, _), paths in together.items():

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "byre/viewer/foxglove_client.h"
-#include "byre/viewer/web_listener.h"
+#include "byre/viewer/web_seat.h"
+#include "byre/viewer/web_socket.h"
 
 #include <memory>
 #include <string>
@@ -17,7 +18,7 @@ class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
   // session: see server_info_text
   FoxgloveListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<WebSeat> seat, LiveTopics& topics,
                    const std::string& session)
-      : seat_(std::move(seat)), stream_(std::move(socket)), client_(topics, session) {}
+      : seat_(std::move(seat)), socket_(std::move(socket)), client_(topics, session) {}
 
   // protocol: sub-protocol that is spoken
   void start(const WebUpgrade& request, std::string_view protocol);
@@ -28,13 +29,11 @@ class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
  private:
   void read();
   void send();
-  void close();
 
   std::unique_ptr<WebSeat> seat_;
-  boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;
+  WebSocket socket_;
   FoxgloveClient client_;
   FoxgloveOutput output_;  // what is being sent
-  boost::beast::flat_buffer received_;
   bool is_open_ = false;
   bool is_sending_ = false;
 };

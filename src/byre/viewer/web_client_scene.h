@@ -6,7 +6,6 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
@@ -30,26 +29,9 @@ class WebClient {
   Answer post(const std::string& target, const std::string& body) const { return ask("POST", target, body, {}); }
 
   Answer ask(const std::string& method, const std::string& target, const std::string& body,
-             const Headers& headers) const {
-    namespace http = boost::beast::http;
-    boost::asio::io_context context;
-    boost::asio::ip::tcp::socket socket = connected(context, port_);
-    http::request<http::string_body> request(http::string_to_verb(method), target, 11, body);
-    request.set(http::field::host, "localhost:" + std::to_string(port_));
-    for (const auto& [name, value] : headers) request.set(name, value);
-    request.prepare_payload();
-    http::write(socket, request);
-    boost::beast::flat_buffer buffer;
-    http::response<http::string_body> response;
-    http::read(socket, buffer, response);
-    return {static_cast<int>(response.result_int()), std::string(response[http::field::content_type]), response.body()};
-  }
+             const Headers& headers) const;
 
-  static boost::asio::ip::tcp::socket connected(boost::asio::io_context& context, std::uint16_t port) {
-    boost::asio::ip::tcp::socket socket(context);
-    socket.connect({boost::asio::ip::make_address("127.0.0.1"), port});
-    return socket;
-  }
+  static boost::asio::ip::tcp::socket connected(boost::asio::io_context& context, std::uint16_t port);
 
  private:
   std::uint16_t port_;
@@ -59,23 +41,11 @@ class WebClient {
 class LiveClient {
  public:
   // headers: those of its request, beside what a WebSocket needs
-  explicit LiveClient(int port, const std::string& target = "/live", const WebClient::Headers& headers = {})
-      : stream_(WebClient::connected(context_, static_cast<std::uint16_t>(port))) {
-    namespace websocket = boost::beast::websocket;
-    stream_.set_option(websocket::stream_base::decorator([headers](websocket::request_type& request) {
-      for (const auto& [name, value] : headers) request.set(name, value);
-    }));
-    websocket::response_type response;
-    stream_.handshake(response, "localhost:" + std::to_string(port), target);
-    protocol_ = std::string(response[boost::beast::http::field::sec_websocket_protocol]);
-  }
+  explicit LiveClient(int port, const std::string& target = "/live", const WebClient::Headers& headers = {});
 
   const std::string& protocol() const { return protocol_; }  // sub-protocol that the server chose
 
-  void say(const std::string& bytes, bool is_binary = false) {
-    stream_.binary(is_binary);
-    stream_.write(boost::asio::buffer(bytes));
-  }
+  void say(const std::string& bytes, bool is_binary = false);
 
   struct Message {
     std::string bytes;
@@ -84,11 +54,7 @@ class LiveClient {
     nlohmann::json json() const { return nlohmann::json::parse(bytes); }
   };
 
-  Message next() {
-    boost::beast::flat_buffer buffer;
-    stream_.read(buffer);
-    return {boost::beast::buffers_to_string(buffer.data()), stream_.got_binary()};
-  }
+  Message next();
 
  private:
   boost::asio::io_context context_;

@@ -5,6 +5,7 @@
 #include "byre/viewer/web_listener.h"
 #include "byre/viewer/web_seat.h"
 #include "byre/viewer/web_site.h"
+#include "byre/viewer/web_socket.h"
 
 #include <chrono>
 #include <memory>
