@@ -91,7 +91,8 @@ class Slam {
   // InputError when it cannot be written, or nothing was mapped yet.
   void save(const std::filesystem::path& path) const;
 
-  // Every frame that had a pose, as the map has it now.
+  // Every frame that had a pose, as the map has it now. Where wheels lead on from these poses, or back to the frames
+  // before the first one, frames without a pose have one here as well.
   Trajectory trajectory() const;
 
   // Where a pose in the map lies on the floor plan that the map is registered on; empty when it is on none.

@@ -39,7 +39,8 @@ std::string motion_rows(const MapRun& run, bool is_metric) {
     return row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);
-  return text + row("bridged", formatted("%d frames that show nothing known", static_cast<int>(bridged)));
+  return text + row("bridged", formatted("%d frames that show nothing known; %d more have a final pose by wheels",
+                                         static_cast<int>(bridged), told.led_afterwards));
 }
 
 }  // namespace byre

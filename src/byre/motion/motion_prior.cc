@@ -15,7 +15,9 @@ constexpr Timestamp kStride = 500ms;       // length of the motions that are com
 constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
-constexpr int kLooksPerOffset = 8;  // delays change least, and are dear to find
+constexpr Timestamp kSamplesKept = 120s;
+constexpr Timestamp kMostKept = 1800s;  // time that samples are kept while it is not known how wheels are mounted
+constexpr int kLooksPerOffset = 8;      // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
 double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
@@ -65,6 +67,8 @@ void forget_way(BodyMotion& motion) {
 
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
   if (is_empty()) return;
+  unseen_.note(time, odometry_from_body.has_value());
+  forget_old_samples();
   if (!odometry_from_body) {
     begin_.reset();
     last_.reset();
@@ -85,6 +89,16 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
   seen_.push_back(motion);
   if (seen_.size() > kMostMotions) seen_.pop_front();
   if (++unlooked_ >= kMotionsPerLook) look_for_mountings();
+}
+
+// What was told of frames in which nothing was seen is kept until it is known how wheels are mounted.
+void MotionPrior::forget_old_samples() {
+  if (!unseen_.last()) return;
+  const Timestamp now = *unseen_.last();
+  const Timestamp wanted = std::min(now - kSamplesKept, unseen_.first_untold().value_or(now) - 1s);
+  const Timestamp oldest = std::max(wanted, now - kMostKept);
+  wheels_.forget_before(oldest);
+  rates_.forget_before(oldest);
 }
 
 std::optional<Pose> MotionPrior::base_between(Timestamp earlier, Timestamp later) const {
@@ -116,9 +130,25 @@ void MotionPrior::look_for_mountings() {
   }
   if (wheels_.empty()) return;
   if (const auto found = find_wheel_mounting(pairs())) mounting_ = found;
-  if (!mounting_ || looks_++ % kLooksPerOffset != 0) return;
-  const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
+  if (!mounting_) return;
+  if (looks_++ % kLooksPerOffset == 0) {
+    const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
+  }
+  take_down_unseen();
+}
+
+// Precondition: it is known how wheels are mounted.
+void MotionPrior::take_down_unseen() {
+  unseen_.take_down([this](Timestamp earlier, Timestamp later) {
+    const auto told = told_base(earlier, later, turn_by_gyroscope(earlier, later));
+    return told ? std::optional(told->motion) : std::nullopt;
+  });
+}
+
+Trajectory MotionPrior::completed(Trajectory seen) const {
+  if (!mounting_) return seen;
+  return unseen_.completed(std::move(seen), [this](const Pose& base) { return body_motion(*mounting_, base); });
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {
@@ -143,23 +173,30 @@ std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earli
   return gyroscope_->body_from_gyroscope * *told * gyroscope_->body_from_gyroscope.conjugate();
 }
 
-// turn: the body's by the gyroscope, which replaces the one that wheels tell.
-std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
-                                                 const std::optional<Eigen::Quaterniond>& turn) const {
-  if (!mounting_ || is_slipping_) return {};
+// turn: the body's by the gyroscope, which replaces the one that wheels tell. Precondition: it is known how wheels are
+// mounted.
+std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, Timestamp later,
+                                                            const std::optional<Eigen::Quaterniond>& turn) const {
   const auto told = base_between(earlier, later);
   if (!told) return {};
-  Pose base = without_turn_errors(mounting_->turn_errors, *told);
-  bool is_way_known = true;
+  ToldBase base{without_turn_errors(mounting_->turn_errors, *told)};
   if (turn) {
     const Eigen::Quaterniond& base_from_body = mounting_->base_from_body.rotation;
     const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
-    is_way_known = !is_slip(base.rotation, base_turn, to_seconds(later - earlier));
-    base.rotation = base_turn;
+    base.is_way_known = !is_slip(base.motion.rotation, base_turn, to_seconds(later - earlier));
+    base.motion.rotation = base_turn;
   }
-  const Pose body = body_motion(*mounting_, base);
+  return base;
+}
+
+std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
+                                                 const std::optional<Eigen::Quaterniond>& turn) const {
+  if (!mounting_ || is_slipping_) return {};
+  const auto base = told_base(earlier, later, turn);
+  if (!base) return {};
+  const Pose body = body_motion(*mounting_, base->motion);
   BodyMotion motion{body, covariance_of(body, *mounting_)};
-  if (!is_way_known) forget_way(motion);
+  if (!base->is_way_known) forget_way(motion);
   return motion;
 }
 

@@ -4,6 +4,7 @@
 #include "byre/motion/gyroscope_mounting.h"
 #include "byre/motion/rate_track.h"
 #include "byre/motion/seen_motion.h"
+#include "byre/motion/unseen_way.h"
 #include "byre/motion/wheel_mounting.h"
 #include "byre/motion/wheel_track.h"
 #include "byre/trajectory.h"
@@ -30,6 +31,9 @@ class MotionPrior {
   // on as it was seen, for a second at most. Empty where it is not known.
   std::optional<BodyMotion> between(Timestamp earlier, Timestamp later) const;
 
+  // The final poses of frames that were seen, with those of frames that wheels lead to from them.
+  Trajectory completed(Trajectory seen) const;
+
   const std::optional<WheelMounting>& wheels() const { return mounting_; }
   const std::optional<GyroscopeMounting>& gyroscope() const { return gyroscope_; }
   double time_offset() const { return time_offset_.value_or(0.0); }  // seconds that wheels stamp later than the camera
@@ -37,11 +41,19 @@ class MotionPrior {
   int slips() const { return slips_; }  // times that they began to
 
  private:
+  void forget_old_samples();
   void look_for_mountings();
   void watch_for_slip(const SeenMotion& motion);
   void ask_gyroscope();
   std::vector<MotionPair> pairs() const;
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
+  struct ToldBase {
+    Pose motion;               // earlier_from_later, metres
+    bool is_way_known = true;  // wheels turned as the gyroscope says, or there is none
+  };
+  std::optional<ToldBase> told_base(Timestamp earlier, Timestamp later,
+                                    const std::optional<Eigen::Quaterniond>& turn) const;
+  void take_down_unseen();
   std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later,
                                       const std::optional<Eigen::Quaterniond>& turn) const;
   std::optional<BodyMotion> by_sight(Timestamp earlier, Timestamp later) const;
@@ -49,6 +61,7 @@ class MotionPrior {
 
   WheelTrack wheels_;
   RateTrack rates_;
+  UnseenWay unseen_;
   std::deque<SeenMotion> seen_;       // motions of the last minutes, half a second each
   std::optional<StampedPose> begin_;  // begin of the motion that is being seen
   std::optional<StampedPose> last_;   // the last frame, where it was seen

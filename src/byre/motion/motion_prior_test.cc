@@ -128,6 +128,28 @@ TEST(MotionPrior, GoesOnWithWhatWheelsToldLast) {
   EXPECT_LT(error.tail<3>().norm(), 0.005);
 }
 
+// One camera that begins its map late: nothing is seen for longer than samples are kept else.
+TEST(MotionPrior, LeadsBackToFramesFromBeforeItKnewHowWheelsAreMounted) {
+  constexpr double kDark = 130.0, kEnd = 170.0, kFrame = 0.05;  // seconds
+  const Drive drive{camera_on_base(), 3.0, 0.0, 0.0};
+  MotionPrior prior;
+  std::mt19937 random(5);
+  Trajectory seen;
+  for (int i = 0; i * kFrame < kEnd; ++i) {
+    const double t = i * kFrame;
+    prior.add(drive.wheels(t));
+    const Pose pose = drive.seen(t, random);
+    if (t >= kDark) seen.push_back({from_seconds(t), pose});
+    prior.note(from_seconds(t), t < kDark ? std::nullopt : std::optional(pose));
+  }
+  const Trajectory all = prior.completed(seen);
+  ASSERT_EQ(all.size(), 3400u);
+  for (const StampedPose& pose : all) {
+    const Pose truth = drive.seen(to_seconds(pose.time), random);
+    EXPECT_LT(3.0 * (pose.world_from_body.translation - truth.translation).norm(), 0.3) << to_seconds(pose.time);
+  }
+}
+
 TEST(MotionPrior, TurnsByTheGyroscope) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const MotionPrior prior = followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0);

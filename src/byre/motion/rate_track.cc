@@ -8,7 +8,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kRatesKept = 120s;
 constexpr Timestamp kMaxRateGap = 50ms;
 
 }  // namespace
@@ -16,7 +15,10 @@ constexpr Timestamp kMaxRateGap = 50ms;
 void RateTrack::add(const AngularRate& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   samples_.push_back(sample);
-  while (samples_.front().time + kRatesKept < sample.time) samples_.pop_front();
+}
+
+void RateTrack::forget_before(Timestamp time) {
+  while (!samples_.empty() && samples_.front().time < time) samples_.pop_front();
 }
 
 // Between two samples the rate is the mean of both.

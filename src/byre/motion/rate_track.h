@@ -7,11 +7,13 @@
 
 namespace byre {
 
-// What a gyroscope tells, of the last minutes.
+// What a gyroscope tells.
 class RateTrack {
  public:
   // Samples that are not later than the one before are left out.
   void add(const AngularRate& sample);
+
+  void forget_before(Timestamp time);
 
   bool empty() const { return samples_.empty(); }
   // The gyroscope's turn, earlier_from_later, by its rates less a bias; empty where a twentieth of a second is not

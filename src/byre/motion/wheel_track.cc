@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kWheelsKept = 120s;
+constexpr Timestamp kKeptLonger = 120s;
 constexpr Timestamp kMaxWheelGap = 500ms;
 constexpr Timestamp kMaxAhead = 250ms;
 
@@ -16,9 +16,11 @@ constexpr Timestamp kMaxAhead = 250ms;
 void WheelTrack::add(const StampedPose& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   samples_.push_back(sample);
-  if (samples_.front().time + 2 * kWheelsKept < sample.time) {
-    std::erase_if(samples_, [&](const StampedPose& old) { return old.time + kWheelsKept < sample.time; });
-  }
+}
+
+void WheelTrack::forget_before(Timestamp time) {
+  if (samples_.empty() || samples_.front().time + kKeptLonger >= time) return;
+  std::erase_if(samples_, [time](const StampedPose& old) { return old.time < time; });
 }
 
 std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {

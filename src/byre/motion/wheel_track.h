@@ -6,11 +6,14 @@
 
 namespace byre {
 
-// What wheels tell: poses of the robot's base in a frame of their own, which drifts. The last minutes are kept.
+// What wheels tell: poses of the robot's base in a frame of their own, which drifts.
 class WheelTrack {
  public:
   // Samples that are not later than the one before are left out.
   void add(const StampedPose& sample);
+
+  // Samples before a time may go, and do once they are two minutes older.
+  void forget_before(Timestamp time);
 
   bool empty() const { return samples_.empty(); }
   // The base at a time between two samples at most half a second apart, or up to a quarter of a second after the last

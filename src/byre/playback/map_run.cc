@@ -52,16 +52,18 @@ class MotionFeed {
 
 // What was found out of wheels and a gyroscope.
 ToldMotion told_motion(const MotionPrior& prior) {
-  return {!prior.is_empty(), prior.wheels(), prior.gyroscope(), prior.time_offset(), prior.slips()};
+  return {!prior.is_empty(), prior.wheels(), prior.gyroscope(), prior.time_offset(), prior.slips(), 0};
 }
 
 void take_over_result(const Engine& engine, MapRun& run) {
-  run.final = engine.session().final_trajectory();
+  const Trajectory seen = engine.session().final_trajectory();
+  run.final = engine.prior().completed(seen);
   run.map = engine.kept_map();
   run.calibration = engine.calibration();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.job_seconds = engine.log().job_seconds;
   run.told = told_motion(engine.prior());
+  run.told.led_afterwards = static_cast<int>(run.final.size() - seen.size());
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
     if (frame.report && frame.report->odometry_from_body) {

@@ -28,6 +28,7 @@ struct ToldMotion {
   std::optional<GyroscopeMounting> gyroscope;
   double time_offset = 0.0;  // seconds that wheels stamp later than the camera
   int slips = 0;             // times that wheels were left out
+  int led_afterwards = 0;    // final poses of frames that had none, where wheels led from those that had
 };
 
 struct MapRun {

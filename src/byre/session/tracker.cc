@@ -30,6 +30,11 @@ HybridTrack found_in(Origin origin, const TrackedFrame& tracked) {
 
 }  // namespace
 
+bool is_like_another_place(const TrackedFrame& found) {
+  constexpr double kLeastShare = 0.1;
+  return static_cast<double>(found.features.size()) < kLeastShare * found.expected;
+}
+
 // Mapping may have removed a keyframe since, but never the newest. What lies in another frame, left when the pose was
 // lost, is not where the pose says.
 bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const {
@@ -97,7 +102,7 @@ std::optional<HybridTrack> Tracker::find(const Frame& frame, const Scene& scene)
   const PlaceIndex* const places = scene.mapper.places();
   if (!places || scene.mapper.online().keyframe_count() == 0) return std::nullopt;
   const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options_.relocalise);
-  if (!found.tracked) return std::nullopt;
+  if (!found.tracked || is_like_another_place(*found.tracked)) return std::nullopt;
   return found_in(Origin::online, *found.tracked);
 }
 

@@ -11,6 +11,11 @@
 
 namespace byre {
 
+// Whether a frame was found from nothing by so few of the points that should be seen there that it is another place,
+// which looks alike, as the two ends of a barn do. For a map of the same drive, in which things look as they did: where
+// a frame belongs, a larger share is seen.
+bool is_like_another_place(const TrackedFrame& found);
+
 // Finds where a frame was taken from: by prediction, or from nothing. Reads the maps, and changes nothing but what it
 // keeps from frame to frame. Called from the session's thread.
 class Tracker {

@@ -89,5 +89,14 @@ TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_camera_from_world(mission, 6), 0.02, 0.01));
 }
 
+TEST(LikeAnotherPlace, IsWhereFewOfThePointsAreSeen) {
+  TrackedFrame found;
+  found.expected = 1000;
+  found.features.resize(46);
+  EXPECT_TRUE(is_like_another_place(found));
+  found.features.resize(170);
+  EXPECT_FALSE(is_like_another_place(found));
+}
+
 }  // namespace
 }  // namespace byre

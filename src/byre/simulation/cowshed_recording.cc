@@ -61,6 +61,7 @@ LitMesh lit(const Cowshed& barn, int threads) {
 FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
   FeedingCourseOptions course;
   course.duration_s = options.duration_s;
+  course.turn = options.turn;
   if (gate_of(options.barn) == BarnGate::open) {
     course.far_x += kIntoStore;
     course.max_straight += kIntoStore;

@@ -18,6 +18,7 @@ namespace byre {
 struct CowshedRecordingOptions {
   CowshedOptions barn;
   double duration_s = 40.0;
+  TurnKind turn = TurnKind::arc;
   double frame_rate_hz = 20.0;
   int image_divisor = 1;  // 1: 752 x 480 pixels
   double dirt = 0.0;      // dirt on the lenses: 0 none, 1 a dozen of soft spots each

@@ -13,6 +13,7 @@ namespace {
 constexpr double kStep_s = 0.005;          // time between samples of the way travelled
 constexpr double kOverlap = 1.0;           // metres driven beyond a whole lap
 constexpr double kShortestStraight = 4.0;  // metres
+constexpr double kTurnOnTheSpot = 3.0;     // metres that it counts for: 6 s, at most 60 degrees a second
 constexpr int kTurnSteps = 2000;
 
 double eased(double x) {
@@ -73,8 +74,9 @@ Calibration feeding_robot_calibration(int divisor) {
 }
 
 FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(options), turn_(unit_turn()) {
-  turn_length_ = options.lane_distance / turn_.back().y();
-  for (Eigen::Vector2d& position : turn_) position *= turn_length_;
+  const double arc_length = lane_distance() / turn_.back().y();
+  for (Eigen::Vector2d& position : turn_) position *= arc_length;
+  turn_length_ = options.turn == TurnKind::spot ? kTurnOnTheSpot : arc_length;
   const auto laps_missed = [&](double straight, int laps) {  // metres, negative: beyond the last lap
     return laps * 2.0 * (straight + turn_length_) + kOverlap - drive(straight).back();
   };
@@ -90,6 +92,18 @@ FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(opt
   travelled_ = drive(straight_);
 }
 
+// Metres per second. A robot that turns on the spot has all but stopped before and after.
+double FeedingCourse::wanted_speed(double along_half_lap, double straight) const {
+  constexpr double kSlowing = 1.5;                                             // metres
+  constexpr double kStopping = 0.5;                                            // metres
+  constexpr double kCrawling = 0.1;                                            // metres per second
+  const double to_turn = std::min(along_half_lap, straight - along_half_lap);  // negative in the turn
+  const double limit = options_.turn_speed + (options_.cruise_speed - options_.turn_speed) * eased(to_turn / kSlowing);
+  if (options_.turn == TurnKind::arc) return limit;
+  const double in_turn = std::min(along_half_lap - straight, straight + turn_length_ - along_half_lap);
+  return kCrawling + (limit - kCrawling) * eased(std::max(to_turn, in_turn) / kStopping);
+}
+
 // Metres travelled every kStep_s seconds on a lap whose straights have a length.
 std::vector<double> FeedingCourse::drive(double straight) const {
   constexpr double kStart_s = 2.5;  // time to reach the speed wanted
@@ -99,10 +113,7 @@ std::vector<double> FeedingCourse::drive(double straight) const {
   std::vector<double> travelled{0.0};
   for (int i = 0; i < steps; ++i) {
     const double along = std::fmod(first + travelled.back(), half_lap);
-    const double to_turn = std::min(along, straight - along);  // negative in the turn
-    constexpr double kSlowing = 1.5;                           // metres
-    const double speed =
-        options_.turn_speed + (options_.cruise_speed - options_.turn_speed) * eased(to_turn / kSlowing);
+    const double speed = wanted_speed(along, straight);
     travelled.push_back(travelled.back() + kStep_s * speed * eased((i + 0.5) * kStep_s / kStart_s));
   }
   return travelled;
@@ -136,7 +147,7 @@ FeedingCourse::PathPoint FeedingCourse::path_point(double along_lap) const {
     point = turn_point(along - straight_);
     point.position.x() += straight_;
   }
-  point.position -= Eigen::Vector2d(0.5 * straight_, 0.5 * options_.lane_distance);
+  point.position -= Eigen::Vector2d(0.5 * straight_, 0.5 * lane_distance());
   if (is_way_back) point = {-point.position, point.heading + std::numbers::pi};
   point.position += Eigen::Vector2d(far_x() - 0.5 * straight_, options_.shift_y);
   return point;

@@ -14,12 +14,17 @@ namespace byre {
 // wheels; the cameras look forward from 0.9 m above it.
 Calibration feeding_robot_calibration(int divisor);
 
-// The course of a feeding robot: along one side of the feed alley, a turn to the left, back along the other side, and
-// a turn again. World frame: x along the alley, y to its left, z up.
+//   arc   to the left, into the lane beside
+//   spot  to the left on the spot, back along the same lane
+enum class TurnKind : std::uint8_t { arc, spot };
+
+// The course of a feeding robot: along one side of the feed alley, a half turn, back along the other side, and a half
+// turn again. World frame: x along the alley, y to its left, z up.
 struct FeedingCourseOptions {
+  TurnKind turn = TurnKind::arc;
   double far_x = 26.5;          // metres: where the way there ends and its turn begins, at the most
   double latest_near_x = 22.0;  // metres: where it begins at the latest: shorter laps do not reach far_x
-  double lane_distance = 2.0;   // metres between the way there and the way back
+  double lane_distance = 2.0;   // metres between the way there and the way back, of arcs
   double max_straight = 18.0;   // metres: longer missions drive several laps
   double cruise_speed = 0.75;   // metres per second
   double turn_speed = 0.5;      // metres per second
@@ -34,23 +39,26 @@ class FeedingCourse {
  public:
   explicit FeedingCourse(const FeedingCourseOptions& options);
 
-  double lap_length() const { return 2.0 * (straight_ + turn_length_); }  // metres
-  double straight() const { return straight_; }                           // metres
+  // Metres, where a turn on the spot counts as the way of a wheel.
+  double lap_length() const { return 2.0 * (straight_ + turn_length_); }
+  double straight() const { return straight_; }  // metres
 
   // The body at so many seconds from the start, with the vibration of wheels on concrete. Before the start and after
   // the end the robot stands.
   Pose world_from_body(double time_s) const;
 
-  double speed(double time_s) const;  // metres per second
+  double speed(double time_s) const;  // metres per second, on the spot those of a wheel
 
  private:
   struct PathPoint {
     Eigen::Vector2d position;
     double heading = 0.0;  // radians to the left of the world's x axis
   };
-  double far_x() const { return std::min(options_.far_x, options_.latest_near_x + straight_); }  // metres
+  double far_x() const { return std::min(options_.far_x, options_.latest_near_x + straight_); }            // metres
+  double lane_distance() const { return options_.turn == TurnKind::spot ? 0.0 : options_.lane_distance; }  // metres
   PathPoint turn_point(double along_turn) const;
   PathPoint path_point(double along_lap) const;
+  double wanted_speed(double along_half_lap, double straight) const;
   std::vector<double> drive(double straight) const;
   double travelled(double time_s) const;
 

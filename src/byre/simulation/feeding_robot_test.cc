@@ -64,6 +64,22 @@ TEST(FeedingCourse, ComesBackOnTheOtherSideInTheOtherDirection) {
   EXPECT_TRUE(came_back);
 }
 
+TEST(FeedingCourse, TurnsOnTheSpotAndComesBackOnTheSameLane) {
+  const FeedingCourse course({.turn = TurnKind::spot, .duration_s = 60.0});
+  double fastest_spin = 0.0;  // radians per second
+  double spun = 0.0;          // radians while it all but stands
+  for (double time_s = 3.0; time_s < 60.0; time_s += 0.1) {
+    const Pose before = course.world_from_body(time_s - 0.1);
+    const Pose here = course.world_from_body(time_s);
+    EXPECT_NEAR(here.translation.y(), 0.0, 1e-6) << time_s;
+    const double turn = angle_between(before.rotation, here.rotation);
+    fastest_spin = std::max(fastest_spin, turn / 0.1);
+    if ((here.translation - before.translation).head<2>().norm() < 1e-9) spun += turn;
+  }
+  EXPECT_NEAR(spun, 2.0 * M_PI, 0.3);
+  EXPECT_NEAR(fastest_spin, M_PI / 3.0, 0.1);
+}
+
 double farthest_x(const FeedingCourse& course, double duration_s) {
   double farthest = 0.0;
   for (double time_s = 0.0; time_s < duration_s; time_s += 0.1) {

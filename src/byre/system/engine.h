@@ -94,6 +94,8 @@ class Engine {
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
   const MotionPrior& prior() const { return prior_; }
+  // Every frame that had a pose, as the map has it now, and those that wheels lead to from them.
+  Trajectory trajectory() const { return prior_.completed(session_.final_trajectory()); }
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
   // What is kept of the map by now.

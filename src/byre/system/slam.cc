@@ -250,7 +250,7 @@ void Slam::save(const fs::path& path) const {
 }
 
 Trajectory Slam::trajectory() const {
-  return parts_->engine.session().final_trajectory();
+  return parts_->engine.trajectory();
 }
 
 std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {

@@ -30,7 +30,7 @@ class WebSocket {
 
   struct Terms {
     std::string_view protocol;   // sub-protocol that is spoken; empty: none
-    std::size_t most_bytes = 0;  // of a message from the other side
+    std::size_t most_bytes = 0;  // bytes of a message from the other side
   };
   void accept(const WebUpgrade& request, const Terms& terms, Done done);
 

@@ -36,7 +36,7 @@ constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed --mission 2 -o barn_2
   byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
   byre simulate cowshed --imperfection good -o barn_4
-  byre simulate cowshed --motion -o barn_6
+  byre simulate cowshed --motion --turn spot -o barn_6
   byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
 A feeding robot drives up and down the feed alley with a stereo camera. The same seed is the same barn; another mission
@@ -73,6 +73,7 @@ std::string to_json(const SimulateOptions& options, const Rendering& rendering) 
                  {"recording", options.output.string()},
                  {"seed", options.recording.barn.seed},
                  {"mission", options.recording.barn.mission},
+                 {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
                  {"imperfection", imperfection_json(options.recording.camera)},
                  {"frames", rendering.frames},
                  {"preparing_s", rendering.preparing_s},
@@ -120,6 +121,10 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
       ->type_name("SECONDS")
       ->check(between(0.1, 36000.0))
       ->capture_default_str();
+  const std::map<std::string, TurnKind> turns = {{"arc", TurnKind::arc}, {"spot", TurnKind::spot}};
+  command.add_option("--turn", options.turn, "At the ends of the alley: into the lane beside, or on the spot (arc)")
+      ->type_name("arc|spot")
+      ->transform(CLI::CheckedTransformer(turns).description(""));
   command.add_option("--rate", options.frame_rate_hz, "Stereo pairs in a second")
       ->type_name("HZ")
       ->check(between(1.0, 200.0))

@@ -1,0 +1,94 @@
+#include "byre/motion/unseen_way.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+constexpr std::size_t kMostUntold = 36'000;  // steps: half an hour at 20 Hz
+constexpr std::size_t kMostSteps = 100'000;
+
+std::optional<Pose> pose_of_frame(const Trajectory& trajectory, Timestamp time) {
+  const auto found = std::ranges::lower_bound(trajectory, time, {}, &StampedPose::time);
+  if (found == trajectory.end() || found->time != time) return {};
+  return found->world_from_body;
+}
+
+// Frames that follow each other, and where each lies by what was told.
+struct Chain {
+  std::vector<Timestamp> times;
+  std::vector<Pose> first_from_body;
+  std::vector<std::optional<Pose>> world_from_body;  // what is known
+};
+
+// Where the frame lies by the known ones before and after it; empty where there is none.
+std::optional<Pose> led_to(const Chain& chain, std::size_t frame) {
+  const auto& known = chain.world_from_body;
+  const auto told = [&](std::size_t from, std::size_t to) {
+    return inverse(chain.first_from_body[from]) * chain.first_from_body[to];
+  };
+  std::optional<std::size_t> before, after;
+  for (std::size_t i = frame; i-- > 0 && !before;) before = known[i] ? std::optional(i) : std::nullopt;
+  for (std::size_t i = frame + 1; i < known.size() && !after; ++i) after = known[i] ? std::optional(i) : std::nullopt;
+  if (!before) return after ? std::optional(*known[*after] * told(*after, frame)) : std::nullopt;
+  if (!after) return *known[*before] * told(*before, frame);
+  const Pose correction = inverse(*known[*before]) * *known[*after] * inverse(told(*before, *after));
+  const double share =
+      to_seconds(chain.times[frame] - chain.times[*before]) / to_seconds(chain.times[*after] - chain.times[*before]);
+  return *known[*before] * interpolate(Pose{}, correction, share) * told(*before, frame);
+}
+
+void add_poses(const Chain& chain, Trajectory& added) {
+  for (std::size_t i = 0; i < chain.times.size(); ++i) {
+    if (chain.world_from_body[i]) continue;
+    if (const auto pose = led_to(chain, i)) added.push_back({chain.times[i], *pose});
+  }
+}
+
+}  // namespace
+
+void UnseenWay::note(Timestamp time, bool is_seen) {
+  if (last_ && !(is_seen && was_seen_)) untold_.push_back({*last_, time});
+  if (untold_.size() > kMostUntold) untold_.pop_front();
+  last_ = time;
+  was_seen_ = is_seen;
+}
+
+std::optional<Timestamp> UnseenWay::first_untold() const {
+  return untold_.empty() ? std::nullopt : std::optional(untold_.front().earlier);
+}
+
+void UnseenWay::take_down(const Tell& tell) {
+  for (const Frames& frames : untold_) steps_.push_back({frames, tell(frames.earlier, frames.later)});
+  untold_.clear();
+  while (steps_.size() > kMostSteps) steps_.pop_front();
+}
+
+Trajectory UnseenWay::completed(Trajectory trajectory, const BodyMotionOf& body_motion_of) const {
+  Trajectory added;
+  Chain chain;
+  const auto begin_at = [&](Timestamp time) {
+    add_poses(chain, added);
+    chain = {{time}, {Pose{}}, {pose_of_frame(trajectory, time)}};
+  };
+  for (const Step& step : steps_) {
+    if (chain.times.empty() || chain.times.back() != step.frames.earlier) begin_at(step.frames.earlier);
+    if (!step.base) {
+      begin_at(step.frames.later);
+      continue;
+    }
+    chain.times.push_back(step.frames.later);
+    chain.first_from_body.push_back(chain.first_from_body.back() * body_motion_of(*step.base));
+    chain.world_from_body.push_back(pose_of_frame(trajectory, step.frames.later));
+  }
+  add_poses(chain, added);
+  const auto middle = static_cast<std::ptrdiff_t>(trajectory.size());
+  trajectory.insert(trajectory.end(), added.begin(), added.end());
+  std::ranges::inplace_merge(trajectory, trajectory.begin() + middle, {}, &StampedPose::time);
+  return trajectory;
+}
+
+}  // namespace byre
