@@ -17,6 +17,7 @@ constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
 constexpr Timestamp kSamplesKept = 120s;
 constexpr Timestamp kMostKept = 1800s;  // time that samples are kept while it is not known how wheels are mounted
+constexpr int kLooksUntilTold = 24;     // the first that know the mounting know delay and bias badly
 constexpr int kLooksPerOffset = 8;      // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
@@ -135,20 +136,22 @@ void MotionPrior::look_for_mountings() {
     const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
   }
-  take_down_unseen();
+  if (looks_ >= kLooksUntilTold) unseen_.take_down(tell_base());
 }
 
 // Precondition: it is known how wheels are mounted.
-void MotionPrior::take_down_unseen() {
-  unseen_.take_down([this](Timestamp earlier, Timestamp later) {
+UnseenWay::Tell MotionPrior::tell_base() const {
+  return [this](Timestamp earlier, Timestamp later) {
     const auto told = told_base(earlier, later, turn_by_gyroscope(earlier, later));
     return told ? std::optional(told->motion) : std::nullopt;
-  });
+  };
 }
 
 Trajectory MotionPrior::completed(Trajectory seen) const {
   if (!mounting_) return seen;
-  return unseen_.completed(std::move(seen), [this](const Pose& base) { return body_motion(*mounting_, base); });
+  UnseenWay unseen = unseen_;
+  unseen.take_down(tell_base());
+  return unseen.completed(std::move(seen), [this](const Pose& base) { return body_motion(*mounting_, base); });
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {

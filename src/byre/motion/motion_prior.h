@@ -53,7 +53,7 @@ class MotionPrior {
   };
   std::optional<ToldBase> told_base(Timestamp earlier, Timestamp later,
                                     const std::optional<Eigen::Quaterniond>& turn) const;
-  void take_down_unseen();
+  UnseenWay::Tell tell_base() const;
   std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later,
                                       const std::optional<Eigen::Quaterniond>& turn) const;
   std::optional<BodyMotion> by_sight(Timestamp earlier, Timestamp later) const;
