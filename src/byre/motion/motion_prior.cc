@@ -66,6 +66,17 @@ void forget_way(BodyMotion& motion) {
 
 }  // namespace
 
+// However long no frame comes.
+void MotionPrior::add(const StampedPose& wheels) {
+  wheels_.add(wheels);
+  wheels_.forget_before(wheels.time - kMostKept);
+}
+
+void MotionPrior::add(const AngularRate& rate) {
+  rates_.add(rate);
+  rates_.forget_before(rate.time - kMostKept);
+}
+
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
   if (is_empty()) return;
   unseen_.note(time, odometry_from_body.has_value());
@@ -96,8 +107,8 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
 void MotionPrior::forget_old_samples() {
   if (!unseen_.last()) return;
   const Timestamp now = *unseen_.last();
-  const Timestamp wanted = std::min(now - kSamplesKept, unseen_.first_untold().value_or(now) - 1s);
-  const Timestamp oldest = std::max(wanted, now - kMostKept);
+  const Timestamp untold = wheels_.empty() ? now : unseen_.first_untold().value_or(now);
+  const Timestamp oldest = std::max(std::min(now - kSamplesKept, untold - 1s), now - kMostKept);
   wheels_.forget_before(oldest);
   rates_.forget_before(oldest);
 }

@@ -20,8 +20,8 @@ namespace byre {
 // wheels do not move as is seen they are left out, until they do again. Call it from one thread.
 class MotionPrior {
  public:
-  void add(const StampedPose& wheels) { wheels_.add(wheels); }
-  void add(const AngularRate& rate) { rates_.add(rate); }
+  void add(const StampedPose& wheels);
+  void add(const AngularRate& rate);
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
 
   // A frame's smooth pose, in the map's lengths, as it was seen; empty where nothing was.

@@ -24,15 +24,14 @@ struct Chain {
   std::vector<std::optional<Pose>> world_from_body;  // what is known
 };
 
-// Where the frame lies by the known ones before and after it; empty where there is none.
-std::optional<Pose> led_to(const Chain& chain, std::size_t frame) {
+using FrameIndex = std::optional<std::size_t>;
+
+// Where the frame lies by the nearest known ones before and after it; empty where there is none.
+std::optional<Pose> led_to(const Chain& chain, std::size_t frame, const FrameIndex& before, const FrameIndex& after) {
   const auto& known = chain.world_from_body;
   const auto told = [&](std::size_t from, std::size_t to) {
     return inverse(chain.first_from_body[from]) * chain.first_from_body[to];
   };
-  std::optional<std::size_t> before, after;
-  for (std::size_t i = frame; i-- > 0 && !before;) before = known[i] ? std::optional(i) : std::nullopt;
-  for (std::size_t i = frame + 1; i < known.size() && !after; ++i) after = known[i] ? std::optional(i) : std::nullopt;
   if (!before) return after ? std::optional(*known[*after] * told(*after, frame)) : std::nullopt;
   if (!after) return *known[*before] * told(*before, frame);
   const Pose correction = inverse(*known[*before]) * *known[*after] * inverse(told(*before, *after));
@@ -42,9 +41,16 @@ std::optional<Pose> led_to(const Chain& chain, std::size_t frame) {
 }
 
 void add_poses(const Chain& chain, Trajectory& added) {
-  for (std::size_t i = 0; i < chain.times.size(); ++i) {
-    if (chain.world_from_body[i]) continue;
-    if (const auto pose = led_to(chain, i)) added.push_back({chain.times[i], *pose});
+  const auto& known = chain.world_from_body;
+  std::vector<FrameIndex> after(known.size());
+  for (std::size_t i = known.size(); i-- > 1;) after[i - 1] = known[i] ? FrameIndex(i) : after[i];
+  FrameIndex before;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (known[i]) {
+      before = i;
+    } else if (const auto pose = led_to(chain, i, before, after[i])) {
+      added.push_back({chain.times[i], *pose});
+    }
   }
 }
 
