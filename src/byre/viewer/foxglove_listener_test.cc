@@ -79,8 +79,11 @@ TEST_F(FoxgloveServerTest, ClosesOnMessagesThatAreTooLong) {
   LiveClient client = connect(server);
   client.next();
   client.next();
-  client.say(std::string(100'000, ' '));
-  EXPECT_THROW(client.next(), boost::system::system_error);
+  const auto talk = [&client] {  // the server may have closed before all of it was sent
+    client.say(std::string(100'000, ' '));
+    client.next();
+  };
+  EXPECT_THROW(talk(), boost::system::system_error);
 }
 
 TEST_F(FoxgloveServerTest, NeverWaitsForAClientThatDoesNotRead) {
