@@ -12,6 +12,10 @@ endif()
 if(BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE})
+  target_compile_definitions(byre_flags INTERFACE BYRE_SANITIZED)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # it takes another file's constants for shadowed ones
+  target_compile_options(byre_flags INTERFACE -Wno-shadow)
 endif()
 # Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.
 target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
@@ -22,6 +26,9 @@ target_compile_definitions(byre_flags INTERFACE BYRE_VERSION="${PROJECT_VERSION}
 if(BYRE_BUILD_TESTS)
   add_custom_target(byre_unit_tests)
 endif()
+
+# Those whose tests take longest, so that none of them runs alone at the end.
+set(BYRE_ROOMS_TESTED_FIRST session slam playback simulation)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
@@ -61,6 +68,9 @@ function(byre_add_room room)
     add_dependencies(byre_unit_tests byre_${room}_tests)
     add_test(NAME ${room} COMMAND byre_${room}_tests)
     set_tests_properties(${room} PROPERTIES LABELS unit)
+    if(room IN_LIST BYRE_ROOMS_TESTED_FIRST)
+      set_tests_properties(${room} PROPERTIES COST 70)
+    endif()
   endif()
 endfunction()
 

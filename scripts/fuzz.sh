@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-30}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
-clang=$(command -v clang++ || command -v clang++-14) || { echo "fuzz.sh: Clang is not installed" >&2; exit 1; }
+clang=$(command -v clang++-16 || command -v clang++) || { echo "fuzz.sh: Clang is not installed" >&2; exit 1; }
 
 cmake -S fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=None >/dev/null
 cmake --build build/fuzz

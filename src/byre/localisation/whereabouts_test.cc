@@ -111,7 +111,6 @@ TEST_F(TrueWhereabouts, MoveWithTheMap) {
 
 TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
   find_and_believe(0);
-  const std::size_t next = whereabouts_.trajectory().size();
   whereabouts_.tell(Pose{});
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "it has its pose";
   whereabouts_.lose();

@@ -75,7 +75,7 @@ TEST(SessionThatRecognisesPlaces, FindsNoLoopWhereThereIsNone) {
   for (const Frame& frame : mission.frames) EXPECT_FALSE(session.process(frame).has(SessionEvent::loop_found));
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef BYRE_SANITIZED
 constexpr bool kMemoryIsOurs = false;  // sanitizers keep what is freed
 #else
 constexpr bool kMemoryIsOurs = true;

@@ -72,7 +72,7 @@ SimulatedMission figure_eight() {
 // Both begin at the same pose; aligning positions would say nothing of the heading of a camera that turns in place.
 AbsoluteTrajectoryError error_of(const Trajectory& estimate, const Trajectory& truth) {
   const Pose& start = truth.front().world_from_body;
-  return absolute_trajectory_error(associate(estimate, truth, {}), {1.0, start.rotation, start.translation});
+  return absolute_trajectory_error(associate(estimate, truth, {}), {1.0, {start.rotation, start.translation}});
 }
 
 struct NamedMission {

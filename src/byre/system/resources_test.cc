@@ -19,7 +19,7 @@ TEST(ResidentMemory, IsNoMoreThanItEverWas) {
   EXPECT_LE(now, 1.1 * resources_used_so_far().peak_memory_mb);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers keep what was freed
+#ifndef BYRE_SANITIZED  // sanitizers keep what was freed
 TEST(ReleaseFreeMemory, LeavesLessResident) {
   std::vector<std::vector<char>> blocks;
   for (int i = 0; i < 40000; ++i) blocks.emplace_back(1000, 'x');  // small: from the heap
