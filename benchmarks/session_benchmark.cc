@@ -95,7 +95,7 @@ BENCHMARK(track_mission)->Arg(kKeyframesOfHall)->Arg(kHalls* kKeyframesOfHall)->
 void find_itself_in_the_map(benchmark::State& state) {
   const auto offline = map_of(static_cast<int>(state.range(0)));
   const SimulatedMission mission = lap(0, 2);
-  for (auto _ : state) benchmark::DoNotOptimize(localise_in(*offline, mission.frames[50], simulated_rig(), {}));
+  for (auto _ : state) benchmark::DoNotOptimize(localise_in(*offline, {mission.frames[50], mission.rig}, {}));
 }
 BENCHMARK(find_itself_in_the_map)->Arg(kKeyframesOfHall)->Arg(kHalls* kKeyframesOfHall)->Unit(benchmark::kMillisecond);
 

@@ -226,6 +226,15 @@ void bind_slam_itself(py::module_& module) {
             slam.tell_gyroscope({Timestamp(time_ns), rate});
           },
           py::arg("time_ns"), py::arg("rate"), "What a gyroscope tells, likewise: radians per second.")
+      .def(
+          "look_near",
+          [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
+            slam.look_near({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
+          },
+          py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
+          "Where the robot is, as somebody says: while a mission finds itself from nothing it looks in the kept map "
+          "there "
+          "alone for so many seconds, then everywhere again. Metres, radians.")
       .def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")

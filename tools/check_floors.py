@@ -39,7 +39,8 @@ FLOORS = [
 # Headers of include/byre, by the room that each belongs to.
 PUBLIC = {
     "input_error.h": "input",
-    "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "rig.h": "geometry",
+    "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "pose_hint.h": "geometry",
+    "rig.h": "geometry",
     "trajectory.h": "geometry", "two_view_failure.h": "geometry",
     "body_motion.h": "motion",
     "features.h": "features", "image.h": "features", "image_condition.h": "features",

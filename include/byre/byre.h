@@ -12,6 +12,7 @@
 #include "byre/image.h"
 #include "byre/input_error.h"
 #include "byre/pose.h"
+#include "byre/pose_hint.h"
 #include "byre/recording.h"
 #include "byre/rig.h"
 #include "byre/slam.h"

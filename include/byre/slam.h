@@ -7,6 +7,7 @@
 #include "byre/image.h"
 #include "byre/input_error.h"
 #include "byre/pose.h"
+#include "byre/pose_hint.h"
 #include "byre/rig.h"
 #include "byre/trajectory.h"
 
@@ -80,6 +81,11 @@ class Slam {
   void tell_wheels(const StampedPose& odometry_from_base);
   // What a gyroscope tells, likewise. Its bias and how it is turned against the body are found out.
   void tell_gyroscope(const AngularRate& rate);
+
+  // Where the robot is, as somebody says: of use where places look alike, such as the two ends of a barn. While a
+  // mission finds itself from nothing it looks in the kept map there alone, for the hint's seconds; then everywhere
+  // again. What is tracked goes on as it is. The last hint counts. No other task has a use for it.
+  void look_near(const PoseHint& hint);
 
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
   // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come

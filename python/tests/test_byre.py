@@ -215,6 +215,15 @@ def test_missions_are_told_whether_to_trust(room, frames, room_map):
     assert "trusted" in repr(reports[-1])
 
 
+def test_a_mission_may_be_told_where_it_is(room, frames, room_map):
+    far = np.eye(4)
+    far[0, 3] = 50.0
+    for hint, is_found in ((np.eye(4), True), (far, False)):
+        slam = byre.Slam.on_map(byre.Recording(room).calibration, room_map, REPEATABLE)
+        slam.look_near(hint, radius=3.0)
+        assert (slam.process(frames[0]).map_from_body is not None) == is_found
+
+
 def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
     slam = byre.Slam.extending(byre.Recording(room).calibration, room_map, REPEATABLE)
     before = slam.keyframes

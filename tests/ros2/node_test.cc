@@ -166,30 +166,44 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
 TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
   const Room& room = Room::shared();
   Poses poses(peer_, "rt/byre/pose", kLatched);
+  Texts health(peer_, "rt/byre/health", kVolatile);
   auto* const hint = peer_.writer("rt/initialpose",
                                   TypeSupport(new geometry_msgs::msg::PoseWithCovarianceStampedPubSubType), kVolatile);
   NodeProcess node(folder_, mission(), domain_);
   ASSERT_TRUE(is_connected() && FastPeer::is_heard(hint)) << node.said();
-  const auto answer_to_hint = [&](double x) {
+  geometry_msgs::msg::PoseWithCovarianceStamped message;
+  const auto answer_to_hint = [&](double x, const std::string& frame = "map") {
     events_.forget();
-    geometry_msgs::msg::PoseWithCovarianceStamped message;
-    message.header().frame_id("map");
+    message.header().frame_id(frame);
     message.pose().pose().position().x(x);
     hint->write(&message);
     const auto told = events_.find(
         [](const auto& event) { return event.data().find("\"command\":\"initial pose\"") != std::string::npos; });
     return told ? told->data() : "";
   };
-  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("is being looked for in the whole map"));
+  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("looking within 3.0 m of it for 10 s, then in the whole map"));
+  EXPECT_THAT(answer_to_hint(0.0, "odom"), HasSubstr("give it in 'map'"));
   for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
   ASSERT_TRUE(poses.first()) << node.said();
   EXPECT_THAT(answer_to_hint(0.0), HasSubstr("agrees with the present pose"));
   const auto before = odometry_.all().back();
-  EXPECT_THAT(answer_to_hint(50.0), HasSubstr("looking for the robot"));
+  message.pose().pose() = poses.all().back().pose().pose();
+  EXPECT_THAT(answer_to_hint(message.pose().pose().position().x() + 2.5), HasSubstr("looking for the robot"));
   const auto after = answer_to(feed_, odometry_, room.frames()[20]);
   ASSERT_TRUE(after.has_value()) << node.said();
   EXPECT_LT((vector_of(after->pose().pose().position()) - vector_of(before.pose().pose().position())).norm(), 0.1)
       << "odometry does not jump";
+  poses.forget();
+  for (std::size_t i = 21; i < 28; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
+  EXPECT_TRUE(poses.first()) << "found near the hint";
+  EXPECT_THAT(answer_to_hint(50.0), HasSubstr("looking for the robot"));
+  poses.forget();
+  for (std::size_t i = 28; i < 36; ++i) {
+    feed_.send(room.frames()[i]);
+    const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
+    ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; })) << i;
+  }
+  EXPECT_THAT(poses.all(), testing::IsEmpty()) << "it is looked for where it is not";
   EXPECT_EQ(node.stop(), 0);
 }
 

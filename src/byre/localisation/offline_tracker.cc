@@ -62,16 +62,17 @@ void OfflineTracker::lose() {
   mission_.forget_hypothesis();
 }
 
-void OfflineTracker::search_beside(const Frame& frame, const Rig& rig, const Whereabouts& whereabouts,
-                                   const Mapper& mapper) {
+void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper) {
   if (!search_.idle() || mapper.has_correction() || !whereabouts.confirmation().is_believed()) return;
   const bool is_needed = !mapper.submaps().is_registered() || !whereabouts.confirmation().is_proven() ||
                          mission_.distance_since_offline() > options_.mission.search_after;
   if (!is_needed) return;
   const std::size_t number = whereabouts.trajectory().size() - 1;
-  search_.start([frame, rig, number, offline = offline_, options = options_.relocalise] {
-    return search_place(*offline, frame, rig, number, options);
-  });
+  const auto hint = sought.hint ? std::optional(*sought.hint) : std::nullopt;
+  search_.start(
+      [frame = sought.frame, rig = sought.rig, hint, number, offline = offline_, options = options_.relocalise] {
+        return search_place(*offline, {frame, rig, hint ? &*hint : nullptr}, number, options);
+      });
 }
 
 // A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it.

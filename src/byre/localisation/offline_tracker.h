@@ -69,7 +69,7 @@ class OfflineTracker {
 
   // Looks for the last frame in the offline map beside tracking, while its points do not hold the pose, or may do so by
   // chance.
-  void search_beside(const Frame& frame, const Rig& rig, const Whereabouts& whereabouts, const Mapper& mapper);
+  void search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper);
 
   // A health with what is known of the offline map in it.
   Health added_to(Health health, Timestamp now, Timestamp first_frame) const;

@@ -90,7 +90,7 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
 
 TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) {
   note_found(0, 1);
-  tracker_.search_beside(mission_.frames[4], mission_.rig, whereabouts_, mapper_);
+  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->frame, whereabouts_.trajectory().size() - 1);
@@ -100,7 +100,7 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
 TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
   note_found(0);
   note(4, 100);
-  tracker_.search_beside(mission_.frames[4], mission_.rig, whereabouts_, mapper_);
+  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   EXPECT_FALSE(tracker_.collect_place());
 }
 

@@ -1,20 +1,34 @@
 #include "byre/localisation/place_search.h"
 
+#include "byre/localisation/standing_hint.h"
 #include "byre/slam/keyframes.h"
 
 #include <algorithm>
 
 namespace byre {
 
-Localisation localise_in(const OfflineMap& offline, const Frame& frame, const Rig& rig,
-                         const LocaliseOptions& options) {
+Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, const LocaliseOptions& options) {
+  const auto& [frame, rig, hint] = sought;
   const Map nothing_online(Origin::online);
-  return localise(frame, rig, MapView(&offline.map(), nothing_online), offline.places(), options);
+  const MapView map(&offline.map(), nothing_online);
+  if (hint == nullptr) return localise(frame, rig, map, offline.places(), options);
+  const Pose camera_from_body = inverse(rig.body_from_camera);
+  // What is seen from there may have been mapped from farther back.
+  PoseHint around = *hint;
+  around.radius *= 2.0;
+  const auto is_far = [&map, &camera_from_body, &around](KeyframeId id) {
+    return !is_near(around, inverse(map.find_keyframe(id)->camera_from_world) * camera_from_body);
+  };
+  Localisation found = localise(frame, rig, map, offline.places(), options, is_far);
+  if (!found.tracked || is_near(*hint, inverse(found.tracked->camera_from_world) * camera_from_body)) return found;
+  found.tracked.reset();
+  found.failure = LocalisationFailure::geometry_disagrees;
+  return found;
 }
 
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const Frame& frame, const Rig& rig,
-                                       std::size_t number, const LocaliseOptions& options) {
-  const Localisation found = localise_in(offline, frame, rig, options);
+std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought, std::size_t number,
+                                       const LocaliseOptions& options) {
+  const Localisation found = localise_in(offline, sought, options);
   if (!found.tracked) return std::nullopt;
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/pose_hint.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/offline_map.h"
 
@@ -8,8 +9,15 @@
 
 namespace byre {
 
+// What is looked for from nothing.
+struct SoughtFrame {
+  const Frame& frame;
+  const Rig& rig;
+  const PoseHint* hint = nullptr;  // where alone it is looked for; null: everywhere
+};
+
 // The frame in the offline map alone.
-Localisation localise_in(const OfflineMap& offline, const Frame& frame, const Rig& rig, const LocaliseOptions& options);
+Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, const LocaliseOptions& options);
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {
@@ -20,7 +28,7 @@ struct FoundPlace {
 };
 
 // Looks for a frame in the offline map without a guess. Empty when it is not found.
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const Frame& frame, const Rig& rig,
-                                       std::size_t number, const LocaliseOptions& options);
+std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought, std::size_t number,
+                                       const LocaliseOptions& options);
 
 }  // namespace byre

@@ -3,6 +3,7 @@
 #include "byre/dds/type_hashes.h"
 #include "byre/input/formatted.h"
 #include "byre/node/health_messages.h"
+#include "byre/node/hint_message.h"
 #include "byre/node/message_parsing.h"
 #include "byre/node/metrics.h"
 
@@ -123,16 +124,26 @@ void Node::begin_anew() {
   last_report_.reset();
 }
 
-// A pose given by hand is a hint: where it contradicts a pose that is relied on, the robot is looked for anew.
-std::string Node::compare(const ros::PoseWithCovarianceStamped& hint) {
+// A pose given by hand is a hint: where it contradicts a pose that is relied on, the robot is looked for anew, near it
+// first.
+std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
   constexpr double kNear = 2.0;  // metres
-  const auto& [x, y, z] = hint.pose.pose.position;
-  if (!map_from_body_) return "the robot is being looked for in the whole map anyway";
-  const double distance = (map_from_body_->translation.head<2>() - Eigen::Vector2d(x, y)).norm();
-  if (distance <= kNear) return formatted("agrees with the present pose within %.1f m", distance);
-  const std::string answer = runner_.relocalise();
-  begin_anew();
-  return formatted("%.1f m from the present pose; ", distance) + answer;
+  const std::string& frame = message.header.frame_id;
+  if (!frame.empty() && frame != config_.map_frame) {
+    throw InputError(config_.initial_pose, "is given in frame '" + frame.substr(0, 100) + "'",
+                     "give it in '" + config_.map_frame + "', the fixed frame of RViz");
+  }
+  PoseHint hint = hint_of(message);
+  std::string answer;
+  if (map_from_body_) {
+    const double distance = (map_from_body_->translation - hint.map_from_body.translation).head<2>().norm();
+    if (distance <= kNear) return formatted("agrees with the present pose within %.1f m", distance);
+    answer = formatted("%.1f m from the present pose; ", distance) + runner_.relocalise() + "; ";
+    hint.map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has none
+    begin_anew();
+  }
+  if (!runner_.look_near(hint)) return "the robot is being looked for in the whole map anyway";
+  return answer + formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint.radius, hint.seconds);
 }
 
 void Node::take_requests() {
@@ -149,8 +160,8 @@ void Node::take_requests() {
     });
   }
   for (const Message& message : take(initial_pose_)) {
-    const auto hint = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
-    if (hint) answer("initial pose", [&] { return compare(*hint); });
+    const auto given = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
+    if (given) answer("initial pose", [&] { return compare(*given); });
   }
 }
 

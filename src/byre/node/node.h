@@ -44,7 +44,7 @@ class Node {
   void take_calibration(Timestamp now);
   void take_requests();
   void answer(const std::string& asked, const std::function<std::string()>& done);
-  std::string compare(const ros::PoseWithCovarianceStamped& hint);
+  std::string compare(const ros::PoseWithCovarianceStamped& message);
   ReceivedImage decoded(const Message& message, const std::string& topic) const;
   void process(const Pairs::Pair& pair);
   void publish(const ReceivedImage& left, const FrameReport& report);

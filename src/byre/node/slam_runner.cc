@@ -123,6 +123,14 @@ std::string SlamRunner::relocalise() {
   return "looking for the robot in " + map_->string();
 }
 
+bool SlamRunner::look_near(PoseHint hint) {
+  require_running();
+  if (config_.task != NodeTask::mission) return false;
+  hint.map_from_body = inverse(published(Pose{})) * hint.map_from_body;
+  slam_->look_near(hint);
+  return true;
+}
+
 std::string obey(SlamRunner& runner, const std::string& line) {
   const std::size_t end = std::min(line.find(' '), line.size());
   const std::string word = line.substr(0, end);

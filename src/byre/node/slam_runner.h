@@ -40,6 +40,8 @@ class SlamRunner {
   std::string save() const;                   // what was done
   std::string load(const std::string& name);  // a map beside the one that is loaded, by its file's name alone
   std::string relocalise();                   // looks for the robot from nothing, in the same map
+  // hint: as poses are published. False where the task has no use for it.
+  bool look_near(PoseHint hint);
   bool has_anything_to_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
 
  private:

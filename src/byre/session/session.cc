@@ -52,6 +52,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   report.time = rectified.time;
   if (!first_frame_) first_frame_ = rectified.time;
   whereabouts_.tell(motion);
+  hint_.pass(rectified.time);
   const Stopwatch mapping_before;
   take_over_results(report);
   const InputFrame input = input_of(rectified);
@@ -167,7 +168,7 @@ Session::Located Session::locate(const InputFrame& input) {
   const Frame& frame = input.frame;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
   const Tracker::Scene scene{rig_, mapper_, mission_ ? &mission_->mission() : nullptr,
-                             mission_ && mission_->ask_for_focal_length()};
+                             mission_ && mission_->ask_for_focal_length(), hint_.get()};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -248,7 +249,7 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
     report.keyframe_added = true;
   }
   if (look_for_loop(input.frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
-  if (mission_) mission_->search_beside(input.frame, rig_, whereabouts_, mapper_);
+  if (mission_) mission_->search_beside({input.frame, rig_, hint_.get()}, whereabouts_, mapper_);
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {

@@ -2,6 +2,7 @@
 
 #include "byre/frame_report.h"
 #include "byre/localisation/offline_tracker.h"
+#include "byre/localisation/standing_hint.h"
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/keyframe_watch.h"
 #include "byre/mapping/mapper.h"
@@ -61,6 +62,9 @@ class Session {
   // What is known of the calibration by now; empty until it was refined.
   std::optional<RefinedCalibration> self_calibration() const;
 
+  // Where the robot is in the offline map, as somebody says: where it is looked for from nothing while the hint counts.
+  void look_near(const PoseHint& hint) { hint_.give(hint); }
+
   // motion: of the body since the last frame, where that is known.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {});
 
@@ -119,6 +123,7 @@ class Session {
   Mapper mapper_;
   Tracker tracker_;
   std::optional<OfflineTracker> mission_;
+  StandingHint hint_;
   Whereabouts whereabouts_;
   KeyframeWatch keyframe_watch_;
   InputWatch input_watch_;

@@ -158,6 +158,41 @@ TEST(Mission, LeavesAWrongPlaceAlsoWhereItOnlyLocalises) {
   expect_to_leave_the_wrong_place(false);
 }
 
+// What is there is hardly seen, and something looks like the other side of the room.
+std::vector<Frame> seen_as_the_other_side(const SimulatedMission& lap) {
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < kLapFrames / 2; ++i) {
+    frames.push_back(at_time_of(overlaid(thinned(lap.frames[i]), lap.frames[i + kLapFrames / 2]), lap.frames[i]));
+  }
+  return frames;
+}
+
+TEST(Mission, FindsItselfWhereItIsToldToBeThoughAnotherPlaceLooksMoreAlike) {
+  const SimulatedMission mission = circling(1.0, 2);
+  const auto offline = mapped(1.0);
+  const std::vector<Frame> frames = seen_as_the_other_side(mission);
+  const Pose& truth = mission.truth[0].world_from_body;
+  Session alone = session_on(offline), told = session_on(offline);
+  told.look_near({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
+  const auto elsewhere = alone.process(frames[0]).map_from_body;
+  EXPECT_TRUE(!elsewhere || (elsewhere->translation - truth.translation).norm() > 3.0);
+  const auto reports = reports_of(told, frames);
+  ASSERT_TRUE(reports[0].map_from_body);
+  EXPECT_THAT(*reports[0].map_from_body, PoseNear(truth, 0.05, kDegree));
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, LooksEverywhereAgainWhereAHintLedNowhere) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session session = session_on(mapped(1.0));
+  session.look_near(
+      {.map_from_body = mission.truth[kLapFrames / 2].world_from_body, .radius = 1.0, .turn = 1.0, .seconds = 1.0});
+  const auto reports = reports_of(session, mission.frames);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_FALSE(reports[i].map_from_body) << i;
+  EXPECT_EQ(reports[30].health.verdict, Verdict::trusted);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
 TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(0.4));

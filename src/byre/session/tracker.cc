@@ -96,7 +96,8 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
 
 std::optional<HybridTrack> Tracker::find(const Frame& frame, const Scene& scene) const {
   if (scene.mission) {
-    const Localisation found = localise_in(scene.mission->offline(), frame, scene.rig, options_.relocalise);
+    const Localisation found =
+        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint}, options_.relocalise);
     if (found.tracked) return found_in(Origin::offline, *found.tracked);
   }
   const PlaceIndex* const places = scene.mapper.places();

@@ -2,6 +2,7 @@
 
 #include "byre/localisation/mission.h"
 #include "byre/mapping/mapper.h"
+#include "byre/pose_hint.h"
 #include "byre/session/session_options.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/motion_model.h"
@@ -28,6 +29,7 @@ class Tracker {
     const Mapper& mapper;
     const Mission* mission = nullptr;  // on an offline map
     bool weigh_focal_lengths = false;  // see FocalCheck
+    const PoseHint* hint = nullptr;    // where alone a frame is looked for in the offline map
   };
   // The last frame that had a pose.
   struct LastPose {

@@ -162,10 +162,11 @@ LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig,
 }
 
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
-                      const LocaliseOptions& options) {
+                      const LocaliseOptions& options, const std::function<bool(KeyframeId)>& is_excluded) {
   if (frame.features->size() < kMinFeatures) return failed(Failure::too_few_features, 0, 0);
   const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
-  return localise_at(frame, words, rig, map, index.vocabulary(), find_places(index, map, words, kPlaces), options);
+  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlaces, is_excluded);
+  return localise_at(frame, words, rig, map, index.vocabulary(), places, options);
 }
 
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,

@@ -5,6 +5,7 @@
 #include "byre/slam/tracking.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -47,8 +48,9 @@ struct Localisation {
 // Finds a frame in the map without any guess of its pose: places that share visual words, matches of their points,
 // a pose from three points at a time, points looked for around it, and refinement on all of them. Accepted only when
 // many points agree, spread over the image, and determine the pose, and no other place does as well.
+// is_excluded: keyframes that are no places; empty for none.
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
-                      const LocaliseOptions& options);
+                      const LocaliseOptions& options, const std::function<bool(KeyframeId)>& is_excluded = {});
 
 // The same at places that were found already, for a frame whose words are known.
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,

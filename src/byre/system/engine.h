@@ -83,7 +83,8 @@ class Engine {
   Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
 
-  void hurry() { session_.hurry(); }  // see Session
+  void look_near(const PoseHint& hint) { session_.look_near(hint); }  // see Slam
+  void hurry() { session_.hurry(); }                                  // see Session
   void finish() { session_.finish(); }
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
   Finishing finish_map(const FinishHooks& hooks);

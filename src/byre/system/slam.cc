@@ -228,6 +228,10 @@ void Slam::tell_gyroscope(const AngularRate& rate) {
   parts_->engine.tell_gyroscope(rate);
 }
 
+void Slam::look_near(const PoseHint& hint) {
+  parts_->engine.look_near(hint);
+}
+
 void Slam::finish(const std::function<bool()>& should_stop) {
   if (std::exchange(parts_->is_finished, true)) return;
   const FinishHooks hooks{should_stop ? should_stop : [] { return false; }, {}};

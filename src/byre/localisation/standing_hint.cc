@@ -1,0 +1,21 @@
+#include "byre/localisation/standing_hint.h"
+
+namespace byre {
+
+bool is_near(const PoseHint& hint, const Pose& map_from_body) {
+  return (map_from_body.translation - hint.map_from_body.translation).norm() <= hint.radius &&
+         angle_between(map_from_body.rotation, hint.map_from_body.rotation) <= hint.turn;
+}
+
+void StandingHint::give(const PoseHint& hint) {
+  hint_ = hint;
+  first_frame_.reset();
+}
+
+void StandingHint::pass(Timestamp frame) {
+  if (!hint_) return;
+  if (!first_frame_) first_frame_ = frame;
+  if (to_seconds(frame - *first_frame_) >= hint_->seconds) hint_.reset();
+}
+
+}  // namespace byre

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "byre/pose_hint.h"
+#include "byre/trajectory.h"
+
+#include <optional>
+
+namespace byre {
+
+// Whether a pose lies where a hint says that the robot is.
+bool is_near(const PoseHint& hint, const Pose& map_from_body);
+
+// The last hint given, while it counts.
+class StandingHint {
+ public:
+  void give(const PoseHint& hint);
+  // Once for each frame, in order of time.
+  void pass(Timestamp frame);
+  const PoseHint* get() const { return hint_ ? &*hint_ : nullptr; }  // null: none counts
+
+ private:
+  std::optional<PoseHint> hint_;
+  std::optional<Timestamp> first_frame_;  // since it was given
+};
+
+}  // namespace byre
