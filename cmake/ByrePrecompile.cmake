@@ -1,6 +1,6 @@
-# Precompiled headers of the libraries that most files include: reading those is two thirds of compiling a file, so a
-# build from scratch takes half the time. A file that lacks an include compiles all the same.
-option(BYRE_PRECOMPILE "Precompile the headers of libraries: a build from scratch takes half the time" ON)
+# Precompiled headers of the libraries that most files include: reading those is much of compiling a file. A
+# file that lacks an include compiles all the same.
+option(BYRE_PRECOMPILE "Precompile the headers of libraries, for a faster build from scratch" ON)
 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits>
     <map> <memory> <numeric> <optional> <random> <span> <sstream> <string> <string_view> <tuple> <unordered_map>

@@ -23,7 +23,7 @@ packages=(
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev libbenchmark-dev clang-format zsh
-  # sanitizers, which take half as long by this version as by g++ 12, and fuzzing
+  # sanitizers, whose tests take less than half as long by this version as by g++ 12, and fuzzing
   clang-16 libclang-rt-16-dev
   # tests of bags that others wrote
   python3-rosbag python3-sensor-msgs python3-tf2-msgs

@@ -2,12 +2,17 @@
 
 namespace byre {
 
-std::optional<StampedPose> sample_of(const ros::Odometry& message, Timestamp time) {
-  const auto& [position, orientation] = message.pose.pose;
+std::optional<Pose> pose_of(const ros::Pose& message) {
+  const auto& [position, orientation] = message;
   const Eigen::Quaterniond rotation(orientation.w, orientation.x, orientation.y, orientation.z);
   const Eigen::Vector3d translation(position.x, position.y, position.z);
   if (!translation.allFinite() || !(rotation.norm() > 0.5)) return std::nullopt;
-  return StampedPose{time, {rotation.normalized(), translation}};
+  return Pose{rotation.normalized(), translation};
+}
+
+std::optional<StampedPose> sample_of(const ros::Odometry& message, Timestamp time) {
+  const auto pose = pose_of(message.pose.pose);
+  return pose ? std::optional(StampedPose{time, *pose}) : std::nullopt;
 }
 
 std::optional<AngularRate> sample_of(const ros::Imu& message, Timestamp time) {

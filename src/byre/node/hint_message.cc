@@ -1,5 +1,7 @@
 #include "byre/node/hint_message.h"
 
+#include "byre/dataset/motion_messages.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,16 +11,13 @@ namespace byre {
 PoseHint hint_of(const ros::PoseWithCovarianceStamped& message) {
   constexpr double kLeastRadius = 3.0, kLeastTurn = 1.0;  // metres, radians
   constexpr std::size_t kVarianceX = 0, kVarianceY = 7, kVarianceYaw = 35;
-  const auto& [position, orientation] = message.pose.pose;
+  const auto& position = message.pose.pose.position;
   const auto& covariance = message.pose.covariance;
+  const auto pose = pose_of(message.pose.pose);  // empty without a direction
   PoseHint hint;
-  hint.map_from_body.translation = {position.x, position.y, position.z};
+  hint.map_from_body = pose.value_or(Pose{Eigen::Quaterniond::Identity(), {position.x, position.y, position.z}});
   hint.radius = std::max(kLeastRadius, 3.0 * std::sqrt(std::max(covariance[kVarianceX], covariance[kVarianceY])));
-  hint.turn = std::numbers::pi;
-  const Eigen::Quaterniond rotation(orientation.w, orientation.x, orientation.y, orientation.z);
-  if (rotation.norm() < 0.5) return hint;
-  hint.map_from_body.rotation = rotation.normalized();
-  hint.turn = std::max(kLeastTurn, 3.0 * std::sqrt(covariance[kVarianceYaw]));
+  hint.turn = pose ? std::max(kLeastTurn, 3.0 * std::sqrt(covariance[kVarianceYaw])) : std::numbers::pi;
   return hint;
 }
 
