@@ -68,11 +68,10 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
                          mission_.distance_since_offline() > options_.mission.search_after;
   if (!is_needed) return;
   const std::size_t number = whereabouts.trajectory().size() - 1;
-  const auto hint = sought.hint ? std::optional(*sought.hint) : std::nullopt;
-  search_.start(
-      [frame = sought.frame, rig = sought.rig, hint, number, offline = offline_, options = options_.relocalise] {
-        return search_place(*offline, {frame, rig, hint ? &*hint : nullptr}, number, options);
-      });
+  search_.start([frame = sought.frame, rig = sought.rig, hint = sought.hint, number, offline = offline_,
+                 options = options_.relocalise] {
+    return search_place(*offline, {frame, rig, hint}, number, options);
+  });
 }
 
 // A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it.

@@ -11,11 +11,13 @@ Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, c
   const auto& [frame, rig, hint] = sought;
   const Map nothing_online(Origin::online);
   const MapView map(&offline.map(), nothing_online);
-  if (hint == nullptr) return localise(frame, rig, map, offline.places(), options);
+  if (!hint) return localise(frame, rig, map, offline.places(), options);
   const Pose camera_from_body = inverse(rig.body_from_camera);
-  // What is seen from there may have been mapped from farther back.
+  // What is seen from there may have been mapped from farther back, and at an angle.
+  constexpr double kTurnBetweenViews = 0.5;  // radians
   PoseHint around = *hint;
   around.radius *= 2.0;
+  around.turn += kTurnBetweenViews;
   const auto is_far = [&map, &camera_from_body, &around](KeyframeId id) {
     return !is_near(around, inverse(map.find_keyframe(id)->camera_from_world) * camera_from_body);
   };

@@ -13,7 +13,7 @@ namespace byre {
 struct SoughtFrame {
   const Frame& frame;
   const Rig& rig;
-  const PoseHint* hint = nullptr;  // where alone it is looked for; null: everywhere
+  std::optional<PoseHint> hint{};  // where alone it is looked for; empty: everywhere
 };
 
 // The frame in the offline map alone.

@@ -1,5 +1,7 @@
 #include "byre/localisation/standing_hint.h"
 
+#include <cmath>
+
 namespace byre {
 
 bool is_near(const PoseHint& hint, const Pose& map_from_body) {
@@ -8,7 +10,10 @@ bool is_near(const PoseHint& hint, const Pose& map_from_body) {
 }
 
 void StandingHint::give(const PoseHint& hint) {
-  hint_ = hint;
+  const Pose& pose = hint.map_from_body;
+  const bool is_finite = pose.translation.allFinite() && pose.rotation.coeffs().allFinite() &&
+                         std::isfinite(hint.radius) && std::isfinite(hint.turn) && std::isfinite(hint.seconds);
+  hint_ = is_finite ? std::optional(hint) : std::nullopt;
   first_frame_.reset();
 }
 

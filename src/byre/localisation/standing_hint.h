@@ -13,10 +13,10 @@ bool is_near(const PoseHint& hint, const Pose& map_from_body);
 // The last hint given, while it counts.
 class StandingHint {
  public:
-  void give(const PoseHint& hint);
+  void give(const PoseHint& hint);  // one that is not finite takes the last one back
   // Once for each frame, in order of time.
   void pass(Timestamp frame);
-  const PoseHint* get() const { return hint_ ? &*hint_ : nullptr; }  // null: none counts
+  const std::optional<PoseHint>& get() const { return hint_; }  // empty: none counts
 
  private:
   std::optional<PoseHint> hint_;

@@ -1,5 +1,7 @@
 #include "byre/localisation/standing_hint.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -24,22 +26,29 @@ TEST(StandingHint, CountsFromTheNextFrameForSoLong) {
   constexpr Timestamp kSecond(1'000'000'000);
   StandingHint standing;
   standing.pass(Timestamp{});
-  EXPECT_EQ(standing.get(), nullptr);
+  EXPECT_FALSE(standing.get());
   standing.give(hint_at(1.0));
   for (int second = 100; second < 110; ++second) {
     standing.pass(second * kSecond);
-    EXPECT_NE(standing.get(), nullptr) << second;
+    EXPECT_TRUE(standing.get()) << second;
   }
   standing.pass(110 * kSecond);
-  EXPECT_EQ(standing.get(), nullptr);
+  EXPECT_FALSE(standing.get());
 }
 
 TEST(StandingHint, GivesWayToAnother) {
   StandingHint standing;
   standing.give(hint_at(1.0));
   standing.give(hint_at(2.0));
-  ASSERT_NE(standing.get(), nullptr);
+  ASSERT_TRUE(standing.get());
   EXPECT_EQ(standing.get()->map_from_body.translation.x(), 2.0);
+}
+
+TEST(StandingHint, IsTakenBackByOneThatIsNotFinite) {
+  StandingHint standing;
+  standing.give(hint_at(1.0));
+  standing.give(hint_at(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_FALSE(standing.get());
 }
 
 }  // namespace

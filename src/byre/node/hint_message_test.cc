@@ -1,5 +1,6 @@
 #include "byre/node/hint_message.h"
 
+#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ ros::PoseWithCovarianceStamped clicked() {
 }
 
 TEST(HintMessage, TellsWhereAndHowTurned) {
-  const PoseHint hint = hint_of(clicked());
+  const PoseHint hint = *hint_of(clicked());
   EXPECT_EQ(hint.map_from_body.translation, Eigen::Vector3d(4.0, -2.0, 0.0));
   EXPECT_DOUBLE_EQ(hint.map_from_body.rotation.z(), 0.6);
   EXPECT_DOUBLE_EQ(hint.radius, 3.0);
@@ -28,14 +29,20 @@ TEST(HintMessage, IsAsWideAsItsCovariance) {
   auto message = clicked();
   message.pose.covariance[7] = 4.0;
   message.pose.covariance[35] = 0.25;
-  EXPECT_DOUBLE_EQ(hint_of(message).radius, 6.0);
-  EXPECT_DOUBLE_EQ(hint_of(message).turn, 1.5);
+  EXPECT_DOUBLE_EQ(hint_of(message)->radius, 6.0);
+  EXPECT_DOUBLE_EQ(hint_of(message)->turn, 1.5);
 }
 
 TEST(HintMessage, WithoutADirectionIsGoodForAny) {
   auto message = clicked();
   message.pose.pose.orientation = {0.0, 0.0, 0.0, 0.0};
-  EXPECT_DOUBLE_EQ(hint_of(message).turn, std::numbers::pi);
+  EXPECT_DOUBLE_EQ(hint_of(message)->turn, std::numbers::pi);
+}
+
+TEST(HintMessage, ThatIsNotFiniteIsNone) {
+  auto message = clicked();
+  message.pose.pose.position.y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(hint_of(message));
 }
 
 }  // namespace

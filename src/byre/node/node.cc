@@ -133,17 +133,18 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
     throw InputError(config_.initial_pose, "is given in frame '" + frame.substr(0, 100) + "'",
                      "give it in '" + config_.map_frame + "', the fixed frame of RViz");
   }
-  PoseHint hint = hint_of(message);
+  auto hint = hint_of(message);
+  if (!hint) throw InputError(config_.initial_pose, "has a position that is not finite", "give the pose anew");
   std::string answer;
   if (map_from_body_) {
-    const double distance = (map_from_body_->translation - hint.map_from_body.translation).head<2>().norm();
+    const double distance = (map_from_body_->translation - hint->map_from_body.translation).head<2>().norm();
     if (distance <= kNear) return formatted("agrees with the present pose within %.1f m", distance);
     answer = formatted("%.1f m from the present pose; ", distance) + runner_.relocalise() + "; ";
-    hint.map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has none
+    hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has none
     begin_anew();
   }
-  if (!runner_.look_near(hint)) return "the robot is being looked for in the whole map anyway";
-  return answer + formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint.radius, hint.seconds);
+  if (!runner_.look_near(*hint)) return "the robot is being looked for in the whole map anyway";
+  return answer + formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint->radius, hint->seconds);
 }
 
 void Node::take_requests() {

@@ -29,7 +29,7 @@ class Tracker {
     const Mapper& mapper;
     const Mission* mission = nullptr;  // on an offline map
     bool weigh_focal_lengths = false;  // see FocalCheck
-    const PoseHint* hint = nullptr;    // where alone a frame is looked for in the offline map
+    std::optional<PoseHint> hint{};    // where alone a frame is looked for in the offline map
   };
   // The last frame that had a pose.
   struct LastPose {
