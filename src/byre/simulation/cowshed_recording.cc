@@ -25,6 +25,8 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
   require(options.image_divisor >= 1 && options.image_divisor <= 16, "images can be divided by 1 to 16");
   require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");
+  require(options.night.light > 0.0 && options.night.light <= 10.0, "the share of light must be from 0 to 10");
+  require(options.night.headlight >= 0.0 && options.night.headlight <= 100.0, "the headlight must be from 0 to 100");
   require_sensible(options.camera);
   return options;
 }
@@ -174,9 +176,17 @@ double CowshedRecording::row_offset(double row) const {
   return options_.camera.rolling_shutter_s * ((row + 0.5) / scene_->calibration.left.height - 0.5);
 }
 
+Illumination CowshedRecording::illumination_at(double time_s) const {
+  constexpr double kMoonlight = 1e-4;     // share of the light that is there without lamps
+  constexpr double kFullHeadlight = 1.3;  // radiance times square metres
+  const NightOptions& night = options_.night;
+  const bool is_out = night.lights_out <= time_s && time_s < night.lights_on;
+  return {static_cast<float>(is_out ? kMoonlight : night.light), static_cast<float>(kFullHeadlight * night.headlight)};
+}
+
 // What a camera sees whose middle row is exposed so many seconds from the start.
 SceneView CowshedRecording::view_at(const RobotCamera& camera, double time_s) const {
-  SceneView view{camera.pixels, course_.world_from_body(time_s) * camera.body_from_camera};
+  SceneView view{camera.pixels, course_.world_from_body(time_s) * camera.body_from_camera, illumination_at(time_s)};
   if (options_.camera.rolling_shutter_s == 0.0) return view;
   for (int row = 0; row < camera.pixels.height(); ++row) {
     view.world_from_camera_by_row.push_back(course_.world_from_body(time_s + row_offset(row)) *

@@ -15,6 +15,14 @@
 
 namespace byre {
 
+// Less light than the barn has.
+struct NightOptions {
+  double light = 1.0;       // share of the light of the barn's day or dusk
+  double headlight = 0.0;   // lamp on the robot: 1 lights a wall 3 m ahead as lamps light the alley at dusk
+  double lights_out = 0.0;  // seconds from the start when the barn's light goes out
+  double lights_on = 0.0;   // seconds from the start when it is on again; not after the former: it stays on
+};
+
 struct CowshedRecordingOptions {
   CowshedOptions barn;
   double duration_s = 40.0;
@@ -22,6 +30,7 @@ struct CowshedRecordingOptions {
   double frame_rate_hz = 20.0;
   int image_divisor = 1;  // 1: 752 x 480 pixels
   double dirt = 0.0;      // dirt on the lenses: 0 none, 1 a dozen of soft spots each
+  NightOptions night;
   CameraImperfection camera;
   std::optional<MotionSensorOptions> motion{};  // wheels and gyroscope that are recorded too; their seed is the barn's
   int threads = 0;                              // 0: as many as the machine has; changes no byte
@@ -71,6 +80,7 @@ class CowshedRecording {
 
   double seconds_since_start(Timestamp time) const { return to_seconds(time - times_.front()); }
   double row_offset(double row) const;
+  Illumination illumination_at(double time_s) const;
   SceneView view_at(const RobotCamera& camera, double time_s) const;
   LitMesh moving_at(double time_s) const;
   double motion_during_exposure(double time_s) const;

@@ -2,6 +2,7 @@
 
 #include "byre/calibration_file.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/image_condition.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 #include "byre/recording.h"
@@ -92,6 +93,25 @@ TEST_F(CowshedVisit, LooksDifferentInAnotherMission) {
 
 TEST_F(CowshedVisit, IsWellExposedFromItsFirstFrameOn) {
   for (const ImageFrame& frame : frames) EXPECT_NEAR(mean_grey(frame.left), ExposureLimits{}.wanted_grey, 12.0);
+}
+
+TEST(CowshedVisits, AreNoisierWithLessLightAndBlackWhileItIsOut) {
+  const auto first_two = [](const NightOptions& night) {
+    CowshedRecordingOptions options = small_visit(1, 1);
+    options.night = night;
+    CowshedRecording recording(options);
+    return first_frames(recording, 2);
+  };
+  const std::vector<ImageFrame> day = first_two({});
+  const std::vector<ImageFrame> evening = first_two({.light = 0.2});
+  EXPECT_NEAR(mean_grey(evening[0].left), mean_grey(day[0].left), 20.0f) << "exposed longer, and amplified";
+  EXPECT_GT(measure_condition(evening[0].left).noise, 1.2f * measure_condition(day[0].left).noise);
+  EXPECT_LT(mean_grey(first_two({.light = 0.02})[0].left), 40.0f) << "no exposure is long enough";
+
+  const std::vector<ImageFrame> out = first_two({.lights_out = 0.5, .lights_on = 2.0});
+  EXPECT_EQ(out[0].left.pixels, day[0].left.pixels);
+  EXPECT_LT(mean_grey(out[1].left), 2.0f);
+  EXPECT_GT(mean_grey(first_two({.headlight = 10.0, .lights_out = 0.5, .lights_on = 2.0})[1].left), 5.0f);
 }
 
 TEST_F(CowshedVisit, ShowsInTheRightImageWhatDepthSaysOfTheLeft) {

@@ -28,6 +28,16 @@ Value across_facet(const std::array<Value, 4>& corners, const Vector2f& in_facet
          (1.0f - u) * v * corners[3];
 }
 
+// What a lamp beside the camera sends to a white surface. ray: to the surface, as long as depth counts.
+float headlight_on(const Vector3f& ray, float depth, const Vector3f& normal, float headlight) {
+  constexpr int kBeamWidth = 6;  // half as bright 27 degrees beside
+  const float length = ray.norm();
+  const float arriving = std::abs(ray.dot(normal)) / length;
+  const float ahead = 1.0f / length;  // cosine of the angle to the optical axis
+  const float distance = depth * length;
+  return headlight * std::pow(ahead, kBeamWidth) * arriving / std::max(distance * distance, 0.25f);
+}
+
 }  // namespace
 
 struct SceneRenderer::PlacedView {
@@ -44,6 +54,7 @@ struct SceneRenderer::PlacedView {
 
   const PixelRays& pixels;
   const LitMesh& moving;
+  Illumination illumination;
   std::vector<Placement> placements;  // one for each row where the shutter rolls, else one for all
 };
 
@@ -73,9 +84,9 @@ struct SceneRenderer::Packet {
 };
 
 float SceneRenderer::radiance_of(const LitMesh& mesh, const LitMesh::Facet& facet, const Vector2f& in_facet,
-                                 const RayFan& fan, float depth) const {
+                                 const RayFan& fan, float depth, const Illumination& illumination) const {
   const SurfaceLook& look = mesh.look(facet);
-  if (look.glow > 0.0f) return look.glow;
+  if (look.glow > 0.0f) return illumination.share * look.glow;
   const Vector2f place = across_facet(facet.picture_places, in_facet);
   const float facing = fan.ray.dot(facet.normal);
   const float slant = std::copysign(std::max(std::abs(facing), 0.02f), facing);
@@ -88,7 +99,9 @@ float SceneRenderer::radiance_of(const LitMesh& mesh, const LitMesh::Facet& face
   const float stain = picture_of(pictures_, BarnPicture::stains)
                           .sample(to_stains * place, to_stains * (footprint.right + footprint.down).norm());
   const float reflectance = look.brightness * picture_of(pictures_, look.picture).sample(place, footprint);
-  return reflectance * (0.4f + 1.2f * stain) * across_facet(facet.light, in_facet);
+  float light = illumination.share * across_facet(facet.light, in_facet);
+  if (illumination.headlight > 0.0f) light += headlight_on(fan.ray, depth, facet.normal, illumination.headlight);
+  return reflectance * (0.4f + 1.2f * stain) * light;
 }
 
 SceneRenderer::Packet SceneRenderer::aimed(const PlacedView& view, std::span<const Target> targets) const {
@@ -126,16 +139,17 @@ SceneRenderer::Samples SceneRenderer::trace(const PlacedView& view, std::span<co
   view.moving.rays().intersect(packet.valid.data(), packet.rays);
   const auto& [ray, hit] = packet.rays;
   Samples samples;
-  samples.fill({.radiance = air_.glow});
+  const float glow = view.illumination.share * air_.glow;
+  samples.fill({.radiance = glow});
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (packet.valid[i] == 0 || hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
     const bool is_still = hit.geomID[i] == 0;
     const LitMesh& mesh = is_still ? still_ : view.moving;
     const LitMesh::Facet& facet = mesh.facet(hit.primID[i]);
-    const float radiance = radiance_of(mesh, facet, {hit.u[i], hit.v[i]}, packet.fans[i], ray.tfar[i]);
+    const float radiance =
+        radiance_of(mesh, facet, {hit.u[i], hit.v[i]}, packet.fans[i], ray.tfar[i], view.illumination);
     const float clear = air_.haze > 0.0f ? std::exp(-air_.haze * ray.tfar[i]) : 1.0f;
-    samples[i] = {air_.glow + clear * (radiance - air_.glow), ray.tfar[i],
-                  facet.surface | (is_still ? 0u : kMovingBit)};
+    samples[i] = {glow + clear * (radiance - glow), ray.tfar[i], facet.surface | (is_still ? 0u : kMovingBit)};
   }
   return samples;
 }
@@ -203,7 +217,7 @@ SceneRenderer::PlacedView SceneRenderer::placed_view(const SceneView& view, cons
   const auto placement = [](const Pose& world_from_camera) -> PlacedView::Placement {
     return {world_from_camera.rotation.toRotationMatrix().cast<float>(), world_from_camera.translation.cast<float>()};
   };
-  PlacedView placed{view.pixels, moving, {}};
+  PlacedView placed{view.pixels, moving, view.illumination, {}};
   for (const Pose& pose : view.world_from_camera_by_row) placed.placements.push_back(placement(pose));
   if (placed.placements.empty()) placed.placements.push_back(placement(view.world_from_camera));
   return placed;

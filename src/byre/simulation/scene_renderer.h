@@ -17,10 +17,17 @@ struct Air {
   float glow = 0.0f;  // radiance of the air itself
 };
 
+// What lights the scene at an instant.
+struct Illumination {
+  float share = 1.0f;      // share of the light that the scene was lit with, and of what glows by itself
+  float headlight = 0.0f;  // radiance times square metres, straight ahead, of a lamp beside the camera
+};
+
 // A camera somewhere in the scene. Borrows the rays.
 struct SceneView {
   const PixelRays& pixels;
   Pose world_from_camera;
+  Illumination illumination{};
   // The same at each row's own instant, where the shutter rolls, else empty. What moves is then seen by the first row
   // as it is at the beginning, and by the last one as at the end.
   std::vector<Pose> world_from_camera_by_row{};
@@ -60,7 +67,7 @@ class SceneRenderer {
   Packet aimed(const PlacedView& view, std::span<const Target> targets) const;
   Samples trace(const PlacedView& view, std::span<const Target> targets) const;
   float radiance_of(const LitMesh& mesh, const LitMesh::Facet& facet, const Eigen::Vector2f& in_facet,
-                    const RayFan& fan, float depth) const;
+                    const RayFan& fan, float depth, const Illumination& illumination) const;
   std::vector<Sample> sample_centres(const PlacedView& view, const Eigen::Vector2f& offset) const;
   std::vector<float> smooth_row(const PlacedView& view, int row, const std::vector<Sample>& centres,
                                 const Eigen::Vector2f& offset) const;

@@ -97,6 +97,29 @@ TEST_F(RenderedMarker, FadesInDust) {
               0.5f + clear * (kMarker - 0.5f), 1e-3f);
 }
 
+TEST_F(RenderedMarker, IsDarkerWhereThereIsLessLight) {
+  const SceneView half{pixels, {}, {.share = 0.5f}};
+  const std::vector<float> radiance = SceneRenderer(still, pictures, {}, 1).radiance(half, nothing, {});
+  const std::vector<float> full = render({});
+  for (std::size_t i = 0; i < full.size(); ++i) ASSERT_FLOAT_EQ(radiance[i], 0.5f * full[i]) << i;
+}
+
+// Radiance of a wall at a distance straight ahead.
+TEST_F(RenderedMarker, IsLitByAHeadlightAsTheInverseSquareOfItsDistance) {
+  const auto middle_of_wall = [this](float distance) {
+    QuadMesh wall;
+    add_panel(wall, {-20.0f, 20.0f, distance}, {40.0f, 0.0f, 0.0f}, {0.0f, -40.0f, 0.0f}, {}, 10.0f);
+    const LitMesh unlit_wall(wall, std::vector<float>(wall.vertices.size(), 0.0f), 0);
+    const SceneView view{pixels, {}, {.headlight = 2.0f}};
+    const Vector2d pixel = camera.project({0.0, 0.0, distance}).value();
+    return SceneRenderer(unlit_wall, pictures, {}, 1)
+        .radiance(view, nothing,
+                  {})[static_cast<std::size_t>(std::lround(pixel.y()) * camera.width + std::lround(pixel.x()))];
+  };
+  EXPECT_GT(middle_of_wall(2.0f), 0.0f);
+  EXPECT_NEAR(middle_of_wall(4.0f), middle_of_wall(2.0f) / 4.0f, 1e-3f * middle_of_wall(2.0f));
+}
+
 TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
   QuadMesh curtain;
   add_panel(curtain, {-9.0f, 9.0f, 1.0f}, {18.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
@@ -137,7 +160,7 @@ TEST_F(RenderedMarker, LetsEachRowSeeWhatMovesWhereItIsThen) {
   add_panel(end, {-1.5f, 9.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
   const std::vector<float> light(begin.vertices.size(), 1.0f);
   const LitMesh moving(begin, end, light, 1, RayScene::Build::quick);
-  const SceneView view{pixels, {}, std::vector<Pose>(static_cast<std::size_t>(camera.height))};
+  const SceneView view{pixels, {}, {}, std::vector<Pose>(static_cast<std::size_t>(camera.height))};
   const std::vector<float> depths = SceneRenderer(still, pictures, {}, 1).depths(view, moving);
   for (int row = 0; row < camera.height; row += 30) {
     const double edge = 0.5 * row / (camera.height - 1.0);  // the panel's right end

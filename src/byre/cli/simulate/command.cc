@@ -36,6 +36,7 @@ constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed --mission 2 -o barn_2
   byre simulate cowshed --mission 3 --time dusk --change 0.5 --cows 12 --dirt 1 --dust 0.5 -o barn_3
   byre simulate cowshed --imperfection good -o barn_4
+  byre simulate cowshed --mission 2 --time day --light 0.03 --headlight 1 -o barn_7
   byre simulate cowshed --motion --turn spot -o barn_6
   byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
@@ -74,6 +75,8 @@ std::string to_json(const SimulateOptions& options, const Rendering& rendering) 
                  {"seed", options.recording.barn.seed},
                  {"mission", options.recording.barn.mission},
                  {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
+                 {"light", options.recording.night.light},
+                 {"headlight", options.recording.night.headlight},
                  {"imperfection", imperfection_json(options.recording.camera)},
                  {"frames", rendering.frames},
                  {"preparing_s", rendering.preparing_s},
@@ -114,6 +117,22 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
       ->type_name("open|closed")
       ->transform(CLI::CheckedTransformer(gates).description(""));
   command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")->type_name("N")->check(between(0, 40));
+}
+
+void declare_night(CLI::App& command, NightOptions& night) {
+  command.add_option("--light", night.light, "Share of the light that the barn has by day or at dusk")
+      ->type_name("SHARE")
+      ->check(between(1e-6, 10.0))
+      ->capture_default_str();
+  command.add_option("--headlight", night.headlight, "On the robot; 1: as bright 3 m ahead as lamps are at dusk")
+      ->type_name("NUMBER")
+      ->check(between(0.0, 100.0))
+      ->capture_default_str();
+  const auto add_time = [&command](const char* name, double& value, const char* meaning) {
+    return command.add_option(name, value, meaning)->type_name("SECONDS")->check(between(0.0, 36000.0));
+  };
+  CLI::Option* const out = add_time("--lights-out", night.lights_out, "When the barn's light goes out");
+  out->needs(add_time("--lights-on", night.lights_on, "When it is on again")->needs(out));
 }
 
 void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
@@ -170,6 +189,7 @@ Action declare_simulate(CLI::App& command) {
   command.require_subcommand(1);
   CLI::App& cowshed = *command.add_subcommand("cowshed", "A barn with a feed alley, fences, cubicles and cows");
   declare_visit(cowshed, options->recording);
+  declare_night(cowshed, options->recording.night);
   declare_camera(cowshed, options->recording);
   declare_imperfection(cowshed, options->imperfection);
   declare_motion(cowshed, *options);
