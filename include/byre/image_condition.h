@@ -16,6 +16,7 @@ struct ImageCondition {
   // 1 for sharp edges, falls with the square of the length of blur. Exposure does not change it; noise and fine texture
   // raise it.
   float sharpness = 0.0f;
+  float noise = 0.0f;  // grey values, standard deviation from pixel to pixel; fine texture everywhere raises it
 };
 
 // Measured on every eighth row, of an image as the camera gave it: rectifying it takes a fifth of the sharpness of

@@ -7,17 +7,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const std::optional<Agreement>& agreement) {
+Json agreement_json(const std::optional<Agreement>& agreement) {
   if (!agreement) return nullptr;
   return {{"translation_m", agreement->translation}, {"rotation_rad", agreement->rotation}};
 }
 
-Json to_json(const std::optional<ImageCondition>& image) {
+Json condition_json(const std::optional<ImageCondition>& image) {
   if (!image) return nullptr;
   return {{"brightness", image->brightness},
           {"contrast", image->contrast},
           {"clipped", image->clipped},
-          {"sharpness", image->sharpness}};
+          {"sharpness", image->sharpness},
+          {"noise", image->noise}};
 }
 
 }  // namespace
@@ -32,13 +33,13 @@ Json health_json(const Health& health) {
           {"suspended", health.suspended},
           {"inlier_share", health.inlier_share},
           {"spread", health.spread},
-          {"agreement", to_json(health.agreement)},
+          {"agreement", agreement_json(health.agreement)},
           {"position_sigma_m", health.position_sigma},
           {"rotation_sigma_rad", health.rotation_sigma},
           {"distance_since_offline_m", health.distance_since_offline},
           {"seconds_since_offline", health.seconds_since_offline},
           {"focal_error_percent", 100.0 * health.focal_error},
-          {"image", to_json(health.image)}};
+          {"image", condition_json(health.image)}};
 }
 
 Json pose_json(const Pose& frame_from_body, const Matrix6& covariance) {

@@ -2,6 +2,7 @@
 
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
+#include "byre/features/develop.h"
 #include "byre/features/gaussian_blur.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
@@ -113,6 +114,26 @@ struct Described {
   }
 };
 
+// An image as features are looked for in it.
+struct Developed {
+  cv::Mat image;
+  ImageCondition condition;
+
+  void take(const cv::Mat& rectified, const ImageCondition& of_original) {
+    const Development development = development_for(of_original);
+    condition = condition_after(development, of_original);
+    if (development.changes_anything()) {
+      develop(development, rectified, own_);
+      image = own_;
+    } else {
+      image = rectified;
+    }
+  }
+
+ private:
+  cv::Mat own_;  // the rectified image may be that of the caller
+};
+
 }  // namespace
 
 struct Extractor::State {
@@ -127,33 +148,36 @@ struct Extractor::State {
   std::optional<DepthReader> depth;
   Pyramid left;
   Pyramid right;
+  Developed left_developed;
+  Developed right_developed;
   std::array<cv::Mat, kOctaves> blurred;
   std::array<Described, kOctaves> described;
   TaskThreads threads;
 
   void prepare(const ImageFrame& images, Frame& frame);
   void describe_octave(int octave, int quota);
-  Described describe_all(const Frame& frame, bool stereo);
+  Described describe_all(bool stereo);
   void match_right(std::vector<Keypoint>& keypoints);
   void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
   void time_rows(std::vector<Keypoint>& keypoints) const;
 };
 
-// Rectified images, the left one at every octave, and what the images are like.
+// Images rectified and developed, the left one at every octave, and what they are like as they came.
 void Extractor::State::prepare(const ImageFrame& images, Frame& frame) {
   const bool stereo = calibration.right && images.right;
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
-  const auto prepare_left = [&] { build_pyramid(rectifier.left(left_image), left); };
-  const auto prepare_right = [&] {
-    right.levels[0] = rectifier.right(right_image);
-    frame.right_condition = measure_condition(*images.right);
-  };
-  const auto look_at_left = [&] {
-    frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
+  const auto prepare_left = [&] {
     frame.condition = measure_condition(images.left);
+    left_developed.take(rectifier.left(left_image), *frame.condition);
+    build_pyramid(left_developed.image, left);
   };
-  const std::array<std::function<void()>, 3> tasks = {prepare_left, look_at_left, prepare_right};
+  const auto prepare_right = [&] {
+    frame.right_condition = measure_condition(*images.right);
+    right_developed.take(rectifier.right(right_image), *frame.right_condition);
+  };
+  const auto identify_left = [&] { frame.content = checksum(std::as_bytes(std::span(images.left.pixels))); };
+  const std::array<std::function<void()>, 3> tasks = {prepare_left, identify_left, prepare_right};
   threads.run(stereo ? 3 : 2, [&](int i) { tasks[static_cast<std::size_t>(i)](); });
 }
 
@@ -187,13 +211,13 @@ void Extractor::State::describe_octave(int octave, int quota) {
 }
 
 // Features of all octaves, the finest first; meanwhile the right image at every octave.
-Described Extractor::State::describe_all(const Frame& frame, bool stereo) {
+Described Extractor::State::describe_all(bool stereo) {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
   // The right pyramid takes longer than the coarse octaves.
   const int of_right = stereo ? 1 : -1;
   threads.run(stereo ? kOctaves + 1 : kOctaves, [&](int task) {
     if (task == of_right) {
-      build_pyramid(exposed_as_left(right.levels[0], *frame.condition, *frame.right_condition), right);
+      build_pyramid(exposed_as_left(right_developed.image, left_developed.condition, right_developed.condition), right);
     } else {
       const int octave = stereo && task > of_right ? task - 1 : task;
       describe_octave(octave, quota[static_cast<std::size_t>(octave)]);
@@ -270,7 +294,7 @@ Extraction Extractor::extract(const ImageFrame& images) {
   frame.time = images.time;
   state_->prepare(images, frame);
   const Clock::time_point rectified = Clock::now();
-  Described described = state_->describe_all(frame, stereo);
+  Described described = state_->describe_all(stereo);
   const Clock::time_point extracted = Clock::now();
   if (stereo) state_->match_right(described.keypoints);
   if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);

@@ -143,5 +143,14 @@ TEST(ImageCondition, NamesTheFirstFault) {
   EXPECT_EQ(to_string(ImageFault::none), "none");
 }
 
+TEST(ImageCondition, TellsNoiseApartFromTexture) {
+  for (const double sigma : {0.0, 2.0, 6.0}) {
+    std::mt19937 random(3);
+    cv::Mat image = wall_image();
+    add_noise(image, sigma, random);
+    EXPECT_NEAR(condition_of(image).noise, sigma, 0.15 * sigma + 0.4) << sigma;
+  }
+}
+
 }  // namespace
 }  // namespace byre

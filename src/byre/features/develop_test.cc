@@ -1,0 +1,61 @@
+#include "byre/features/develop.h"
+
+#include "byre/features/test_images.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+cv::Mat steps(double contrast) {
+  cv::Mat image(240, 376, CV_8U);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(30.0 + ((x / 24 + y / 24) % 2) * contrast);
+    }
+  }
+  return image;
+}
+
+cv::Mat noisy(const cv::Mat& image, double sigma) {
+  std::mt19937 random(7);
+  cv::Mat with_noise = image.clone();
+  add_noise(with_noise, sigma, random);
+  return with_noise;
+}
+
+TEST(Development, LeavesWhatWasTakenInGoodLight) {
+  EXPECT_FALSE(development_for({.brightness = 100.0f, .contrast = 20.0f, .noise = 3.4f}).changes_anything());
+}
+
+TEST(Development, LeavesWhatShowsNothing) {
+  EXPECT_FALSE(development_for({.brightness = 1.0f, .contrast = 0.2f, .noise = 5.0f}).changes_anything());
+}
+
+TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
+  const cv::Mat image = noisy(steps(60.0), 8.0);
+  const Development development = development_for(measure_condition(to_image(image)));
+  EXPECT_EQ(development.gain, 1.0f);
+  cv::Mat smooth;
+  develop(development, image, smooth);
+  // Within a field, where there is nothing but noise.
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(smooth(cv::Rect(100, 100, 16, 16)), mean, deviation);
+  EXPECT_NEAR(deviation[0], 2.5, 0.8);
+}
+
+TEST(Development, BringsOutWhatIsDull) {
+  const cv::Mat image = noisy(steps(5.0), 1.0);
+  const ImageCondition condition = measure_condition(to_image(image));
+  const Development development = development_for(condition);
+  EXPECT_GT(development.gain, 3.0f);
+  cv::Mat bright;
+  develop(development, image, bright);
+  const ImageCondition after = measure_condition(to_image(bright));
+  const ImageCondition foretold = condition_after(development, condition);
+  EXPECT_NEAR(after.brightness, foretold.brightness, 2.0f);
+  EXPECT_NEAR(after.contrast, foretold.contrast, 0.25f * foretold.contrast);
+}
+
+}  // namespace
+}  // namespace byre
