@@ -229,4 +229,24 @@ std::vector<Timestamp> times_of_names(const std::vector<std::string>& names) {
   return times;
 }
 
+std::string to_text(const ColmapImport& imported) {
+  std::vector<double> attached, errors;
+  for (const ImportedImage& image : imported.images) {
+    attached.push_back(image.points_attached);
+    errors.push_back(image.median_error);
+  }
+  std::ranges::sort(attached);
+  std::ranges::sort(errors);
+  const Map& map = imported.stored.map;
+  std::string text = formatted("keyframes          %d\n", map.keyframe_count());
+  text += formatted("points             %zu of the model's %d, and %zu of byre's own\n", imported.colmap_ids.size(),
+                    imported.points_in_model, map.point_count() - imported.colmap_ids.size());
+  if (attached.empty()) return text;
+  text += formatted("points per image   median %.0f, least %.0f\n", quantile(attached, 0.5), attached.front());
+  text += formatted("error per image    median %.2f pixels, largest %.2f\n", quantile(errors, 0.5), errors.back());
+  text += imported.stored.scale == MapScale::metric ? "scale              metres\n"
+                                                    : "scale              the model's own (--scale makes it metres)\n";
+  return text;
+}
+
 }  // namespace byre

@@ -49,6 +49,9 @@ ColmapImport import_colmap(const ColmapModel& model, const std::string& model_na
                            const std::filesystem::path& images_folder, const ColmapImportOptions& options,
                            const ColmapImportHooks& hooks);
 
+// Rows of a report.
+std::string to_text(const ColmapImport& imported);
+
 // Time stamps for the images of these names: the numbers that they are, as nanoseconds ("1403715273262142976.png");
 // where some are none, as many seconds as names come before in the alphabet.
 std::vector<Timestamp> times_of_names(const std::vector<std::string>& names);

@@ -161,4 +161,9 @@ Files images_below(const fs::path& folder) {
   return files;
 }
 
+std::filesystem::path picks_path(const std::filesystem::path& map) {
+  std::filesystem::path path = map;
+  return path.replace_extension(".picks.csv");
+}
+
 }  // namespace byre

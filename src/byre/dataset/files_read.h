@@ -20,4 +20,7 @@ std::vector<std::filesystem::path> files_of_colmap_model(const std::filesystem::
 // The image files in a folder and in those below it; a file is its own.
 std::vector<std::filesystem::path> images_below(const std::filesystem::path& folder);
 
+// Where picks are kept that a map was registered by: beside it, with the extension ".picks.csv".
+std::filesystem::path picks_path(const std::filesystem::path& map);
+
 }  // namespace byre

@@ -33,4 +33,12 @@ double resident_memory_mb() {
   return 1e-6 * static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+void allow_many_descriptors() {
+  constexpr rlim_t kMany = 1024;  // select() knows no more
+  rlimit descriptors{};
+  if (getrlimit(RLIMIT_NOFILE, &descriptors) != 0 || descriptors.rlim_cur >= kMany) return;
+  descriptors.rlim_cur = std::min(kMany, descriptors.rlim_max);
+  setrlimit(RLIMIT_NOFILE, &descriptors);
+}
+
 }  // namespace byre

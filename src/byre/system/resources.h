@@ -15,4 +15,8 @@ void release_free_memory();
 
 double resident_memory_mb();  // now; zero where the system does not tell
 
+// Lets this program have as many files open at once as it may ask for, but no more than a thousand: so many connections
+// that what it has to read and write is never short of them.
+void allow_many_descriptors();
+
 }  // namespace byre

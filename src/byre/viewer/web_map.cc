@@ -1,5 +1,6 @@
 #include "byre/viewer/web_map.h"
 
+#include "byre/dataset/files_read.h"
 #include "byre/input/binary_file.h"
 #include "byre/input/formatted.h"
 #include "byre/input_error.h"
@@ -115,11 +116,6 @@ class MapSite : public WebSite {
 };
 
 }  // namespace
-
-std::filesystem::path picks_path(const std::filesystem::path& map) {
-  std::filesystem::path path = map;
-  return path.replace_extension(".picks.csv");
-}
 
 MapViewer::MapViewer(ViewedMap map, const WebServerOptions& server)
     : server_(server, std::make_unique<MapSite>(std::move(map))) {}

@@ -21,9 +21,6 @@ struct ViewedMap {
   PlanRegistrationOptions registration;
 };
 
-// Where picks are kept that a map was registered by: beside it, with the extension ".picks.csv".
-std::filesystem::path picks_path(const std::filesystem::path& map);
-
 // Shows a map in a browser, and registers it on a plan by what is picked there.
 class MapViewer {
  public:

@@ -1,6 +1,6 @@
 #include "byre/bag/bag.h"
 
-#include "byre/cli/bag/report.h"
+#include "byre/assessment/bag_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 

@@ -1,4 +1,4 @@
-#include "byre/cli/check/report.h"
+#include "byre/assessment/recording_check_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"

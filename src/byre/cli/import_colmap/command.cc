@@ -7,14 +7,11 @@
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/recording.h"
 #include "byre/system/stored_map.h"
-#include "byre/trajectory_error.h"
 #include "byre/workers/stopwatch.h"
 
-#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -62,26 +59,6 @@ ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOpti
   ColmapImport imported = import_colmap(model, name, options.images, import_options, hooks);
   progress.close();
   return imported;
-}
-
-std::string to_text(const ColmapImport& imported) {
-  std::vector<double> attached, errors;
-  for (const ImportedImage& image : imported.images) {
-    attached.push_back(image.points_attached);
-    errors.push_back(image.median_error);
-  }
-  std::ranges::sort(attached);
-  std::ranges::sort(errors);
-  const Map& map = imported.stored.map;
-  std::string text = formatted("keyframes          %d\n", map.keyframe_count());
-  text += formatted("points             %zu of the model's %d, and %zu of byre's own\n", imported.colmap_ids.size(),
-                    imported.points_in_model, map.point_count() - imported.colmap_ids.size());
-  if (attached.empty()) return text;
-  text += formatted("points per image   median %.0f, least %.0f\n", quantile(attached, 0.5), attached.front());
-  text += formatted("error per image    median %.2f pixels, largest %.2f\n", quantile(errors, 0.5), errors.back());
-  text += imported.stored.scale == MapScale::metric ? "scale              metres\n"
-                                                    : "scale              the model's own (--scale makes it metres)\n";
-  return text;
 }
 
 ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {

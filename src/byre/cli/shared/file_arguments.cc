@@ -81,8 +81,8 @@ Output kind_of(Output output, const fs::path& path) {
   return path.extension() == ".mcap" ? Output::mcap : Output::folder;
 }
 
-Arguments arguments_of(CLI::App& command) {
-  Arguments arguments;
+NamedFiles arguments_of(CLI::App& command) {
+  NamedFiles arguments;
   for (CLI::App* const given : given_commands(command)) {
     for (CLI::Option* const option : given->get_options()) {
       const auto input = input_of(*option);
@@ -110,16 +110,16 @@ bool wants_no_overwrite(CLI::App& command) {
 }
 
 // Where no file is named for it, a refined map replaces the one that was read.
-void require_absent_map(CLI::App& command, const Arguments& arguments) {
+void require_absent_map(CLI::App& command, const NamedFiles& arguments) {
   for (CLI::Option* const option : command.get_options()) {
     if (output_of(*option) != Output::refined_map || option->count() > 0) continue;
-    for (const Read& read : arguments.inputs) {
+    for (const NamedInput& read : arguments.inputs) {
       if (read.argument == "MAP") require_absent(read.argument, read.path);
     }
   }
 }
 
-void require_nothing_replaced(CLI::App& command, const Arguments& arguments) {
+void require_nothing_replaced(CLI::App& command, const NamedFiles& arguments) {
   require_absent(arguments.outputs);
   for (CLI::App* const given : given_commands(command)) require_absent_map(*given, arguments);
 }
@@ -155,15 +155,19 @@ void declare_no_overwrite(CLI::App& command) {
 }
 
 void require_safe_files(CLI::App& command) {
-  const Arguments arguments = arguments_of(command);
-  require_not_read(arguments);
-  require_distinct(arguments.outputs);
-  if (wants_no_overwrite(command)) require_nothing_replaced(command, arguments);
-  require_same_kinds(arguments.outputs);
+  const NamedFiles arguments = arguments_of(command);
+  try {
+    require_not_read(arguments);
+    require_distinct(arguments.outputs);
+    if (wants_no_overwrite(command)) require_nothing_replaced(command, arguments);
+    require_same_kinds(arguments.outputs);
+  } catch (const FileConflict& conflict) {
+    throw CLI::ValidationError(conflict.argument(), conflict.what());
+  }
 }
 
 void require_files_or_folders(CLI::App& command) {
-  for (const Read& read : arguments_of(command).inputs) refuse_pipe(read.path);
+  for (const NamedInput& read : arguments_of(command).inputs) refuse_pipe(read.path);
 }
 
 void check_when_parsed(CLI::App& command, std::function<void()> check) {

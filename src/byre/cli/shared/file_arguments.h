@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/file_safety.h"
+#include "byre/dataset/file_safety.h"
 
 #include <functional>
 #include <optional>
@@ -9,6 +9,9 @@
 #include <CLI/App.hpp>
 
 namespace byre::cli {
+
+using Input = InputKind;
+using Output = OutputKind;
 
 // What an argument of a command names is declared beside it. Every argument that takes any text is declared as an
 // input, an output or text: so no command can destroy what it reads, and a new one cannot be forgotten.

@@ -1,7 +1,7 @@
 #include "byre/cli/shared/run_input.h"
 
+#include "byre/assessment/recording_check_report.h"
 #include "byre/calibration_file.h"
-#include "byre/cli/check/report.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
@@ -72,7 +72,13 @@ const Calibration& RunInput::calibration() const {
 }
 
 void RunInput::show_check() const {
-  if (!live_ && !choice_.quiet) byre::cli::show_check(std::cerr, *scaled_.recording);
+  if (live_ || choice_.quiet) return;
+  constexpr int kSamples = 5;
+  const RecordingCheck check = check_recording(*scaled_.recording, kSamples);
+  std::cerr << row("checked", summary_of(check));
+  std::vector<std::string> warnings;
+  for (const Finding& finding : findings_of(check)) warnings.push_back(finding.what + ": " + finding.remedy);
+  show_warnings(std::cerr, warnings);
 }
 
 void RunInput::describe(MapProtocol& protocol) const {

@@ -3,6 +3,7 @@
 #include "byre/cli/shared/pose_options.h"
 #include "byre/input/formatted.h"
 #include "byre/map/driving_plane.h"
+#include "byre/system/resources.h"
 #include "byre/workers/stopwatch.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include <thread>
 #include <utility>
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace byre::cli {
@@ -79,14 +79,6 @@ void WatchedRunViewer::finish(const MapRun& run) {
 void announce(const std::vector<std::string>& urls) {
   for (const std::string& url : urls) std::cerr << "viewer: " << url << "\n";
   std::cerr << std::flush;
-}
-
-void allow_many_descriptors() {
-  constexpr rlim_t kMany = 1024;  // select() knows no more
-  rlimit descriptors{};
-  if (getrlimit(RLIMIT_NOFILE, &descriptors) != 0 || descriptors.rlim_cur >= kMany) return;
-  descriptors.rlim_cur = std::min(kMany, descriptors.rlim_max);
-  setrlimit(RLIMIT_NOFILE, &descriptors);
 }
 
 void serve_until_interrupted(const InterruptCatcher& interrupt, bool quiet) {

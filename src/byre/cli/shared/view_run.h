@@ -44,10 +44,6 @@ class WatchedRunViewer {
 // Tells at which addresses a viewer can be opened, on the standard error stream.
 void announce(const std::vector<std::string>& urls);
 
-// Lets this program have as many files open at once as it may ask for, but no more than a thousand: so many connections
-// that what it has to read and write is never short of them.
-void allow_many_descriptors();
-
 // For pages to be looked at: tells so on the standard error stream unless quiet, and returns upon Ctrl-C.
 void serve_until_interrupted(const InterruptCatcher& interrupt, bool quiet);
 

@@ -3,6 +3,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
+#include "byre/dataset/files_read.h"
 #include "byre/input/output_file.h"
 #include "byre/viewer/web_map.h"
 

@@ -1,13 +1,10 @@
-#include "byre/cli/check/report.h"
+#include "byre/assessment/recording_check_report.h"
 
-#include "byre/cli/shared/warnings.h"
 #include "byre/input/formatted.h"
-
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -93,13 +90,4 @@ Json check_json(const RecordingCheck& check, const std::vector<Finding>& finding
   return json;
 }
 
-void show_check(std::ostream& stream, Recording& recording) {
-  constexpr int kSamples = 5;
-  const RecordingCheck check = check_recording(recording, kSamples);
-  stream << row("checked", summary_of(check));
-  std::vector<std::string> warnings;
-  for (const Finding& finding : findings_of(check)) warnings.push_back(finding.what + ": " + finding.remedy);
-  show_warnings(stream, warnings);
-}
-
-}  // namespace byre::cli
+}  // namespace byre

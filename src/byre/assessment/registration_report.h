@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace byre::cli {
+namespace byre {
 
 // What was registered, and where the result went; empty for nowhere.
 struct RegisterProtocol {
@@ -19,4 +19,4 @@ struct RegisterProtocol {
 std::string to_text(const Registering& registering, const RegisterProtocol& protocol);
 std::string to_json(const Registering& registering, const RegisterProtocol& protocol);
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,11 +1,11 @@
-#include "byre/cli/evaluate/report.h"
+#include "byre/assessment/evaluation_report.h"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using testing::HasSubstr;
@@ -190,4 +190,4 @@ TEST(EvaluationReport, IsEmptyWhereNothingCanBeCompared) {
 }
 
 }  // namespace
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/cli/bag/report.h"
+#include "byre/assessment/bag_report.h"
 
 #include "byre/dataset/bag_topics.h"
 #include "byre/input/formatted.h"
@@ -6,10 +6,11 @@
 
 #include <algorithm>
 
-namespace byre::cli {
+#include <nlohmann/json.hpp>
+
+namespace byre {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 double duration_s(const BagContent& content) {
@@ -22,7 +23,7 @@ struct Choice {
   std::string reason;
 };
 
-Choice choice_of(const BagContent& content, const fs::path& bag) {
+Choice choice_of(const BagContent& content, const std::string& bag) {
   try {
     return {choose_image_topics(content, {}, bag), ""};
   } catch (const InputError& error) {
@@ -54,14 +55,14 @@ std::string describe(const BagTopic& topic, double seconds, std::size_t longest_
 
 }  // namespace
 
-std::string describe(const BagContent& content, const fs::path& bag) {
+std::string describe(const BagContent& content, const std::string& bag) {
   std::size_t longest_name = 0, longest_type = 0;
   for (const BagTopic& topic : content.topics) {
     longest_name = std::max(longest_name, topic.name.size());
     longest_type = std::max(longest_type, topic.type.size());
   }
   const double seconds = duration_s(content);
-  std::string text = row("bag", bag.string()) + row("storage", storage_of(content));
+  std::string text = row("bag", bag) + row("storage", storage_of(content));
   text += row("duration", formatted("%.3f s", seconds));
   if (content.first) text += row("from", formatted("%.3f s since 1970", to_seconds(*content.first)));
   text += row("messages", std::to_string(content.message_count));
@@ -73,10 +74,10 @@ std::string describe(const BagContent& content, const fs::path& bag) {
   return text;
 }
 
-Json bag_json(const BagContent& content, const fs::path& bag) {
+Json bag_json(const BagContent& content, const std::string& bag) {
   Json json = {{"program", "byre bag info"},
                {"version", BYRE_VERSION},
-               {"bag", bag.string()},
+               {"bag", bag},
                {"storage", content.storage},
                {"compression", content.compression},
                {"bytes", content.bytes},
@@ -100,4 +101,4 @@ Json bag_json(const BagContent& content, const fs::path& bag) {
   return json;
 }
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/cli/register/report.h"
+#include "byre/assessment/registration_report.h"
 
 #include "byre/archive/register_scene.h"
 
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using testing::AllOf;
@@ -54,4 +54,4 @@ TEST_F(RegisterReport, SaysThatAMapOfAnotherScaleCanBeMendedWhereItHasABaseline)
 }
 
 }  // namespace
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,11 +1,11 @@
-#include "byre/cli/inspect/report.h"
+#include "byre/assessment/inspection_report.h"
 
 #include "byre/map/stored_map_scene.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using testing::HasSubstr;
@@ -50,21 +50,21 @@ TEST(InspectReport, NamesItsUnit) {
 TEST(InspectReport, IsJsonWithStableKeys) {
   const StoredMap stored = StoredMapScene(4, 9).stored();
   const InspectedFile file{"barn.byre", 1000, {{"header", 432}}};
-  const Json json = Json::parse(to_json(stored, inspect(stored), file));
+  const Json report = Json::parse(to_json(stored, inspect(stored), file));
   std::vector<std::string> keys;
-  for (const auto& item : json.items()) keys.push_back(item.key());
+  for (const auto& item : report.items()) keys.push_back(item.key());
   EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "scale", "pose_source", "recordings", "notes", "plan",
                                                   "vocabulary_checksum", "counts", "observations_per_point",
                                                   "reprojection_error", "bounding_box", "path_length", "memory_bytes",
                                                   "faults"));
-  EXPECT_EQ(json["file"]["section_bytes"]["header"], 432);
-  EXPECT_EQ(json["counts"]["points"], 16);
-  EXPECT_EQ(json["notes"]["site"], "barn 3");
-  EXPECT_EQ(json["recordings"][0]["keyframes"], 4);
-  EXPECT_EQ(json["recordings"][1]["keyframes"], 1);
-  EXPECT_EQ(json["recordings"][0]["last_time_ns"], 200000000000);
-  EXPECT_EQ(json["pose_source"], "given");
-  EXPECT_EQ(json["observations_per_point"]["p50"], 2.0);
+  EXPECT_EQ(report["file"]["section_bytes"]["header"], 432);
+  EXPECT_EQ(report["counts"]["points"], 16);
+  EXPECT_EQ(report["notes"]["site"], "barn 3");
+  EXPECT_EQ(report["recordings"][0]["keyframes"], 4);
+  EXPECT_EQ(report["recordings"][1]["keyframes"], 1);
+  EXPECT_EQ(report["recordings"][0]["last_time_ns"], 200000000000);
+  EXPECT_EQ(report["pose_source"], "given");
+  EXPECT_EQ(report["observations_per_point"]["p50"], 2.0);
 }
 
 TEST(InspectReport, SaysInJsonWhereTheMapLiesOnItsPlan) {
@@ -85,4 +85,4 @@ TEST(InspectReport, ManagesAnEmptyMap) {
 }
 
 }  // namespace
-}  // namespace byre::cli
+}  // namespace byre

@@ -2,13 +2,12 @@
 
 #include "byre/dataset/recording_check.h"
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace byre::cli {
+namespace byre {
 
 // "20.0 Hz, 2 gaps; 1000 features, 56 % of them in both images, 0.25 px off their row"
 std::string summary_of(const RecordingCheck& check);
@@ -18,7 +17,4 @@ std::string describe(const RecordingCheck& check, const std::vector<Finding>& fi
 
 nlohmann::ordered_json check_json(const RecordingCheck& check, const std::vector<Finding>& findings);
 
-// Looks at a few frames before long work begins: a line of summary, and a warning for each thing found.
-void show_check(std::ostream& stream, Recording& recording);
-
-}  // namespace byre::cli
+}  // namespace byre

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace byre::cli {
+namespace byre {
 
 struct InspectedFile {
   std::string name;
@@ -17,4 +17,4 @@ struct InspectedFile {
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 std::string to_json(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/cli/register/report.h"
+#include "byre/assessment/registration_report.h"
 
 #include "byre/assessment/report_json.h"
 #include "byre/input/formatted.h"
@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -133,4 +133,4 @@ std::string to_json(const Registering& registering, const RegisterProtocol& prot
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/cli/inspect/report.h"
+#include "byre/assessment/inspection_report.h"
 
 #include "byre/archive/register_map.h"
 #include "byre/assessment/calibration_report.h"
@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -90,7 +90,7 @@ std::string describe(const SourceRecording& recording, int keyframes, const std:
 }
 
 template <typename Size>
-std::string listing(const std::vector<Size>& sizes) {
+std::string sizes_text(const std::vector<Size>& sizes) {
   std::string text;
   for (const Size& size : sizes) text += (text.empty() ? "" : ", ") + size.name + " " + size_text(size.bytes);
   return text;
@@ -154,7 +154,7 @@ Json to_json(const MapCounts& counts) {
           {"patches", counts.patches}};
 }
 
-Json to_json(const std::optional<BoundingBox>& box) {
+Json box_json(const std::optional<BoundingBox>& box) {
   if (!box) return nullptr;
   return {{"min", {box->min.x(), box->min.y(), box->min.z()}}, {"max", {box->max.x(), box->max.y(), box->max.z()}}};
 }
@@ -210,9 +210,9 @@ std::string to_text(const StoredMap& stored, const MapInspection& inspection, co
   text += wide_row("extent", describe_box(inspection.points_in_world, unit));
   text += wide_row("path", formatted("%.2f %s", inspection.path_length, unit));
   text += wide_row("file", describe_file(file, counts.keyframes));
-  text += wide_row("", listing(file.sections));
+  text += wide_row("", sizes_text(file.sections));
   text += wide_row("memory", "about " + size_text(sum_of(inspection.memory)));
-  text += wide_row("", listing(inspection.memory));
+  text += wide_row("", sizes_text(inspection.memory));
   return text + fault_text(inspection.faults);
 }
 
@@ -228,7 +228,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"counts", to_json(inspection.counts)},
       {"observations_per_point", to_json(inspection.observations_per_point)},
       {"reprojection_error", errors_json(inspection.errors)},
-      {"bounding_box", to_json(inspection.points_in_world)},
+      {"bounding_box", box_json(inspection.points_in_world)},
       {"path_length", inspection.path_length},
       {"memory_bytes", sizes_json(inspection.memory)},
       {"faults", inspection.faults}};
@@ -236,4 +236,4 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace byre::cli
+}  // namespace byre

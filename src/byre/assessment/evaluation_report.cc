@@ -1,4 +1,4 @@
-#include "byre/cli/evaluate/report.h"
+#include "byre/assessment/evaluation_report.h"
 
 #include "byre/input/formatted.h"
 
@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -78,7 +78,7 @@ std::string header(const EvaluationReport& report, const std::string& estimate_f
   return text.str();
 }
 
-std::string row(const char* name, const ErrorStatistics& errors) {
+std::string ate_rpe_row(const char* name, const ErrorStatistics& errors) {
   if (errors.count == 0) return formatted("%-22s no pair of poses is that far apart\n", name);
   return formatted("%-22s %9.5f %9.5f %9.5f %9.5f %9.5f %8d\n", name, errors.rmse, errors.mean, errors.median,
                    errors.p95, errors.max, errors.count);
@@ -159,14 +159,14 @@ std::string to_text(const EvaluationReport& report, const std::string& estimate_
   std::string text = header(report, estimate_file, truth_file) + "\n";
   text += formatted("%-22s %9s %9s %9s %9s %9s %8s\n", "", "rmse", "mean", "median", "p95", "max", "count");
   if (report.ate) {
-    text += row("ATE            m", report.ate->translation) + row("ATE            degrees", report.ate->rotation);
+    text += ate_rpe_row("ATE            m", report.ate->translation) + ate_rpe_row("ATE            degrees", report.ate->rotation);
   }
-  text += row("RPE 1 frame    m", report.rpe_frame.translation);
-  text += row("RPE 1 frame    degrees", report.rpe_frame.rotation);
-  text += row("RPE 1 s        m", report.rpe_second.translation);
-  text += row("RPE 1 s        degrees", report.rpe_second.rotation);
-  text += row("RPE 1 m        m", report.rpe_metre.translation);
-  text += row("RPE 1 m        degrees", report.rpe_metre.rotation);
+  text += ate_rpe_row("RPE 1 frame    m", report.rpe_frame.translation);
+  text += ate_rpe_row("RPE 1 frame    degrees", report.rpe_frame.rotation);
+  text += ate_rpe_row("RPE 1 s        m", report.rpe_second.translation);
+  text += ate_rpe_row("RPE 1 s        degrees", report.rpe_second.rotation);
+  text += ate_rpe_row("RPE 1 m        m", report.rpe_metre.translation);
+  text += ate_rpe_row("RPE 1 m        degrees", report.rpe_metre.rotation);
   return text + segment_rows(report.segments);
 }
 
@@ -191,4 +191,4 @@ std::string to_json(const EvaluationReport& report, const std::string& estimate_
   return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace byre::cli
+}  // namespace byre

@@ -1,8 +1,7 @@
-#include "byre/cli/shared/file_safety.h"
+#include "byre/dataset/file_safety.h"
 
 #include "byre/dataset/file_content.h"
 #include "byre/dataset/files_read.h"
-#include "byre/viewer/web_map.h"
 
 #include <algorithm>
 #include <array>
@@ -12,10 +11,9 @@
 #include <string_view>
 #include <system_error>
 
-#include <CLI/Error.hpp>
 #include <sys/stat.h>
 
-namespace byre::cli {
+namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,36 +50,36 @@ fs::path target_of(fs::path path) {
   return error ? path : target;
 }
 
-std::vector<fs::path> files_of(const Read& read) {
+std::vector<fs::path> files_of(const NamedInput& read) {
   switch (read.input) {
-    case Input::file:
-    case Input::folder:
+    case InputKind::file:
+    case InputKind::folder:
       break;
-    case Input::recording:
+    case InputKind::recording:
       return files_of_recording(read.path);
-    case Input::plan:
+    case InputKind::plan:
       return files_of_floor_plan(read.path);
-    case Input::colmap_model:
+    case InputKind::colmap_model:
       return files_of_colmap_model(read.path);
-    case Input::images:
+    case InputKind::images:
       return images_below(read.path);
   }
   return {};
 }
 
 // All that is written for an output, but for what comes into folders whose content is the command's own.
-std::vector<fs::path> files_of(const Written& written) {
+std::vector<fs::path> files_of(const NamedOutput& written) {
   std::vector<fs::path> files;
   switch (written.output) {
-    case Output::recording:
-    case Output::folder:
+    case OutputKind::recording:
+    case OutputKind::folder:
       return {};
-    case Output::colmap_model:
+    case OutputKind::colmap_model:
       for (const char* const name : {"cameras", "images", "points3D"}) {
         for (const char* const suffix : {".bin", ".txt"}) files.push_back(written.path / (std::string(name) + suffix));
       }
       return files;
-    case Output::viewed_map:
+    case OutputKind::viewed_map:
       files.push_back(picks_path(written.path));
       [[fallthrough]];
     default:
@@ -93,24 +91,24 @@ std::vector<fs::path> files_of(const Written& written) {
 // Which argument reads a file or folder: those that are there by what they are, those that were named by their name
 // too.
 struct Owners {
-  std::map<Identity, const Read*> by_identity;
-  std::map<fs::path, const Read*> by_name;
+  std::map<Identity, const NamedInput*> by_identity;
+  std::map<fs::path, const NamedInput*> by_name;
 
-  const Read* find(const fs::path& file, Output output) const {
+  const NamedInput* find(const fs::path& file, OutputKind output) const {
     const auto identity = identity_of(file);
     const auto same = identity ? by_identity.find(*identity) : by_identity.end();
     if (same != by_identity.end()) return same->second;
-    if (output == Output::folder) return nullptr;  // it may bear the name of a protocol that comes with byre
+    if (output == OutputKind::folder) return nullptr;  // it may bear the name of a protocol that comes with byre
     const auto named = by_name.find(target_of(file));
     return named != by_name.end() && !is_special(file) ? named->second : nullptr;
   }
 };
 
-Owners owners_of(const std::vector<Read>& inputs) {
+Owners owners_of(const std::vector<NamedInput>& inputs) {
   Owners owners;
-  for (const Read& read : inputs) {
+  for (const NamedInput& read : inputs) {
     std::error_code error;
-    if (read.input == Input::file && fs::is_directory(read.path, error)) continue;  // no file, but a name like one
+    if (read.input == InputKind::file && fs::is_directory(read.path, error)) continue;  // no file, but a name like one
     owners.by_name.emplace(target_of(read.path), &read);
     std::vector<fs::path> files = files_of(read);
     files.push_back(read.path);
@@ -122,23 +120,23 @@ Owners owners_of(const std::vector<Read>& inputs) {
 }
 
 // A map may take the place of the map that it was made of.
-bool may_be(const Written& written, const Read& read) {
-  constexpr std::array kInPlace = {Output::refined_map, Output::updated_map, Output::viewed_map};
+bool may_be(const NamedOutput& written, const NamedInput& read) {
+  constexpr std::array kInPlace = {OutputKind::refined_map, OutputKind::updated_map, OutputKind::viewed_map};
   if (std::ranges::count(kInPlace, written.output) == 0) return false;
-  return read.input == Input::file && read.argument == "MAP";
+  return read.input == InputKind::file && read.argument == "MAP";
 }
 
-void require_not_read(const Written& written, const fs::path& file, const Owners& owners) {
-  const Read* const owner = owners.find(file, written.output);
+void require_not_read(const NamedOutput& written, const fs::path& file, const Owners& owners) {
+  const NamedInput* const owner = owners.find(file, written.output);
   if (owner == nullptr || may_be(written, *owner)) return;
-  throw CLI::ValidationError(written.argument, file.string() + " is read, for " + owner->argument +
+  throw FileConflict(written.argument, file.string() + " is read, for " + owner->argument +
                                                    ", so it may not be written: name another file");
 }
 
-void require_not_read(const Written& written, const Owners& owners) {
+void require_not_read(const NamedOutput& written, const Owners& owners) {
   // The files of a model may be put beside those of a recording.
   std::error_code error;
-  const bool is_shared_folder = written.output == Output::colmap_model && fs::is_directory(written.path, error);
+  const bool is_shared_folder = written.output == OutputKind::colmap_model && fs::is_directory(written.path, error);
   if (!is_shared_folder) require_not_read(written, written.path, owners);
   for (const fs::path& file : files_of(written)) {
     require_not_read(written, file, owners);
@@ -158,93 +156,93 @@ bool is_svg(const fs::path& file) {
   return file.extension() == ".svg" || file.extension() == ".SVG";
 }
 
-std::string_view kind_of(const Written& written, const fs::path& file) {
+std::string_view kind_of(const NamedOutput& written, const fs::path& file) {
   switch (written.output) {
-    case Output::viewed_map:
+    case OutputKind::viewed_map:
       return file == written.path ? "map" : "table of picks";
-    case Output::map:
-    case Output::refined_map:
-    case Output::updated_map:
+    case OutputKind::map:
+    case OutputKind::refined_map:
+    case OutputKind::updated_map:
       return "map";
-    case Output::trajectory:
+    case OutputKind::trajectory:
       return "trajectory";
-    case Output::json:
+    case OutputKind::json:
       return "JSON";
-    case Output::picture:
+    case OutputKind::picture:
       return is_svg(file) ? "SVG picture" : "PNG picture";
-    case Output::video:
+    case OutputKind::video:
       return "video";
-    case Output::point_cloud:
+    case OutputKind::point_cloud:
       return "point cloud";
-    case Output::mcap:
+    case OutputKind::mcap:
       return "MCAP file";
-    case Output::calibration:
+    case OutputKind::calibration:
       return "calibration";
-    case Output::vocabulary:
+    case OutputKind::vocabulary:
       return "vocabulary";
-    case Output::colmap_model:
-    case Output::recording:
-    case Output::folder:
+    case OutputKind::colmap_model:
+    case OutputKind::recording:
+    case OutputKind::folder:
       break;
   }
   return "part of a model";
 }
 
-bool may_replace(const Written& written, const fs::path& file, FileContent content) {
+bool may_replace(const NamedOutput& written, const fs::path& file, FileContent content) {
   switch (written.output) {
-    case Output::viewed_map:
+    case OutputKind::viewed_map:
       return content == (file == written.path ? FileContent::map : FileContent::table);
-    case Output::map:
-    case Output::refined_map:
-    case Output::updated_map:
+    case OutputKind::map:
+    case OutputKind::refined_map:
+    case OutputKind::updated_map:
       return content == FileContent::map;
-    case Output::trajectory:
+    case OutputKind::trajectory:
       return content == FileContent::trajectory;
-    case Output::json:
+    case OutputKind::json:
       return content == FileContent::json;
-    case Output::picture:
+    case OutputKind::picture:
       return content == (is_svg(file) ? FileContent::svg : FileContent::png);
-    case Output::video:
+    case OutputKind::video:
       return content == FileContent::video;
-    case Output::point_cloud:
+    case OutputKind::point_cloud:
       return content == FileContent::point_cloud;
-    case Output::mcap:
+    case OutputKind::mcap:
       return content == FileContent::mcap;
-    case Output::calibration:
+    case OutputKind::calibration:
       return content == FileContent::yaml;
-    case Output::vocabulary:
+    case OutputKind::vocabulary:
       return content == FileContent::vocabulary;
-    case Output::colmap_model:
-    case Output::recording:
-    case Output::folder:
+    case OutputKind::colmap_model:
+    case OutputKind::recording:
+    case OutputKind::folder:
       break;
   }
   return content == FileContent::other || content == FileContent::text || content == FileContent::trajectory;
 }
 
-void require_same_kind(const Written& written, const fs::path& file) {
+void require_same_kind(const NamedOutput& written, const fs::path& file) {
   const auto content = content_of(file);
   if (!content || *content == FileContent::nothing || may_replace(written, file, *content)) return;
-  throw CLI::ValidationError(written.argument, file.string() + " is there and is no " +
+  throw FileConflict(written.argument, file.string() + " is there and is no " +
                                                    std::string(kind_of(written, file)) +
                                                    ": name another file, or remove that one first");
 }
 
 }  // namespace
 
-void require_not_read(const Arguments& arguments) {
+void require_not_read(const NamedFiles& arguments) {
   if (arguments.outputs.empty()) return;  // nobody needs to know all that is read
   const Owners owners = owners_of(arguments.inputs);
-  for (const Written& written : arguments.outputs) require_not_read(written, owners);
+  for (const NamedOutput& written : arguments.outputs) require_not_read(written, owners);
 }
 
-void require_distinct(const std::vector<Written>& outputs) {
+void require_distinct(const std::vector<NamedOutput>& outputs) {
   std::set<fs::path> files;
   std::set<Identity> identities;
   const auto require_new = [](bool is_new, const fs::path& file) {
-    if (!is_new) throw CLI::ValidationError(file.string(), "is named for two outputs");
+    if (!is_new) throw FileConflict(file.string(), "is named for two outputs");
   };
-  for (const Written& written : outputs) {
+  for (const NamedOutput& written : outputs) {
     for (const fs::path& file : files_of(written)) {
       fs::path unfinished = target_of(file);
       require_new(files.insert(unfinished).second, file);
@@ -255,17 +253,17 @@ void require_distinct(const std::vector<Written>& outputs) {
   }
 }
 
-void require_same_kinds(const std::vector<Written>& outputs) {
-  for (const Written& written : outputs) {
+void require_same_kinds(const std::vector<NamedOutput>& outputs) {
+  for (const NamedOutput& written : outputs) {
     if (is_device_name(written.path)) continue;
     for (const fs::path& file : files_of(written)) require_same_kind(written, file);
   }
 }
 
-void require_absent(const std::vector<Written>& outputs) {
-  for (const Written& written : outputs) {
+void require_absent(const std::vector<NamedOutput>& outputs) {
+  for (const NamedOutput& written : outputs) {
     if (is_device_name(written.path)) continue;
-    if (written.output == Output::folder) require_absent(written.argument, written.path);
+    if (written.output == OutputKind::folder) require_absent(written.argument, written.path);
     for (const fs::path& file : files_of(written)) require_absent(written.argument, file);
   }
 }
@@ -275,7 +273,7 @@ void require_absent(const std::string& argument, const fs::path& file) {
   const fs::file_status status = fs::status(file, error);
   const bool is_full_folder = fs::is_directory(status) && !fs::is_empty(file, error);
   if (!fs::is_regular_file(status) && !is_full_folder) return;
-  throw CLI::ValidationError(argument, file.string() + " is there, and --no-overwrite keeps what is");
+  throw FileConflict(argument, file.string() + " is there, and --no-overwrite keeps what is");
 }
 
-}  // namespace byre::cli
+}  // namespace byre
