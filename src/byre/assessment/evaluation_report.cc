@@ -159,7 +159,8 @@ std::string to_text(const EvaluationReport& report, const std::string& estimate_
   std::string text = header(report, estimate_file, truth_file) + "\n";
   text += formatted("%-22s %9s %9s %9s %9s %9s %8s\n", "", "rmse", "mean", "median", "p95", "max", "count");
   if (report.ate) {
-    text += ate_rpe_row("ATE            m", report.ate->translation) + ate_rpe_row("ATE            degrees", report.ate->rotation);
+    text += ate_rpe_row("ATE            m", report.ate->translation) +
+            ate_rpe_row("ATE            degrees", report.ate->rotation);
   }
   text += ate_rpe_row("RPE 1 frame    m", report.rpe_frame.translation);
   text += ate_rpe_row("RPE 1 frame    degrees", report.rpe_frame.rotation);

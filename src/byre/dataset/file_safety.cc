@@ -130,7 +130,7 @@ void require_not_read(const NamedOutput& written, const fs::path& file, const Ow
   const NamedInput* const owner = owners.find(file, written.output);
   if (owner == nullptr || may_be(written, *owner)) return;
   throw FileConflict(written.argument, file.string() + " is read, for " + owner->argument +
-                                                   ", so it may not be written: name another file");
+                                           ", so it may not be written: name another file");
 }
 
 void require_not_read(const NamedOutput& written, const Owners& owners) {
@@ -223,9 +223,8 @@ bool may_replace(const NamedOutput& written, const fs::path& file, FileContent c
 void require_same_kind(const NamedOutput& written, const fs::path& file) {
   const auto content = content_of(file);
   if (!content || *content == FileContent::nothing || may_replace(written, file, *content)) return;
-  throw FileConflict(written.argument, file.string() + " is there and is no " +
-                                                   std::string(kind_of(written, file)) +
-                                                   ": name another file, or remove that one first");
+  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(kind_of(written, file)) +
+                                           ": name another file, or remove that one first");
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
     begin_anew();
   }
   if (!runner_.look_near(*hint)) return "the robot is being looked for in the whole map anyway";
-  return answer + formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint->radius, hint->seconds);
+  return answer +
+         formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint->radius, hint->seconds);
 }
 
 void Node::take_requests() {

@@ -1,6 +1,6 @@
+#include "byre/assessment/evaluation_report.h"
 #include "byre/benchmark/evaluation_plot.h"
 #include "byre/cli/commands.h"
-#include "byre/assessment/evaluation_report.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/pose_options.h"

@@ -1,6 +1,6 @@
 #include "byre/archive/point_cloud.h"
-#include "byre/cli/commands.h"
 #include "byre/assessment/inspection_report.h"
+#include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/input/binary_file.h"
 #include "byre/input/output_file.h"

@@ -1,6 +1,6 @@
 #include "byre/archive/register_map.h"
-#include "byre/cli/commands.h"
 #include "byre/assessment/registration_report.h"
+#include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/input/formatted.h"
