@@ -21,6 +21,14 @@ DriftBound Mission::drift() const {
   return {kMinDrift + kDriftShare * distance_since_offline_, kMinTurn + kTurnPerMetre * distance_since_offline_};
 }
 
+HybridLimits Mission::limits(bool is_stereo, double seconds) const {
+  constexpr double kLeast = 0.3;                 // metres, and radians
+  const double drift = is_stereo ? 0.05 : 0.15;  // metres a metre: the scale of one camera drifts as well
+  const double reach = options_.registration.max_speed * seconds;  // the prediction may be all wrong
+  const double metres = kLeast + drift * distance_since_offline_;
+  return {{metres, kLeast + kTurnPerMetre * distance_since_offline_}, metres + reach};
+}
+
 std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_from_world) const {
   if (reference_) return reference_;
   const auto near = offline_->keyframes_near(predicted_camera_from_world, kSearchDistance, 1);

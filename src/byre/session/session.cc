@@ -167,8 +167,12 @@ InputFrame Session::input_of(const Frame& rectified) {
 Session::Located Session::locate(const InputFrame& input) {
   const Frame& frame = input.frame;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  const Tracker::Scene scene{rig_, mapper_, mission_ ? &mission_->mission() : nullptr,
-                             mission_ && mission_->ask_for_focal_length(), hint_.get()};
+  const Tracker::Scene scene{rig_,
+                             mapper_,
+                             mission_ ? &mission_->mission() : nullptr,
+                             mission_ && mission_->ask_for_focal_length(),
+                             hint_.get(),
+                             whereabouts_.confirmation().is_proven()};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;

@@ -62,7 +62,9 @@ const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted
   return offline_.points;
 }
 
-std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted) {
+// So many seconds after the last frame that had a pose.
+std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
+                                               double seconds) {
   const std::vector<PointId>& online = points_around_reference(scene.mapper);
   const MapView map = scene.mapper.map();
   if (!scene.mission) {
@@ -74,21 +76,24 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     candidates = scene.mission->candidates(offline_points_around(predicted, *scene.mission));
   }
   candidates.insert(candidates.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, scene.rig, map, candidates, options_.track, scene.weigh_focal_lengths);
+  const HybridLimits limits =
+      scene.is_place_proven ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  return track_hybrid(frame, predicted, scene.rig, map, candidates, options_.track, limits, scene.weigh_focal_lengths);
 }
 
 std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,
                                           const MotionModel& motion) {
   const auto newest = scene.mapper.newest_in_present_frame();
   if (!is_usable(reference_, scene.mapper)) reference_ = newest;
-  const Pose predicted = motion.predict(last.camera_from_world, scene.rig, to_seconds(frame.time - last.time));
-  auto best = track_from(frame, scene, predicted);
+  const double seconds = to_seconds(frame.time - last.time);
+  const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
+  auto best = track_from(frame, scene, predicted, seconds);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   for (const std::optional<KeyframeId>& keyframe : {std::optional(last.keyframe), newest}) {
     const auto pose = keyframe ? pose_from_keyframe(frame, scene.rig, scene.mapper.map(), *keyframe) : std::nullopt;
     if (!pose) continue;
-    auto tracked = track_from(frame, scene, *pose);
+    auto tracked = track_from(frame, scene, *pose, seconds);
     if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);
   }
   return best;

@@ -22,6 +22,7 @@ struct Query {
   const Rig& rig;
   const MapView& map;
   const TrackOptions& options;
+  HybridLimits limits{};
 };
 
 // One value for the points of each map.
@@ -75,6 +76,13 @@ ByMap<std::vector<ExpectedPoint>> project(const Query& query, const ByMap<std::v
           project_points(query.map, candidates.online, camera_from_world.online, query.rig)};
 }
 
+// Rows of columns and fences look the same a bay farther on, where offline points fit a pose as well.
+bool is_another_place(const Pose& offline, const std::optional<Pose>& online, const Pose& predicted,
+                      const HybridLimits& limits) {
+  if (online) return !is_within(agreement_of(offline, *online), limits.drift);
+  return agreement_of(offline, predicted).translation > limits.stray;
+}
+
 // A first pose for each kind of points: the same one, unless they contradict each other.
 std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted,
                                        const ByMap<std::vector<PointId>>& points) {
@@ -85,6 +93,9 @@ std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted
       const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
       if (differ_by(predicted) < kNarrowRadius) return ByMap<Pose>{*offline, *offline};
       const auto online = guess(query, predicted, expected.online);
+      if (is_another_place(*offline, online, predicted, query.limits)) {
+        return online ? std::optional(ByMap<Pose>{*online, *online}) : std::nullopt;
+      }
       const bool contradict = online && differ_by(*online) > 0.5 * kNarrowRadius;
       return ByMap<Pose>{*offline, contradict ? *online : *offline};
     }
@@ -309,8 +320,9 @@ bool is_within(const Agreement& agreement, const DriftBound& drift) {
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const TrackOptions& options, bool weighs_focal_lengths) {
-  const Query query{frame, rig, map, options};
+                                        const TrackOptions& options, const HybridLimits& limits,
+                                        bool weighs_focal_lengths) {
+  const Query query{frame, rig, map, options, limits};
   const ByMap<std::vector<PointId>> points = split(candidates);
   const auto guesses = guess_poses(query, predicted_camera_from_world, points);
   if (!guesses) return std::nullopt;

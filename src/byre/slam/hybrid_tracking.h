@@ -4,6 +4,7 @@
 #include "byre/slam/health.h"
 #include "byre/slam/tracking.h"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,13 @@ struct HybridTrack {
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
+// How far offline points may put the camera from where it is known to be: farther off is a place that looks the same.
+struct HybridLimits {
+  DriftBound drift{kNoLimit, kNoLimit};  // from where online points have it
+  double stray = kNoLimit;               // metres from the prediction, where online points do not have it
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+};
+
 // As track(), for candidates of both maps. Each kind of points gives a pose of its own. Offline comes first: where one
 // pose fits offline points all over the image it stands, whatever the online map says, and online points are used that
 // agree with it. Offline points that fit one pose in a part of the image only may be a thing that was moved: where the
@@ -49,7 +57,8 @@ struct HybridTrack {
 // weighs_focal_lengths: offline points are asked what they make of other ones, see FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
-                                        const TrackOptions& options, bool weighs_focal_lengths = false);
+                                        const TrackOptions& options, const HybridLimits& limits = {},
+                                        bool weighs_focal_lengths = false);
 
 // Which points a pose that is known has in their places, and which elsewhere.
 struct PlacedPoints {

@@ -49,13 +49,15 @@ class TrackHybrid : public ::testing::Test {
   std::optional<HybridTrack> track_frame(OfflinePolicy policy = OfflinePolicy::first) const {
     return track_frame(truth_, policy);
   }
-  std::optional<HybridTrack> track_frame(const Pose& predicted, OfflinePolicy policy) const {
+  std::optional<HybridTrack> track_frame(const Pose& predicted, OfflinePolicy policy,
+                                         const HybridLimits& limits = {}) const {
     std::vector<PointId> candidates = offline_.point_ids();
     const std::vector<PointId> online = online_.point_ids();
     candidates.insert(candidates.end(), online.begin(), online.end());
     TrackOptions options;
     options.offline_policy = policy;
-    return track_hybrid(now_.frames[kFrameTracked], predicted, now_.rig, {&offline_, online_}, candidates, options);
+    return track_hybrid(now_.frames[kFrameTracked], predicted, now_.rig, {&offline_, online_}, candidates, options,
+                        limits);
   }
 
   // What the offline map has in this share of the image's width, from the left.
@@ -128,6 +130,25 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapHoweverFarTheOnlineMapIsOff) {
                 PointNear((shift_by(metres) * inverse(truth_)).translation, 0.01));
     online_ = std::move(online);
   }
+}
+
+TEST_F(TrackHybrid, StaysOnTheOnlineMapWhereOfflinePointsPutItFartherOffThanThatCanHaveDrifted) {
+  move(online_, shift_by(0.4));
+  const Pose predicted = truth_ * inverse(shift_by(0.4));
+  const auto led_astray = track_frame(predicted, OfflinePolicy::first, {.drift = {0.5, 0.1}});
+  ASSERT_TRUE(led_astray);
+  EXPECT_THAT(led_astray->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  const auto track = track_frame(predicted, OfflinePolicy::first, {.drift = {0.3, 0.1}});
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
+  EXPECT_FALSE(track->is_online_off());
+}
+
+TEST_F(TrackHybrid, IsLostWhereOfflinePointsAlonePutItFartherOffThanItCanHaveGone) {
+  online_ = Map(Origin::online);
+  const Pose predicted = truth_ * inverse(shift_by(0.4));
+  EXPECT_TRUE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.5}));
+  EXPECT_FALSE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.3}));
 }
 
 class TrackHybridAmongMuch : public TrackHybrid {
