@@ -36,7 +36,7 @@ class Mission {
   double distance_since_offline() const { return distance_since_offline_; }
   std::optional<Timestamp> last_offline_time() const { return last_offline_time_; }
   DriftBound drift() const;
-  // How far offline points may put a camera that is tracked, the seconds between two frames being as given.
+  // How far offline points may put a camera that was last tracked so many seconds ago, at a place that was proven.
   HybridLimits limits(bool is_stereo, double seconds) const;
 
   // Where offline points are to be looked for from a predicted pose: around the keyframe that showed most of them in

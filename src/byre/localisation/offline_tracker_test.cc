@@ -59,6 +59,20 @@ TEST_F(OnAnOfflineMap, TellsOnceThatItsPointsHoldThePoseOrDoNot) {
   EXPECT_GT(tracker_.mission().distance_since_offline(), 0.0);
 }
 
+TEST_F(OnAnOfflineMap, LetsItsPointsPutTheCameraTheFartherOffTheLongerTheyDidNotHoldIt) {
+  note_found(0);
+  note(4, 100);
+  const Mission& mission = tracker_.mission();
+  const HybridLimits at_once = mission.limits(true, 0.1);
+  EXPECT_LT(at_once.drift.translation, 1.0) << "metres, and no bay of a building is as short";
+  EXPECT_GT(at_once.stray, at_once.drift.translation) << "the robot may have moved unforeseen";
+  EXPECT_GT(mission.limits(true, 1.0).stray, at_once.stray);
+  for (std::size_t i = 5; i < 10; ++i) note(i, 0);
+  ASSERT_GT(mission.distance_since_offline(), 0.0);
+  EXPECT_GT(mission.limits(true, 0.1).drift.translation, at_once.drift.translation);
+  EXPECT_GT(mission.limits(false, 0.1).drift.translation, mission.limits(true, 0.1).drift.translation);
+}
+
 TEST_F(OnAnOfflineMap, GivesAnUnprovenFindUpForAPlaceElsewhereThatShowsMore) {
   note_found(0, 1);
   ASSERT_FALSE(whereabouts_.confirmation().is_proven());

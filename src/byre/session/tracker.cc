@@ -62,9 +62,8 @@ const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted
   return offline_.points;
 }
 
-// So many seconds after the last frame that had a pose.
 std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
-                                               double seconds) {
+                                               const HybridLimits& limits) {
   const std::vector<PointId>& online = points_around_reference(scene.mapper);
   const MapView map = scene.mapper.map();
   if (!scene.mission) {
@@ -76,8 +75,6 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     candidates = scene.mission->candidates(offline_points_around(predicted, *scene.mission));
   }
   candidates.insert(candidates.end(), online.begin(), online.end());
-  const HybridLimits limits =
-      scene.is_place_proven ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
   return track_hybrid(frame, predicted, scene.rig, map, candidates, options_.track, limits, scene.weigh_focal_lengths);
 }
 
@@ -87,13 +84,15 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   if (!is_usable(reference_, scene.mapper)) reference_ = newest;
   const double seconds = to_seconds(frame.time - last.time);
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
-  auto best = track_from(frame, scene, predicted, seconds);
+  const bool is_limited = scene.mission && scene.is_place_proven;
+  const HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  auto best = track_from(frame, scene, predicted, limits);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   for (const std::optional<KeyframeId>& keyframe : {std::optional(last.keyframe), newest}) {
     const auto pose = keyframe ? pose_from_keyframe(frame, scene.rig, scene.mapper.map(), *keyframe) : std::nullopt;
     if (!pose) continue;
-    auto tracked = track_from(frame, scene, *pose, seconds);
+    auto tracked = track_from(frame, scene, *pose, limits);
     if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);
   }
   return best;

@@ -30,7 +30,7 @@ class Tracker {
     const Mission* mission = nullptr;  // on an offline map
     bool weigh_focal_lengths = false;  // see FocalCheck
     std::optional<PoseHint> hint{};    // where alone a frame is looked for in the offline map
-    bool is_place_proven = false;      // offline points cannot put the camera elsewhere at once
+    bool is_place_proven = false;      // so offline points cannot put the camera just anywhere
   };
   // The last frame that had a pose.
   struct LastPose {
@@ -65,7 +65,8 @@ class Tracker {
   bool is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const;
   const std::vector<PointId>& points_around_reference(const Mapper& mapper);
   const std::vector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
-  std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted, double seconds);
+  std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
+                                        const HybridLimits& limits);
 
   SessionOptions options_;  // constant after construction
 

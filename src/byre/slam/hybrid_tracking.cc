@@ -83,7 +83,7 @@ bool is_another_place(const Pose& offline, const std::optional<Pose>& online, co
   return agreement_of(offline, predicted).translation > limits.stray;
 }
 
-// A first pose for each kind of points: the same one, unless they contradict each other.
+// A first pose for each kind of points: the same one, unless they contradict each other within the limits.
 std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted,
                                        const ByMap<std::vector<PointId>>& points) {
   const ByMap<std::vector<ExpectedPoint>> expected = project(query, points, {predicted, predicted});

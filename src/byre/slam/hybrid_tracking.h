@@ -43,7 +43,8 @@ struct HybridTrack {
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
-// How far offline points may put the camera from where it is known to be: farther off is a place that looks the same.
+// How far offline points may put the camera from where it is known to be, where they come first: farther off is a place
+// that looks the same.
 struct HybridLimits {
   DriftBound drift{kNoLimit, kNoLimit};  // from where online points have it
   double stray = kNoLimit;               // metres from the prediction, where online points do not have it
@@ -51,9 +52,9 @@ struct HybridLimits {
 };
 
 // As track(), for candidates of both maps. Each kind of points gives a pose of its own. Offline comes first: where one
-// pose fits offline points all over the image it stands, whatever the online map says, and online points are used that
-// agree with it. Offline points that fit one pose in a part of the image only may be a thing that was moved: where the
-// maps disagree the online pose stands, and offline points are used that agree with that.
+// pose fits offline points all over the image it stands, within the limits whatever the online map says, and online
+// points are used that agree with it. Offline points that fit one pose in a part of the image only may be a thing that
+// was moved: where the maps disagree the online pose stands, and offline points are used that agree with that.
 // weighs_focal_lengths: offline points are asked what they make of other ones, see FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, const std::vector<PointId>& candidates,
