@@ -5,6 +5,7 @@ option(BYRE_PRECOMPILE "Precompile the headers of libraries, for a faster build 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits>
     <map> <memory> <numeric> <optional> <random> <span> <sstream> <string> <string_view> <tuple> <unordered_map>
     <utility> <variant> <vector> <Eigen/Dense>)
+set(BYRE_PRECOMPILED_cold_room ${BYRE_PRECOMPILED_room})
 set(BYRE_PRECOMPILED_test ${BYRE_PRECOMPILED_room} <gmock/gmock.h> <gtest/gtest.h>)
 set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp>)
 set(BYRE_PRECOMPILED_command_test ${BYRE_PRECOMPILED_command} <gmock/gmock.h> <gtest/gtest.h>)
