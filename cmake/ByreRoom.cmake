@@ -39,6 +39,10 @@ endfunction()
 # Those whose tests take longest, so that none of them runs alone at the end.
 set(BYRE_ROOMS_TESTED_FIRST session slam playback simulation)
 
+# Those whose tests read files of the source tree or beside it. The others do not know where it is, so that clones in
+# several folders share what the compiler cache has.
+set(BYRE_ROOMS_WITH_DATA dataset evaluation place)
+
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
@@ -74,10 +78,14 @@ function(byre_add_room room)
       target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${below}>)
     endforeach()
     target_link_libraries(byre_${room}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock_main)
-    target_compile_definitions(byre_${room}_tests PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
-    byre_compile_quickly(byre_${room}_tests)
-    byre_precompile(test byre_${room}_tests)
-    if(NOT room IN_LIST BYRE_TESTS_APART)
+    if(room IN_LIST BYRE_ROOMS_WITH_DATA)
+      target_compile_definitions(byre_${room}_tests PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    endif()
+    if(room IN_LIST BYRE_TESTS_APART)
+      byre_precompile(test_apart byre_${room}_tests)
+    else()
+      byre_compile_quickly(byre_${room}_tests)
+      byre_precompile(test byre_${room}_tests)
       byre_unite(byre_${room}_tests)
     endif()
     add_dependencies(byre_unit_tests byre_${room}_tests)

@@ -6,8 +6,8 @@ option(BYRE_UNITY "Compile several files of a room as one: a build from scratch 
 # on which files happen to be compiled together.
 set(BYRE_ROOMS_APART geometry motion features optimise map place simulation slam mapping localisation session system)
 
-# Rooms whose tests are apart: in so large a file the compiler no longer puts Eigen's allocation where it is called, see
-# tools/check_allocations.sh.
+# Rooms whose tests are apart, and optimised as the library is: in a large file, or for a short build, the compiler does
+# not put Eigen's allocation where it is called, see tools/check_allocations.sh.
 set(BYRE_TESTS_APART optimise)
 
 # Files that include themselves once for each processor, and those whose objects are picked one by one.

@@ -301,6 +301,8 @@ Pose refine_motion(const Pose& second_from_first, std::span<const TwoViewMatch> 
 }
 
 double direction_sigma(const Pose& second_from_first, std::span<const TwoViewMatch> matches) {
+  constexpr std::size_t kUnknowns = 5;  // each match tells one number
+  if (matches.size() < kUnknowns) return std::numeric_limits<double>::infinity();
   const Pose motion{second_from_first.rotation, second_from_first.translation.normalized()};
   const Eigen::LDLT<Matrix5> information(linearise(motion, matches).information);
   if (!information.isPositive() || !(information.rcond() > 1e-12)) return std::numeric_limits<double>::infinity();

@@ -48,12 +48,12 @@ std::vector<PlanarPair> seen_from_above(Correspondences correspondences, const D
   return pairs;
 }
 
-Similarity lifted(const PlanarSimilarity& plan_from_level, const DrivingPlane& plane, double body_height) {
+Similarity lifted(const PlanarSimilarity& plan_from_level, const DrivingPlane& plane, Scale scale, double body_height) {
   const double yaw = std::arg(plan_from_level.turn);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
   const Pose level = level_from_map(plane);
   Similarity plan_from_map;
-  plan_from_map.scale = std::abs(plan_from_level.turn);
+  plan_from_map.scale = scale == Scale::fixed ? 1.0 : std::abs(plan_from_level.turn);
   plan_from_map.target_from_source.rotation = (turn * level.rotation).normalized();
   plan_from_map.target_from_source.translation =
       turn * (plan_from_map.scale * level.translation) +
@@ -277,7 +277,7 @@ std::optional<PlanFit> register_on_plan(Correspondences correspondences, const D
   const PlanRefinement refinement(correspondences, plane, scale, options, offset_in_plan);
   std::vector<bool> is_inlier = consensus->is_inlier;
   Similarity plan_from_map =
-      refinement.refine(lifted(consensus->target_from_source, plane, options.body_height), is_inlier);
+      refinement.refine(lifted(consensus->target_from_source, plane, scale, options.body_height), is_inlier);
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<bool> next = within(refinement.residuals(plan_from_map));
     if (next == is_inlier || std::ranges::count(next, true) < 2) break;
