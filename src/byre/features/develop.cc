@@ -35,8 +35,7 @@ Development development_for(const ImageCondition& condition) {
   return development;
 }
 
-void develop(const Development& development, const cv::Mat& image, cv::Mat& developed) {
-  cv::Mat fine;  // between grey values, as smoothing tells more of them apart
+void develop(const Development& development, const cv::Mat& image, cv::Mat& fine, cv::Mat& developed) {
   image.convertTo(fine, CV_32F, development.gain, development.offset);
   if (development.smoothing > 0.0f) cv::GaussianBlur(fine, fine, {}, development.smoothing);
   fine.convertTo(developed, CV_8U);

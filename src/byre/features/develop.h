@@ -18,8 +18,9 @@ struct Development {
 
 Development development_for(const ImageCondition& condition);
 
-// Precondition: it changes something. developed is another image, whose memory is used again.
-void develop(const Development& development, const cv::Mat& image, cv::Mat& developed);
+// Precondition: it changes something. developed is another image; fine is what comes between, floats, as smoothing
+// tells more grey values apart. The memory of both is used again.
+void develop(const Development& development, const cv::Mat& image, cv::Mat& fine, cv::Mat& developed);
 
 // What the image is like afterwards, but for its sharpness.
 ImageCondition condition_after(const Development& development, const ImageCondition& condition);

@@ -36,8 +36,8 @@ TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
   const cv::Mat image = noisy(steps(60.0), 8.0);
   const Development development = development_for(measure_condition(to_image(image)));
   EXPECT_EQ(development.gain, 1.0f);
-  cv::Mat smooth;
-  develop(development, image, smooth);
+  cv::Mat fine, smooth;
+  develop(development, image, fine, smooth);
   // Within a field, where there is nothing but noise.
   cv::Scalar mean, deviation;
   cv::meanStdDev(smooth(cv::Rect(100, 100, 16, 16)), mean, deviation);
@@ -49,8 +49,8 @@ TEST(Development, BringsOutWhatIsDull) {
   const ImageCondition condition = measure_condition(to_image(image));
   const Development development = development_for(condition);
   EXPECT_GT(development.gain, 3.0f);
-  cv::Mat bright;
-  develop(development, image, bright);
+  cv::Mat fine, bright;
+  develop(development, image, fine, bright);
   const ImageCondition after = measure_condition(to_image(bright));
   const ImageCondition foretold = condition_after(development, condition);
   EXPECT_NEAR(after.brightness, foretold.brightness, 2.0f);

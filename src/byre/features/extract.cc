@@ -123,7 +123,7 @@ struct Developed {
     const Development development = development_for(of_original);
     condition = condition_after(development, of_original);
     if (development.changes_anything()) {
-      develop(development, rectified, own_);
+      develop(development, rectified, fine_, own_);
       image = own_;
     } else {
       image = rectified;
@@ -131,7 +131,8 @@ struct Developed {
   }
 
  private:
-  cv::Mat own_;  // the rectified image may be that of the caller
+  cv::Mat fine_;  // memory, see develop()
+  cv::Mat own_;   // the rectified image may be that of the caller
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace byre {
 namespace {
@@ -88,15 +87,20 @@ float noise_of(const Image& image) {
   constexpr int kLargest = 8 * 255;
   constexpr double kQuartile = 0.3186;  // lower quartile of the magnitude of a normal distribution, in its sigmas
   constexpr double kGain = 6.0;         // root of the sum of the squared weights
-  std::vector<int> counts(kLargest + 1, 0);
+  std::array<int, kLargest + 1> counts{};
   int count = 0;
   const std::ptrdiff_t stride = image.width;
   for (int y = kRowStep; y + 1 < image.height; y += kRowStep) {
     const std::uint8_t* const row = image.pixels.data() + y * stride;
     const auto across = [row, stride](int x) { return row[x - stride] - 2 * row[x] + row[x + stride]; };
+    int before = across(0), here = across(1);
     for (int x = 1; x + 1 < image.width; ++x) {
+      const int after = across(x + 1);
+      const int difference = before - 2 * here + after;
+      before = here;
+      here = after;
       if (row[x] <= 1 || row[x] >= 254) continue;
-      ++counts[static_cast<std::size_t>(std::abs(across(x - 1) - 2 * across(x) + across(x + 1)))];
+      ++counts[static_cast<std::size_t>(std::abs(difference))];
       ++count;
     }
   }
