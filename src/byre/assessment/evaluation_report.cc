@@ -1,5 +1,6 @@
 #include "byre/assessment/evaluation_report.h"
 
+#include "byre/assessment/report_json.h"
 #include "byre/input/formatted.h"
 
 #include <algorithm>
@@ -188,8 +189,7 @@ std::string to_json(const EvaluationReport& report, const std::string& estimate_
         {"1_m", to_json(report.rpe_metre)}}},
       {"segments", to_json(report.segments)},
   };
-  constexpr int kIndent = 2;
-  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 }  // namespace byre

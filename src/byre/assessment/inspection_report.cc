@@ -232,8 +232,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"path_length", inspection.path_length},
       {"memory_bytes", sizes_json(inspection.memory)},
       {"faults", inspection.faults}};
-  constexpr int kIndent = 2;
-  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 }  // namespace byre

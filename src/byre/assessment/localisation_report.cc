@@ -1,5 +1,6 @@
 #include "byre/assessment/localisation_report.h"
 
+#include "byre/assessment/report_json.h"
 #include "byre/input/formatted.h"
 #include "byre/map/keyframe_path.h"
 
@@ -185,7 +186,7 @@ std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
   json["warnings"] = run.warnings;
   json["per_frame"] = Json::array();
   for (const LocalisedFrame& frame : run.frames) json["per_frame"].push_back(frame_json(frame, protocol.plan));
-  return json.dump(1) + "\n";
+  return dumped(json, 1) + "\n";
 }
 
 }  // namespace byre

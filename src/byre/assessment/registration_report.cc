@@ -129,8 +129,7 @@ std::string to_json(const Registering& registering, const RegisterProtocol& prot
     json["points"].push_back(correspondence_json(registering.correspondences[i], registering.fit.residuals[i]));
   }
   json["written"] = protocol.written.empty() ? Json() : Json(protocol.written);
-  constexpr int kIndent = 2;
-  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 }  // namespace byre

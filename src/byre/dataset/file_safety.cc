@@ -156,74 +156,55 @@ bool is_svg(const fs::path& file) {
   return file.extension() == ".svg" || file.extension() == ".SVG";
 }
 
-std::string_view kind_of(const NamedOutput& written, const fs::path& file) {
+// What a file of an output holds, as its first bytes tell, and what that is called.
+struct Kind {
+  FileContent content{};
+  std::string_view name;
+};
+
+Kind kind_of(const NamedOutput& written, const fs::path& file) {
   switch (written.output) {
     case OutputKind::viewed_map:
-      return file == written.path ? "map" : "table of picks";
+      return file == written.path ? Kind{FileContent::map, "map"} : Kind{FileContent::table, "table of picks"};
     case OutputKind::map:
     case OutputKind::refined_map:
     case OutputKind::updated_map:
-      return "map";
+      return {FileContent::map, "map"};
     case OutputKind::trajectory:
-      return "trajectory";
+      return {FileContent::trajectory, "trajectory"};
     case OutputKind::json:
-      return "JSON";
+      return {FileContent::json, "JSON"};
     case OutputKind::picture:
-      return is_svg(file) ? "SVG picture" : "PNG picture";
+      return is_svg(file) ? Kind{FileContent::svg, "SVG picture"} : Kind{FileContent::png, "PNG picture"};
     case OutputKind::video:
-      return "video";
+      return {FileContent::video, "video"};
     case OutputKind::point_cloud:
-      return "point cloud";
+      return {FileContent::point_cloud, "point cloud"};
     case OutputKind::mcap:
-      return "MCAP file";
+      return {FileContent::mcap, "MCAP file"};
     case OutputKind::calibration:
-      return "calibration";
+      return {FileContent::yaml, "calibration"};
     case OutputKind::vocabulary:
-      return "vocabulary";
+      return {FileContent::vocabulary, "vocabulary"};
     case OutputKind::colmap_model:
     case OutputKind::recording:
     case OutputKind::folder:
       break;
   }
-  return "part of a model";
+  return {FileContent::other, "part of a model"};
 }
 
-bool may_replace(const NamedOutput& written, const fs::path& file, FileContent content) {
-  switch (written.output) {
-    case OutputKind::viewed_map:
-      return content == (file == written.path ? FileContent::map : FileContent::table);
-    case OutputKind::map:
-    case OutputKind::refined_map:
-    case OutputKind::updated_map:
-      return content == FileContent::map;
-    case OutputKind::trajectory:
-      return content == FileContent::trajectory;
-    case OutputKind::json:
-      return content == FileContent::json;
-    case OutputKind::picture:
-      return content == (is_svg(file) ? FileContent::svg : FileContent::png);
-    case OutputKind::video:
-      return content == FileContent::video;
-    case OutputKind::point_cloud:
-      return content == FileContent::point_cloud;
-    case OutputKind::mcap:
-      return content == FileContent::mcap;
-    case OutputKind::calibration:
-      return content == FileContent::yaml;
-    case OutputKind::vocabulary:
-      return content == FileContent::vocabulary;
-    case OutputKind::colmap_model:
-    case OutputKind::recording:
-    case OutputKind::folder:
-      break;
-  }
-  return content == FileContent::other || content == FileContent::text || content == FileContent::trajectory;
+// The parts of a model are binary or text, and lines of numbers may look like a trajectory.
+bool may_replace(const Kind& kind, FileContent content) {
+  if (content == kind.content) return true;
+  return kind.content == FileContent::other && (content == FileContent::text || content == FileContent::trajectory);
 }
 
 void require_same_kind(const NamedOutput& written, const fs::path& file) {
   const auto content = content_of(file);
-  if (!content || *content == FileContent::nothing || may_replace(written, file, *content)) return;
-  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(kind_of(written, file)) +
+  const Kind kind = kind_of(written, file);
+  if (!content || *content == FileContent::nothing || may_replace(kind, *content)) return;
+  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(kind.name) +
                                            ": name another file, or remove that one first");
 }
 

@@ -1,6 +1,7 @@
 #include "byre/bag/bag.h"
 
 #include "byre/assessment/bag_report.h"
+#include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 
@@ -34,9 +35,7 @@ ExitCode run_info(const InfoOptions& options, std::ostream& result) {
   const auto bag = open_bag(options.bag, [](std::string_view) { return false; });
   const BagContent& content = bag->content();
   if (options.json) {
-    constexpr int kIndent = 2;
-    result << bag_json(content, options.bag).dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-           << "\n";
+    result << dumped(bag_json(content, options.bag), 2) << "\n";
   } else {
     result << describe(content, options.bag);
   }

@@ -1,4 +1,5 @@
 #include "byre/assessment/calibration_report.h"
+#include "byre/assessment/report_json.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -57,8 +58,7 @@ std::string to_json_text(const CalibrateOptions& options, const RefinedCalibrati
                                        {"recording", options.recording.string()},
                                        {"written", options.output.string()},
                                        {"calibration", calibration_json(refined)}};
-  constexpr int kIndent = 2;
-  return json.dump(kIndent) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {

@@ -1,4 +1,5 @@
 #include "byre/assessment/recording_check_report.h"
+#include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
@@ -46,8 +47,7 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
     nlohmann::ordered_json json = {
         {"program", "byre check"}, {"version", BYRE_VERSION}, {"recording", options.recording.string()}};
     json.update(check_json(check, findings));
-    constexpr int kIndent = 2;
-    result << json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+    result << dumped(json, 2) << "\n";
   } else {
     result << describe(check, findings);
   }

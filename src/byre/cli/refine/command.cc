@@ -1,4 +1,5 @@
 #include "byre/assessment/finish_report.h"
+#include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
@@ -50,8 +51,7 @@ std::string to_json(const RefineOptions& options, const Finishing& finishing) {
                                  {"map", options.map.string()},
                                  {"written", options.written().string()}};
   json["finishing"] = byre::to_json(finishing);
-  constexpr int kIndent = 2;
-  return json.dump(kIndent) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
