@@ -78,6 +78,8 @@ MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, c
   errors.final = errors_in_map(run.final, truth, alignment);
   judge_trust(run, errors);
   errors.within_bound = share_within_bound(run, errors.causal);
+  errors.map = errors_of_map(alignment);
+  errors.within_bound_beside_map = share_within_bound(run, errors_beside_map(run.causal, truth, alignment));
   return errors;
 }
 

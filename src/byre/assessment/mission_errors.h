@@ -20,7 +20,9 @@ struct MissionErrors {
   std::vector<PoseError> final;     // errors of poses as recomputed after the last frame
   int wrongly_trusted = 0;          // frames trusted and yet off by more than kFarMetres
   double longest_wrong_trust_s = 0.0;
-  std::optional<double> within_bound;  // share of causal positions within the 95 % bound of their covariance
+  std::optional<double> within_bound;             // share of causal positions within the 95 % bound of their covariance
+  std::vector<PoseError> map;                     // errors of the poses that the map was aligned by
+  std::optional<double> within_bound_beside_map;  // share within it when the map's own error there is taken off
 };
 
 inline constexpr double kFarMetres = 0.2;

@@ -77,15 +77,21 @@ std::string trust_rows(const MissionErrors& errors) {
   std::string text = error_row("trusted", errors.trusted);
   text += row("wrong trust", formatted("%d frames trusted but off by more than %g m, %.2f s at a time",
                                        errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
-  if (errors.within_bound) {
-    text += row("covariance",
-                formatted("%.1f %% of causal positions within its 95 %% bound", 100.0 * *errors.within_bound));
+  if (!errors.within_bound) return text;
+  std::string within = formatted("%.1f %% of causal positions within its 95 %% bound", 100.0 * *errors.within_bound);
+  if (errors.within_bound_beside_map) {
+    within += formatted(", %.1f %% beside the map's own error", 100.0 * *errors.within_bound_beside_map);
   }
+  text += row("covariance", within);
   return text;
 }
 
 Json to_json(const KeyframeRate& rate) {
   return {{"keyframes", rate.keyframes}, {"minutes", rate.minutes}, {"keyframes_per_minute", rate.per_minute()}};
+}
+
+Json to_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
 }
 
 Json doubts_json(const MissionStatistics& statistics) {
@@ -118,6 +124,7 @@ std::string to_text(const MissionStatistics& statistics) {
 
 std::string to_text(const MissionErrors& errors) {
   std::string text = row("truth", describe_alignment(errors));
+  if (!errors.map.empty()) text += error_row("map", errors.map);
   text += error_row("causal", errors.causal);
   text += error_row("final", errors.final);
   if (errors.in_map_frame) text += trust_rows(errors);
@@ -153,7 +160,9 @@ Json to_json(const MissionErrors& errors) {
           {"final", errors_json(errors.final)},
           {"trusted_off_by_more_than_0.2m", errors.wrongly_trusted},
           {"longest_wrong_trust_s", errors.longest_wrong_trust_s},
-          {"share_within_95_percent_bound", errors.within_bound ? Json(*errors.within_bound) : Json()}};
+          {"share_within_95_percent_bound", to_json(errors.within_bound)},
+          {"map", errors_json(errors.map)},
+          {"share_within_95_percent_bound_beside_map", to_json(errors.within_bound_beside_map)}};
 }
 
 }  // namespace byre

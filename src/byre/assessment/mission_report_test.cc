@@ -43,6 +43,8 @@ MissionErrors small_errors() {
   errors.final = {off_by(0.005)};
   errors.wrongly_trusted = 1;
   errors.within_bound = 2.0 / 3.0;
+  errors.map = {off_by(0.02)};
+  errors.within_bound_beside_map = 0.95;
   return errors;
 }
 
@@ -80,7 +82,9 @@ TEST(MissionText, TellsErrorsInTheMapsFrameAndOfTrustedFramesApart) {
   EXPECT_THAT(text, HasSubstr("causal       RMSE 0.1446 m"));
   EXPECT_THAT(text, HasSubstr("worst 0.0050 m\n"));
   EXPECT_THAT(text, HasSubstr("wrong trust  1 frames trusted but off by more than 0.2 m, 0.00 s at a time\n"));
-  EXPECT_THAT(text, HasSubstr("covariance   66.7 % of causal positions within its 95 % bound\n"));
+  EXPECT_THAT(text, HasSubstr("covariance   66.7 % of causal positions within its 95 % bound, 95.0 % beside the map's "
+                              "own error\n"));
+  EXPECT_THAT(text, HasSubstr("map          RMSE 0.0200 m"));
 }
 
 TEST(MissionText, SaysWhenPosesWereAlignedOrHaveNoTruth) {
@@ -88,6 +92,7 @@ TEST(MissionText, SaysWhenPosesWereAlignedOrHaveNoTruth) {
   EXPECT_THAT(text, HasSubstr("truth        causal and final poses are each aligned to it\n"));
   EXPECT_THAT(text, HasSubstr("final        no pose with truth\n"));
   EXPECT_THAT(text, Not(HasSubstr("wrong trust")));
+  EXPECT_THAT(text, Not(HasSubstr("map  ")));
 }
 
 TEST(MissionJson, HoldsEveryFigureByName) {
@@ -101,7 +106,10 @@ TEST(MissionJson, HoldsEveryFigureByName) {
   EXPECT_EQ(errors.at("causal").at("count"), 3);
   EXPECT_EQ(errors.at("causal_trusted").at("position_m").at("max"), 0.25);
   EXPECT_EQ(errors.at("trusted_off_by_more_than_0.2m"), 1);
+  EXPECT_EQ(errors.at("map").at("position_m").at("max"), 0.02);
+  EXPECT_EQ(errors.at("share_within_95_percent_bound_beside_map"), 0.95);
   EXPECT_TRUE(to_json(MissionErrors{}).at("share_within_95_percent_bound").is_null());
+  EXPECT_TRUE(to_json(MissionErrors{}).at("share_within_95_percent_bound_beside_map").is_null());
 }
 
 }  // namespace

@@ -1,7 +1,12 @@
 #include "byre/evaluation/map_frame_error.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
 
 namespace byre {
 namespace {
@@ -13,6 +18,64 @@ ErrorStatistics statistics_of(const std::vector<PoseError>& errors, Of of) {
   for (const PoseError& error : errors) values.push_back((error.*of)());
   return summarise(std::move(values));
 }
+
+PoseError error_of(const PosePair& pair, const Pose& estimated) {
+  return {pair.time, log_pose(inverse(estimated) * pair.true_world_from_body)};
+}
+
+// How far the poses of a map are off, looked up by where they truly were.
+class MapDeformation {
+ public:
+  explicit MapDeformation(const MapAlignment& alignment) {
+    for (const PosePair& pair : alignment.path) {
+      const Eigen::Vector3d& truth = pair.true_world_from_body.translation;
+      const Pose estimated = aligned(alignment.truth_from_map, pair.estimated_world_from_body);
+      cells_[cell_of(truth)].push_back({truth, estimated.translation - truth});
+    }
+  }
+
+  // That of the nearest pose within reach.
+  std::optional<Eigen::Vector3d> at(const Eigen::Vector3d& place) const {
+    constexpr int kAround = 1;
+    std::optional<Eigen::Vector3d> error;
+    double nearest = kReach * kReach;
+    const Cell centre = cell_of(place);
+    for (int i = -kAround; i <= kAround; ++i) {
+      for (int j = -kAround; j <= kAround; ++j) {
+        for (int k = -kAround; k <= kAround; ++k)
+          look_in({centre[0] + i, centre[1] + j, centre[2] + k}, place, nearest, error);
+      }
+    }
+    return error;
+  }
+
+ private:
+  using Cell = std::array<int, 3>;
+  struct Sample {
+    Eigen::Vector3d place;
+    Eigen::Vector3d error;
+  };
+  static constexpr double kReach = 1.0;
+
+  static Cell cell_of(const Eigen::Vector3d& place) {
+    const Eigen::Vector3i cell = (place / kReach).array().floor().cast<int>();
+    return {cell.x(), cell.y(), cell.z()};
+  }
+
+  void look_in(const Cell& cell, const Eigen::Vector3d& place, double& nearest,
+               std::optional<Eigen::Vector3d>& error) const {
+    const auto found = cells_.find(cell);
+    if (found == cells_.end()) return;
+    for (const Sample& sample : found->second) {
+      const double distance = (sample.place - place).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      error = sample.error;
+    }
+  }
+
+  std::map<Cell, std::vector<Sample>> cells_;
+};
 
 }  // namespace
 
@@ -26,15 +89,36 @@ MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, cons
   if (pairs.size() < kFewestPoses) return {};
   const auto error = absolute_trajectory_error(pairs, scale);
   if (!error) return {};
-  return {error->truth_from_estimate, static_cast<int>(pairs.size())};
+  return {error->truth_from_estimate, static_cast<int>(pairs.size()), pairs};
 }
 
 std::vector<PoseError> errors_in_map(const Trajectory& world_from_body, const Trajectory& truth,
                                      const MapAlignment& alignment) {
   std::vector<PoseError> errors;
   for (const PosePair& pair : associate(world_from_body, truth, {})) {
-    const Pose estimated = aligned(alignment.truth_from_map, pair.estimated_world_from_body);
-    errors.push_back({pair.time, log_pose(inverse(estimated) * pair.true_world_from_body)});
+    errors.push_back(error_of(pair, aligned(alignment.truth_from_map, pair.estimated_world_from_body)));
+  }
+  return errors;
+}
+
+std::vector<PoseError> errors_of_map(const MapAlignment& alignment) {
+  std::vector<PoseError> errors;
+  for (const PosePair& pair : alignment.path) {
+    errors.push_back(error_of(pair, aligned(alignment.truth_from_map, pair.estimated_world_from_body)));
+  }
+  return errors;
+}
+
+std::vector<PoseError> errors_beside_map(const Trajectory& world_from_body, const Trajectory& truth,
+                                         const MapAlignment& alignment) {
+  const MapDeformation deformation(alignment);
+  std::vector<PoseError> errors;
+  for (const PosePair& pair : associate(world_from_body, truth, {})) {
+    const auto of_map = deformation.at(pair.true_world_from_body.translation);
+    if (!of_map) continue;
+    Pose estimated = aligned(alignment.truth_from_map, pair.estimated_world_from_body);
+    estimated.translation -= *of_map;
+    errors.push_back(error_of(pair, estimated));
   }
   return errors;
 }

@@ -10,6 +10,7 @@ namespace byre {
 struct MapAlignment {
   Similarity truth_from_map;
   int poses = 0;  // poses that the alignment rests on; zero: the truth is taken for given in the map's frame
+  std::vector<PosePair> path{};  // poses that the alignment rests on; estimated ones in the map's frame
 };
 
 // By poses of the map itself, never by what is found or tracked in it: its keyframes (keyframe_path), or all frames of
@@ -29,6 +30,15 @@ struct PoseError {
 // Errors of the poses that have truth, each as it is in the map's frame: nothing is aligned but the map.
 std::vector<PoseError> errors_in_map(const Trajectory& world_from_body, const Trajectory& truth,
                                      const MapAlignment& alignment);
+
+// Errors of the map's own poses, by which it was aligned: how exact the map is in itself.
+std::vector<PoseError> errors_of_map(const MapAlignment& alignment);
+
+// What is left of errors in the map when its own error at the nearest of its poses is taken off, for position: how well
+// it is known where in the map the robot is, however exact that is. Only of poses within a metre of the map's, or so
+// many of the truth's units.
+std::vector<PoseError> errors_beside_map(const Trajectory& world_from_body, const Trajectory& truth,
+                                         const MapAlignment& alignment);
 
 // The error at that very time; nullptr when it has no truth. Precondition: errors are in order of time.
 const PoseError* find_error(const std::vector<PoseError>& errors, Timestamp time);

@@ -56,5 +56,32 @@ TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
   EXPECT_NEAR(rotation_statistics(errors).max, 0.1 * std::sqrt(6.0) * 180.0 / 3.14159265358979, 1e-6);
 }
 
+// A map whose metres are a tenth too long, as of a baseline that was measured wrongly, and a mission that is where the
+// map has it but for some centimetres.
+TEST(ErrorsBesideMap, LeaveOutWhatTheMapErrsByItself) {
+  Trajectory map_path, mission, path;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = i;
+    path.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), {x, 0.1 * x * x, 0.0}}});
+    map_path.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), 1.1 * path.back().world_from_body.translation}});
+    const Eigen::Vector3d aside = Eigen::Vector3d(0.0, 0.0, 0.03);
+    mission.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), map_path.back().world_from_body.translation + aside}});
+  }
+  const MapAlignment alignment = align_to_truth(map_path, Scale::fixed, path);
+  EXPECT_GT(position_statistics(errors_in_map(mission, path, alignment)).max, 0.5);
+  EXPECT_NEAR(position_statistics(errors_of_map(alignment)).rmse,
+              position_statistics(errors_in_map(map_path, path, alignment)).rmse, 1e-9);
+  const std::vector<PoseError> errors = errors_beside_map(mission, path, alignment);
+  ASSERT_EQ(errors.size(), mission.size());
+  EXPECT_NEAR(position_statistics(errors).max, 0.03, 1e-9);
+}
+
+TEST(ErrorsBesideMap, AreOfPlacesOfTheMapAlone) {
+  const MapAlignment alignment = align_to_truth(poses_of_map(4), Scale::fixed, true_path());
+  const Trajectory elsewhere = {{from_seconds(0.0), {Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}}}};
+  EXPECT_EQ(errors_beside_map(elsewhere, elsewhere, alignment).size(), 0u);
+  EXPECT_EQ(errors_beside_map(true_path(), true_path(), {}).size(), 0u) << "nothing is known of the map's error";
+}
+
 }  // namespace
 }  // namespace byre
