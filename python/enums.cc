@@ -84,6 +84,7 @@ void bind_enums_of_reports(py::module_& module) {
                            {"entered_mapped_area", SessionEvent::entered_mapped_area},
                            {"navigation_error", SessionEvent::navigation_error},
                            {"restarted", SessionEvent::restarted},
+                           {"place_refuted", SessionEvent::place_refuted},
                            {"online_corrected", SessionEvent::online_corrected},
                            {"loop_found", SessionEvent::loop_found},
                            {"map_corrected", SessionEvent::map_corrected},

@@ -5,6 +5,15 @@
 #include <utility>
 
 namespace byre {
+namespace {
+
+// Where a tenth of what should be in view is seen there is nothing to doubt; nor where hardly anything should be.
+bool sees_enough(const Mission& mission) {
+  constexpr double kEnough = 0.1;
+  return mission.seen_share().value_or(1.0) >= kEnough;
+}
+
+}  // namespace
 
 OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options,
                                Lanes lanes)
@@ -47,6 +56,7 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   const OfflineView now = mission_.view();
   const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
   if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
+  if (sees_enough(mission_)) rival_.forget();
   const std::vector<PointId> due = mission_.due_again(seen.offline_around);
   if (!due.empty()) {
     mission_.note_again(
@@ -58,23 +68,35 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
 }
 
 void OfflineTracker::lose() {
+  rival_.forget();
   mission_.forget_reference();
   mission_.forget_hypothesis();
 }
 
 void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper) {
+  constexpr double kDoubtsEvery = 1.0;  // seconds
   if (!search_.idle() || mapper.has_correction() || !whereabouts.confirmation().is_believed()) return;
-  const bool is_needed = !mapper.submaps().is_registered() || !whereabouts.confirmation().is_proven() ||
-                         mission_.distance_since_offline() > options_.mission.search_after;
-  if (!is_needed) return;
+  const bool is_due = !last_search_ || to_seconds(sought.frame.time - *last_search_) >= kDoubtsEvery;
+  is_search_by_doubt_ = !is_search_needed(whereabouts, mapper);
+  if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
+  last_search_ = sought.frame.time;
   const std::size_t number = whereabouts.trajectory().size() - 1;
   search_.start([frame = sought.frame, rig = sought.rig, hint = sought.hint, number, offline = offline_,
-                 options = options_.relocalise] {
-    return search_place(*offline, {frame, rig, hint}, number, options);
+                 options = options_.relocalise, tracked_share = mission_.seen_share()] {
+    auto found = search_place(*offline, {frame, rig, hint}, number, options);
+    if (found) found->tracked_share = tracked_share;
+    return found;
   });
 }
 
-// A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it.
+bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const {
+  return !mapper.submaps().is_registered() || !whereabouts.confirmation().is_proven() ||
+         mission_.distance_since_offline() > options_.mission.search_after;
+}
+
+// A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it;
+// one that was proven, to a rival that is found again and again. The online map is corrected where offline points do
+// not hold it.
 OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
                                                      const Mapper& mapper) {
   constexpr double kElsewhere = 0.5;  // metres
@@ -87,8 +109,14 @@ OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, co
   if (submaps.frame(then.submap) != submaps.frame()) return {};
   const Pose camera_from_online = camera_from_world(mapper.map(), then);
   const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
-  const bool is_find_open = then.submap == submaps.present() && submaps.is_registered() && !confirmation.is_proven();
-  if (is_find_open && agreement.translation > kElsewhere &&
+  const bool is_in_place = then.submap == submaps.present() && submaps.is_registered();
+  if (is_in_place && confirmation.is_proven()) {
+    if (rival_.note(found, camera_from_online, options_.mission.registration)) {
+      return {.events = {}, .refutes_pose = true, .refutes_way = true};
+    }
+    if (is_search_by_doubt_) return {};
+  }
+  if (is_in_place && !confirmation.is_proven() && agreement.translation > kElsewhere &&
       found.seen_share >= options_.mission.registration.proving_share) {
     return {.events = {}, .refutes_pose = true};
   }

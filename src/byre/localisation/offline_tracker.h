@@ -3,6 +3,7 @@
 #include "byre/localisation/mission.h"
 #include "byre/localisation/mission_calibrator.h"
 #include "byre/localisation/place_search.h"
+#include "byre/localisation/rival_place.h"
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/mapper.h"
 #include "byre/session_event.h"
@@ -58,6 +59,7 @@ class OfflineTracker {
   struct Consequence {
     std::vector<SessionEvent> events{};
     bool refutes_pose = false;                     // the robot is elsewhere
+    bool refutes_way = false;                      // it was elsewhere while it was trusted, nobody knows since when
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
@@ -67,8 +69,8 @@ class OfflineTracker {
   void begin_submap() { mission_.forget_reference(); }
   void lose();
 
-  // Looks for the last frame in the offline map beside tracking, while its points do not hold the pose, or may do so by
-  // chance.
+  // Looks for the last frame in the offline map beside tracking: while its points do not hold the pose, or may do so by
+  // chance, and from time to time where few of them are seen.
   void search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper);
 
   // A health with what is known of the offline map in it.
@@ -78,6 +80,7 @@ class OfflineTracker {
 
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
+  bool is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const;
   // Once enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
   std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
@@ -87,6 +90,9 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
+  RivalPlace rival_;
+  std::optional<Timestamp> last_search_;
+  bool is_search_by_doubt_ = false;  // the one in flight, and not by need
   Worker<std::optional<FoundPlace>> search_;
   std::unique_ptr<Executor> calibration_lane_;  // until calibration begins
   std::optional<MissionCalibrator> calibrator_;

@@ -89,6 +89,21 @@ TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
   EXPECT_FALSE(consequence.correction);
 }
 
+TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
+  note_found(0);
+  ASSERT_TRUE(whereabouts_.confirmation().is_proven());
+  std::size_t refuted_at = 0;
+  for (std::size_t i = 4; i < mission_.frames.size() && refuted_at == 0; ++i) {
+    whereabouts_.note({mission_.frames[i], track_of(i), false, true, 0}, mission_.rig, mapper_.map());
+    note(i, 5);
+    FoundPlace rival{whereabouts_.trajectory().size() - 1, true_camera_from_world(mission_, i), 3.0, 0.3};
+    rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
+    rival.tracked_share = 0.05;
+    if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) refuted_at = i;
+  }
+  EXPECT_GT(refuted_at, 8U) << "not by one find";
+}
+
 TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;
@@ -109,6 +124,19 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
   ASSERT_TRUE(found);
   EXPECT_EQ(found->frame, whereabouts_.trajectory().size() - 1);
   EXPECT_THAT(found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
+}
+
+TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
+  note_found(0);
+  HybridTrack track = track_of(4, 70);
+  track.offline_expected = 1000;
+  tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
+  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
+  const auto found = tracker_.collect_place();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->tracked_share, 0.07);
+  tracker_.search_beside({mission_.frames[5], mission_.rig}, whereabouts_, mapper_);
+  EXPECT_FALSE(tracker_.collect_place());
 }
 
 TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {

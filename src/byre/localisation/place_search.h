@@ -25,6 +25,9 @@ struct FoundPlace {
   Pose camera_from_offline;
   double median_depth = 0.0;  // metres, of the points that say so
   double seen_share = 0.0;    // share of the points that should be in view there
+  // Share that tracking saw, in the same frame, of those that should be in view where it had the camera; empty where
+  // that cannot be judged.
+  std::optional<double> tracked_share{};
 };
 
 // Looks for a frame in the offline map without a guess. Empty when it is not found.

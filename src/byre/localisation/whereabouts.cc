@@ -42,6 +42,7 @@ Matrix6 Whereabouts::carried_covariance() const {
 void Whereabouts::believe() {
   trajectory_.believe_all();
   since_believed_ = no_motion();
+  is_way_known_ = true;
   bridge_.reset();
   bridge_end_.reset();
 }
@@ -137,8 +138,14 @@ void Whereabouts::lose() {
   odometry_.remember_offset({});
 }
 
+void Whereabouts::give_up() {
+  lose();
+  is_way_known_ = false;
+  bridge_.reset();
+}
+
 bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
-  if (has_pose_ || !motion_.told() || trajectory_.empty()) {
+  if (has_pose_ || !is_way_known_ || !motion_.told() || trajectory_.empty()) {
     if (!has_pose_) bridge_.reset();
     return false;
   }

@@ -41,7 +41,7 @@ class Whereabouts {
   // Time of the last believed pose in the reports' frame.
   std::optional<Timestamp> last_believed() const { return last_believed_; }
   // The pose was lost, and it is known how the body has moved since, so well that points are found by it.
-  bool may_be_led_back() const { return !has_pose_ && is_led_well(); }
+  bool may_be_led_back() const { return !has_pose_ && is_way_known_ && is_led_well(); }
   // The way from the last pose that was seen to where the body is by what is told; empty unless the last frame showed
   // nothing.
   std::optional<BodyMotion> bridge() const { return has_pose_ ? std::nullopt : bridge_; }
@@ -74,6 +74,8 @@ class Whereabouts {
   // The last frame has become a keyframe.
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
   void lose();
+  // As lose(), and where the robot was believed to be was wrong: it is not led on from there.
+  void give_up();
   // Nothing was seen, and the pose goes on by what is told, where it is: whether it does.
   bool go_on(Timestamp time, const Rig& rig, const MapView& map);
   // Places told of the present submap anew: nothing is left of what a bridge to it left open.
@@ -126,6 +128,7 @@ class Whereabouts {
   std::optional<Timestamp> last_believed_;  // in the reports' frame
   std::optional<Timestamp> last_proven_;    // in the reports' frame
   bool has_pose_ = false;
+  bool is_way_known_ = true;  // from the last pose that was believed
   double scene_depth_ = 1.0;  // metres, median of the points in the last frame
 };
 

@@ -124,6 +124,10 @@ void Session::take_over_results(FrameReport& report) {
       mapper_.leave_map_frame();
       lose_pose(ImageFault::none, report);
     }
+    if (consequence.refutes_way) {
+      whereabouts_.give_up();
+      report.events.push_back(SessionEvent::place_refuted);
+    }
   }
   if (mapper_.correct_online()) {
     whereabouts_.note_online_correction();

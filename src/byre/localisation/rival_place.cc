@@ -1,0 +1,34 @@
+#include "byre/localisation/rival_place.h"
+
+#include "byre/slam/hybrid_tracking.h"
+
+#include <algorithm>
+
+namespace byre {
+
+bool RivalPlace::note(const FoundPlace& found, const Pose& camera_from_tracked, const RegistrationOptions& options) {
+  constexpr double kElsewhere = 0.5;  // metres
+  constexpr double kOutdoing = 1.5;   // times the share that tracking saw
+  constexpr double kProving = 2.0;    // times the share that proves a find where there is nothing to doubt it
+  constexpr int kFinds = 5;
+  constexpr double kWay = 2.0;  // metres, for what looks alike from one spot need not do so from the next
+  if (!found.tracked_share) return false;
+  if (agreement_of(found.camera_from_offline, camera_from_tracked).translation <= kElsewhere) {
+    forget();
+    return false;
+  }
+  if (found.seen_share < std::max(kOutdoing * *found.tracked_share, kProving * options.proving_share)) {
+    if (rival_ && ++rival_->outdone > options.max_misses) forget();
+    return false;
+  }
+  const Pose offline_from_tracked = inverse(found.camera_from_offline) * camera_from_tracked;
+  const Eigen::Vector3d camera = inverse(camera_from_tracked).translation;
+  if (rival_) {
+    const auto confirmed = confirm(rival_->place, offline_from_tracked, camera, found.median_depth, options);
+    confirmed ? void(rival_->place = *confirmed) : forget();
+  }
+  if (!rival_) rival_ = Rival{{offline_from_tracked}, camera};
+  return rival_->place.confirmations >= kFinds && (camera - rival_->begun_at).norm() >= kWay;
+}
+
+}  // namespace byre
