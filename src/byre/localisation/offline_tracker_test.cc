@@ -94,8 +94,10 @@ TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
   ASSERT_TRUE(whereabouts_.confirmation().is_proven());
   std::size_t refuted_at = 0;
   for (std::size_t i = 4; i < mission_.frames.size() && refuted_at == 0; ++i) {
-    whereabouts_.note({mission_.frames[i], track_of(i), false, true, 0}, mission_.rig, mapper_.map());
-    note(i, 5);
+    HybridTrack track = track_of(i, 50);
+    track.offline_expected = 1000;
+    whereabouts_.note({mission_.frames[i], track, false, true, 0}, mission_.rig, mapper_.map());
+    tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
     FoundPlace rival{whereabouts_.trajectory().size() - 1, true_camera_from_world(mission_, i), 3.0, 0.3};
     rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
     rival.tracked_share = 0.05;
