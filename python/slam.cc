@@ -234,6 +234,9 @@ void bind_slam_itself(py::module_& module) {
           py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
           "Where the robot is, as somebody says: while a mission finds itself from nothing it looks in the kept map "
           "there alone for so many seconds, then everywhere again. Metres, radians.")
+      .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"),
+           "While it is paused nothing is added to the map, and frames are tracked on what there is.")
+      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused)
       .def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")

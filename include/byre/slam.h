@@ -87,6 +87,11 @@ class Slam {
   // again. What is tracked goes on as it is. The last hint counts. No other task has a use for it.
   void look_near(const PoseHint& hint);
 
+  // While it is paused nothing is added to the map, and frames are tracked on what there is: where the robot stands
+  // among cows, or the way is known. No map begins meanwhile.
+  void pause_mapping(bool is_paused);
+  bool is_mapping_paused() const;
+
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
   // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come
   // later are dropped.

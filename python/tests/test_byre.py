@@ -224,6 +224,15 @@ def test_a_mission_may_be_told_where_it_is(room, frames, room_map):
         assert (slam.process(frames[0]).map_from_body is not None) == is_found
 
 
+def test_mapping_pauses(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    slam.pause_mapping(True)
+    assert slam.process(frames[0]).map_from_body is None
+    assert slam.is_mapping_paused
+    slam.pause_mapping(False)
+    assert slam.process(frames[1]).map_from_body is not None
+
+
 def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
     slam = byre.Slam.extending(byre.Recording(room).calibration, room_map, REPEATABLE)
     before = slam.keyframes

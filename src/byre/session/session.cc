@@ -200,7 +200,7 @@ Session::Located Session::locate(const InputFrame& input) {
 }
 
 bool Session::may_begin_submap(const InputFrame& input) const {
-  if (!options_.map_online || !mapper_.can_begin(rig_)) return false;
+  if (!options_.map_online || is_mapping_paused_ || !mapper_.can_begin(rig_)) return false;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
   if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || (mission_ && rig_.is_stereo());
   if (input.fault != ImageFault::none || (!mission_ && !whereabouts_.bridge())) return false;
@@ -261,8 +261,8 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {
-  if (!options_.map_online || !whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none)
-    return false;
+  if (!options_.map_online || is_mapping_paused_) return false;
+  if (!whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none) return false;
   return needs_keyframe(track.tracked, keyframe_watch_.evidence(track, map(), mapper_.pending()), options_.keyframes);
 }
 

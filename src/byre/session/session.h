@@ -65,6 +65,10 @@ class Session {
   // Where the robot is in the offline map, as somebody says: where it is looked for from nothing while the hint counts.
   void look_near(const PoseHint& hint) { hint_.give(hint); }
 
+  // While it is paused frames are tracked on the map as it is, and nothing is added to it.
+  void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
+  bool is_mapping_paused() const { return is_mapping_paused_; }
+
   // motion: of the body since the last frame, where that is known.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {});
 
@@ -131,6 +135,7 @@ class Session {
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
   bool is_error_told_ = false;   // a navigation error
+  bool is_mapping_paused_ = false;
   std::vector<SeenPoint> seen_;  // in the last frame
 };
 

@@ -327,6 +327,30 @@ TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
   EXPECT_THAT(session_.final_trajectory(), SizeIs(10));
 }
 
+TEST(Session, AddsNothingToItsMapWhileMappingIsPausedAndGoesOnAfterwards) {
+  const SimulatedMission mission = circling_robot();
+  Session session(mission.rig, {}, make_inline_executor());
+  std::vector<int> keyframes;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    if (i == 40) session.pause_mapping(true);
+    if (i == 50) session.pause_mapping(false);
+    EXPECT_TRUE(session.process(mission.frames[i]).map_from_body) << i;
+    keyframes.push_back(session.map().online().keyframe_count());
+  }
+  EXPECT_GT(keyframes[39], 3) << "the way asks for keyframes";
+  EXPECT_EQ(keyframes[49], keyframes[39]);
+  EXPECT_GT(keyframes[51], keyframes[39]);
+}
+
+TEST(Session, BeginsNoMapWhileMappingIsPaused) {
+  const SimulatedMission mission = circling_robot(10);
+  Session session(mission.rig, {}, make_inline_executor());
+  session.pause_mapping(true);
+  EXPECT_EQ(session.process(mission.frames[0]).state, State::initialising);
+  session.pause_mapping(false);
+  EXPECT_EQ(session.process(mission.frames[1]).state, State::tracking);
+}
+
 TEST(Session, FinishesWithoutAnyFrame) {
   Session session(simulated_rig(), {}, make_paced_executor(2));
   session.finish();

@@ -228,6 +228,14 @@ void Slam::tell_gyroscope(const AngularRate& rate) {
   parts_->engine.tell_gyroscope(rate);
 }
 
+void Slam::pause_mapping(bool is_paused) {
+  parts_->engine.pause_mapping(is_paused);
+}
+
+bool Slam::is_mapping_paused() const {
+  return parts_->engine.session().is_mapping_paused();
+}
+
 void Slam::look_near(const PoseHint& hint) {
   parts_->engine.look_near(hint);
 }
