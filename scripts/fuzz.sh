@@ -22,5 +22,11 @@ fuzz() {
   "${runner[@]}" "build/fuzz/$1" "build/fuzz/corpus/$1" -max_total_time="$seconds" -max_len=20000 -timeout=5 \
     -malloc_limit_mb="$2" -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1
 }
-fuzz map_file_fuzzer 16
-fuzz bag_fuzzer 512
+# Side by side, and each tells what it found when both are done.
+fuzz map_file_fuzzer 16 >build/fuzz/map_file.log 2>&1 &
+maps=$!
+failed=0
+fuzz bag_fuzzer 512 >build/fuzz/bag.log 2>&1 || failed=1
+wait "$maps" || failed=1
+cat build/fuzz/map_file.log build/fuzz/bag.log
+exit "$failed"

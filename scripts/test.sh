@@ -70,7 +70,8 @@ check_format() {
   for folder in include src tests examples benchmarks python; do
     [[ ! -d $folder ]] || folders+=("$folder")
   done
-  if find "${folders[@]}" \( -name '*.h' -o -name '*.cc' \) -print0 | xargs -0 clang-format --dry-run --Werror; then
+  if find "${folders[@]}" \( -name '*.h' -o -name '*.cc' \) -print0 |
+    xargs -0 -P "$(nproc)" -n 50 clang-format --dry-run --Werror; then
     passed=$((passed + 1))
   else
     echo "Mend with: clang-format -i FILE..."
