@@ -25,10 +25,10 @@ Qos make_qos(const TopicQos& wanted) {
   return qos;
 }
 
-void tell_hash(dds_qos_t* qos, const MessageType& type, RosDistribution distribution) {
-  if (distribution == RosDistribution::humble || type.hash.empty()) return;
-  const std::string told = "typehash=" + type.hash + ";";
-  dds_qset_userdata(qos, told.data(), told.size());
+void tell_user_data(dds_qos_t* qos, const MessageType& type, const TopicQos& wanted, RosDistribution distribution) {
+  std::string told = wanted.note;
+  if (distribution != RosDistribution::humble && !type.hash.empty()) told += "typehash=" + type.hash + ";";
+  if (!told.empty()) dds_qset_userdata(qos, told.data(), told.size());
 }
 
 struct TypedTopic {
@@ -72,9 +72,10 @@ void Publisher::publish(std::vector<std::byte> message) {
   if (sample == nullptr || dds_writecdr(writer_.handle(), sample) != DDS_RETCODE_OK) ++left_out_;
 }
 
-bool Publisher::has_subscribers() const {
+int Publisher::subscribers() const {
   dds_publication_matched_status_t matched{};
-  return dds_get_publication_matched_status(writer_.handle(), &matched) == DDS_RETCODE_OK && matched.current_count > 0;
+  const bool is_known = dds_get_publication_matched_status(writer_.handle(), &matched) == DDS_RETCODE_OK;
+  return is_known ? static_cast<int>(matched.current_count) : 0;
 }
 
 EntityId Publisher::id() const {
@@ -109,6 +110,12 @@ std::vector<Message> Subscriber::take() {
   }
 }
 
+int Subscriber::publishers() const {
+  dds_subscription_matched_status_t matched{};
+  const bool is_known = dds_get_subscription_matched_status(reader_.handle(), &matched) == DDS_RETCODE_OK;
+  return is_known ? static_cast<int>(matched.current_count) : 0;
+}
+
 EntityId Subscriber::id() const {
   return id_of(reader_.handle());
 }
@@ -128,7 +135,7 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
 Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos) {
   TypedTopic made = make_topic(participant_.handle(), topic, type);
   const Qos wanted = make_qos(qos);
-  tell_hash(wanted.get(), type, distribution_);
+  tell_user_data(wanted.get(), type, qos, distribution_);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
   if (qos.is_latched) {
     dds_qset_durability_service(wanted.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
@@ -145,7 +152,7 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
 Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos) {
   TypedTopic made = make_topic(participant_.handle(), topic, type);
   const Qos wanted = make_qos(qos);
-  tell_hash(wanted.get(), type, distribution_);
+  tell_user_data(wanted.get(), type, qos, distribution_);
   Subscriber subscriber;
   subscriber.topic_ = std::move(made.topic);
   subscriber.reader_ =

@@ -24,6 +24,7 @@ struct TopicQos {
   bool is_reliable = true;
   bool is_latched = false;  // whether the last messages are kept for those who come later ("transient local")
   int depth = 10;           // messages kept for a reader that is slow
+  std::string note{};       // what other programs are told of the reader or writer beside its type, as "key=value;"
 };
 
 // A 16-byte id of DDS.
@@ -51,7 +52,8 @@ class Publisher {
   // Hands a message over, as CDR. Waits a little for readers that are slow, then leaves it out.
   void publish(std::vector<std::byte> message);
 
-  bool has_subscribers() const;
+  int subscribers() const;
+  bool has_subscribers() const { return subscribers() > 0; }
   EntityId id() const;
   int left_out() const { return left_out_; }  // messages
 
@@ -83,6 +85,7 @@ class Subscriber {
   // All that came since it was asked last, the oldest first; no more than the topic's depth.
   std::vector<Message> take();
 
+  int publishers() const;
   EntityId id() const;
 
  private:

@@ -16,6 +16,14 @@ std::string dds_topic_name(std::string_view topic) {
   return "rt" + std::string(topic);
 }
 
+std::string dds_request_name(std::string_view service) {
+  return "rq" + std::string(service) + "Request";
+}
+
+std::string dds_reply_name(std::string_view service) {
+  return "rr" + std::string(service) + "Reply";
+}
+
 std::string dds_type_name(std::string_view type_name) {
   std::string name;
   const std::size_t last = type_name.rfind('/');

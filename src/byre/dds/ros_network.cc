@@ -115,6 +115,7 @@ RosNetwork read_ros_network(const Environment& environment) {
   network.range = read_range(environment);
   if (network.range != DiscoveryRange::off) network.peers = read_peers(environment);
   network.distribution = read_distribution(environment);
+  network.has_cyclone = environment("RMW_IMPLEMENTATION") == "rmw_cyclonedds_cpp";
   return network;
 }
 

@@ -27,6 +27,7 @@ struct RosNetwork {
   DiscoveryRange range = DiscoveryRange::subnet;
   std::vector<std::string> peers{};  // addresses of computers to ask as well
   RosDistribution distribution = RosDistribution::jazzy;
+  bool has_cyclone = false;  // whether its programs are by Cyclone DDS
 };
 
 // An environment variable's text; empty where it is not set.
@@ -37,8 +38,8 @@ Environment program_environment();
 // The distribution by its name, as "humble": all before Iron count as humble. Empty for what is no name.
 std::optional<RosDistribution> distribution_of(std::string_view name);
 
-// From ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and ROS_DISTRO. Throws
-// InputError for a value that is none of a variable's.
+// From ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO and
+// RMW_IMPLEMENTATION. Throws InputError for a value that is none of a variable's.
 RosNetwork read_ros_network(const Environment& environment);
 
 // The settings of Cyclone DDS that do that, as XML. own_settings: CYCLONEDDS_URI, which wins over the variables of ROS.

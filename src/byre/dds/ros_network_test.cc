@@ -28,6 +28,7 @@ TEST(RosNetwork, IsTheWholeSubnetInDomainZeroUnlessSaidOtherwise) {
   EXPECT_EQ(network.range, DiscoveryRange::subnet);
   EXPECT_THAT(network.peers, IsEmpty());
   EXPECT_EQ(network.distribution, RosDistribution::jazzy);
+  EXPECT_FALSE(network.has_cyclone);
   EXPECT_THAT(cyclone_settings(network, ""), AllOf(Not(HasSubstr("Discovery")), Not(HasSubstr("Multicast"))));
 }
 
@@ -35,11 +36,13 @@ TEST(RosNetwork, IsReadFromTheVariablesOfRos) {
   const RosNetwork network = read_ros_network(environment_of({{"ROS_DOMAIN_ID", "42"},
                                                               {"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"},
                                                               {"ROS_STATIC_PEERS", "10.0.0.7;barn.local"},
-                                                              {"ROS_DISTRO", "humble"}}));
+                                                              {"ROS_DISTRO", "humble"},
+                                                              {"RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp"}}));
   EXPECT_EQ(network.domain, 42);
   EXPECT_EQ(network.range, DiscoveryRange::localhost);
   EXPECT_THAT(network.peers, ElementsAre("10.0.0.7", "barn.local"));
   EXPECT_EQ(network.distribution, RosDistribution::humble);
+  EXPECT_TRUE(network.has_cyclone);
   EXPECT_THAT(cyclone_settings(network, ""),
               AllOf(HasSubstr("<AllowMulticast>false</AllowMulticast>"), HasSubstr("address=\"localhost\""),
                     HasSubstr("address=\"10.0.0.7\""), HasSubstr("address=\"127.0.0.1\"")));

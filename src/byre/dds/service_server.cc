@@ -1,0 +1,50 @@
+#include "byre/dds/service_server.h"
+
+#include <cstdio>
+#include <utility>
+
+namespace byre {
+namespace {
+
+// By what a client finds that both ends are of one server.
+std::string service_note(EntityId id, const std::string& service) {
+  // The last four bytes tell the endpoints of a participant apart; here they tell its services apart.
+  std::uint32_t hash = 2166136261U;  // FNV-1a
+  for (const char letter : service) hash = (hash ^ static_cast<std::uint8_t>(letter)) * 16777619U;
+  for (std::size_t i = 0; i < sizeof hash; ++i) id[id.size() - 1 - i] = static_cast<std::uint8_t>(hash >> (8 * i));
+  std::string note = "serviceid=";
+  for (std::size_t i = 0; i < id.size(); ++i) {
+    char digits[4];
+    std::snprintf(digits, sizeof digits, "%s%x", i == 0 ? "" : ".", id[i]);
+    note += digits;
+  }
+  return note + ";";
+}
+
+}  // namespace
+
+ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
+                             const std::string& type) {
+  const TopicQos qos{.note = service_note(participant.id(), service)};
+  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""}, qos);
+  replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, qos);
+  graph.add(requests_);
+  graph.add(replies_);
+}
+
+void ServiceServer::reply(std::vector<std::byte> message, std::chrono::nanoseconds now) {
+  constexpr std::chrono::milliseconds kPatience(100);  // as servers of rmw_cyclonedds have
+  waiting_.push_back({std::move(message), now + kPatience});
+  send_waiting(now);
+}
+
+void ServiceServer::send_waiting(std::chrono::nanoseconds now) {
+  const bool all_hear = replies_.subscribers() >= requests_.publishers();
+  std::erase_if(waiting_, [&](Waiting& waiting) {
+    if (!all_hear && now < waiting.until) return false;
+    replies_.publish(std::move(waiting.message));
+    return true;
+  });
+}
+
+}  // namespace byre
