@@ -163,6 +163,33 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
   EXPECT_EQ(node.stop(), 0);
 }
 
+TEST_F(ByreNode, KeepsTheMapBeforeAndUsesItWhereTheKeptOneIsDamaged) {
+  const std::vector<ImageFrame>& frames = Room::shared().frames();
+  const fs::path map = folder_ / "room.byre";
+  fs::copy_file(Room::shared().map(), map);
+  const std::string extend = config("  task: extend\n  map: " + map.string() + "\n  save: " + map.string() + "\n");
+  {
+    NodeProcess node(folder_, extend, domain_);
+    ASSERT_TRUE(is_connected()) << node.said();
+    for (std::size_t i = 0; i < 10; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, frames[i])) << node.said();
+    command("save");
+    ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("\"saved ") != std::string::npos; }));
+    EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), fs::file_size(Room::shared().map()));
+    EXPECT_EQ(node.stop(), 0) << node.said();
+  }
+  fs::resize_file(map, fs::file_size(map) / 2);
+  const auto kept = fs::file_size(folder_ / "room.previous.byre");
+  odometry_.forget();
+  events_.forget();
+  NodeProcess node(folder_, extend, domain_);
+  ASSERT_TRUE(is_connected()) << node.said();
+  EXPECT_THAT(node.said(), HasSubstr("room.byre: ")) << "what is wrong with it";
+  EXPECT_THAT(node.said(), HasSubstr("the previous map is used, " + (folder_ / "room.previous.byre").string()));
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.said();
+  EXPECT_EQ(node.stop(), 0) << node.said();
+  EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "no damaged map takes its place";
+}
+
 TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
   const Room& room = Room::shared();
   Poses poses(peer_, "rt/byre/pose", kLatched);

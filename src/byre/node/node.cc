@@ -34,8 +34,7 @@ PairingOptions pairing_options(const NodeConfig& config) {
 
 }  // namespace
 
-Node::Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings,
-           std::function<void(const std::string& line)> log)
+Node::Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings, NodeLog log)
     : config_(config),
       log_(std::move(log)),
       participant_(network, cyclone_settings),
@@ -58,8 +57,9 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
   command_ = subscribe(config.command, message_type<ros::String>(), {});
   initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), {});
+  if (config.services.value_or(network.has_cyclone)) services_.emplace(config, participant_, graph_, log_);
   calibration_ = calibration_source_.take("");
-  if (calibration_) runner_.start(*calibration_);
+  if (calibration_) start();
   require_plan_of_map(config_);
   outputs_.tell_plan();
   left_ = subscribe(config.left, image, images);
@@ -69,7 +69,8 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   if (config.http_port) {
     web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
                         std::make_unique<StatusSite>(board_), watchers_);
-    for (const std::string& url : web_server_->urls()) log_("healthz, metrics and Foxglove are served at " + url);
+    for (const std::string& url : web_server_->urls())
+      log_(LogLevel::info, "healthz, metrics and Foxglove are served at " + url);
   }
 }
 
@@ -91,29 +92,47 @@ void Node::take_images(Timestamp now) {
   }
 }
 
+void Node::start() {
+  const std::string said = runner_.start(*calibration_);
+  if (!said.empty()) log_(LogLevel::warning, said);
+}
+
 void Node::take_calibration(Timestamp now) {
   if (calibration_) return;
   try {
     calibration_ = calibration_source_.take(left_frame_);
-    if (calibration_) runner_.start(*calibration_);
+    if (calibration_) start();
   } catch (const InputError& error) {
     calibration_.reset();
     watch_.note_unusable(error, now);
     if (last_fault_ == error.what()) return;
     last_fault_ = error.what();
-    log_(last_fault_);
+    log_(LogLevel::error, last_fault_);
   }
 }
 
-void Node::answer(const std::string& asked, const std::function<std::string()>& done) {
+Outcome Node::answer(const std::string& asked, const std::function<std::string()>& done) {
+  Outcome outcome;
   try {
-    const std::string answer = done();
-    log_(asked + ": " + answer);
-    outputs_.tell_answer(asked, true, answer);
+    outcome = {true, done()};
   } catch (const InputError& error) {
-    log_(asked + ": " + error.what());
-    outputs_.tell_answer(asked, false, error.what());
+    outcome = {false, error.what()};
   }
+  log_(outcome.is_done ? LogLevel::info : LogLevel::warning, asked + ": " + outcome.answer);
+  outputs_.tell_answer(asked, outcome.is_done, outcome.answer);
+  return outcome;
+}
+
+Outcome Node::obey(const std::string& command) {
+  return answer(command, [&] {
+    const Obeyed obeyed = byre::obey(runner_, command);
+    if (obeyed.begins_anew) begin_anew();
+    return obeyed.answer;
+  });
+}
+
+Outcome Node::take_hint(const ros::PoseWithCovarianceStamped& hint) {
+  return answer("initial pose", [&] { return compare(hint); });
 }
 
 void Node::begin_anew() {
@@ -148,23 +167,21 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
          formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint->radius, hint->seconds);
 }
 
-void Node::take_requests() {
+void Node::take_requests(Timestamp now) {
   const auto take = [](std::optional<Subscriber>& subscriber) {
     return subscriber ? subscriber->take() : std::vector<Message>();
   };
   for (const Message& message : take(command_)) {
     const auto command = parsed_message<ros::String>(message, config_.command);
-    if (!command) continue;
-    answer(command->data, [&] {
-      const std::string done = obey(runner_, command->data);
-      if (!done.starts_with("saved")) begin_anew();
-      return done;
-    });
+    if (command) obey(command->data);
   }
   for (const Message& message : take(initial_pose_)) {
     const auto given = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
-    if (given) answer("initial pose", [&] { return compare(*given); });
+    if (given) take_hint(*given);
   }
+  if (!services_) return;
+  services_->answer([this](const ServiceCall& call) { return call.hint ? take_hint(*call.hint) : obey(call.command); },
+                    now);
 }
 
 ReceivedImage Node::decoded(const Message& message, const std::string& topic) const {
@@ -222,11 +239,14 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
 }
 
 void Node::note_events(const FrameReport& report) {
-  for (const SessionEvent event : report.events) log_(std::string(to_string(event)));
+  for (const SessionEvent event : report.events) {
+    log_(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
+  }
   if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
   const std::string doubt =
       report.health.doubt == Doubt::none ? "" : ": " + std::string(to_string(report.health.doubt));
-  log_(std::string(to_string(report.health.verdict)) + doubt);
+  log_(report.health.verdict == Verdict::untrusted ? LogLevel::warning : LogLevel::notice,
+       std::string(to_string(report.health.verdict)) + doubt);
 }
 
 ros::DiagnosticStatus Node::localisation() const {
@@ -271,18 +291,18 @@ void Node::tell_state(Timestamp now) {
 
 void Node::tell_fleet(Timestamp now) {
   if (!fleet_) return;
-  if (const auto news = fleet_->news()) log_("mqtt: " + *news);
+  if (const auto news = fleet_->news()) log_(LogLevel::notice, "mqtt: " + *news);
   fleet_->tell({runner_.map_name(), config_.fleet.map_description}, now);
 }
 
 void Node::run(const std::function<bool()>& should_stop) {
-  log_("node " + config_.full_name() + " is ready");
+  log_(LogLevel::info, "node " + config_.full_name() + " is ready");
   manager_.ready();
   while (!should_stop()) {
     participant_.wait(20ms);
     const Timestamp now = steady_now();
     take_calibration(now);
-    take_requests();
+    take_requests(now);
     take_images(now);
     motion_.take();
     if (runner_.is_running()) {
@@ -293,7 +313,7 @@ void Node::run(const std::function<bool()>& should_stop) {
     if (web_server_) web_server_->wake();
   }
   manager_.stopping();
-  if (runner_.has_anything_to_save()) log_(runner_.save());
+  if (runner_.has_anything_to_save()) log_(LogLevel::info, runner_.save());
 }
 
 }  // namespace byre

@@ -9,7 +9,9 @@
 #include "byre/node/image_pairs.h"
 #include "byre/node/motion_input.h"
 #include "byre/node/node_config.h"
+#include "byre/node/node_log.h"
 #include "byre/node/node_outputs.h"
+#include "byre/node/node_services.h"
 #include "byre/node/pose_frames.h"
 #include "byre/node/service_manager.h"
 #include "byre/node/slam_runner.h"
@@ -30,8 +32,7 @@ class Node {
  public:
   // log: is told in a line what happens. Throws InputError for files that cannot be used, and std::runtime_error where
   // DDS refuses.
-  Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings,
-       std::function<void(const std::string& line)> log);
+  Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings, NodeLog log);
 
   // Until should_stop says so; then keeps what was mapped, where there is a file for it. Throws InputError when that
   // cannot be written.
@@ -41,9 +42,12 @@ class Node {
   using Pairs = ImagePairs<Message>;
 
   void take_images(Timestamp now);
+  void start();
   void take_calibration(Timestamp now);
-  void take_requests();
-  void answer(const std::string& asked, const std::function<std::string()>& done);
+  void take_requests(Timestamp now);
+  Outcome answer(const std::string& asked, const std::function<std::string()>& done);
+  Outcome obey(const std::string& command);
+  Outcome take_hint(const ros::PoseWithCovarianceStamped& hint);
   std::string compare(const ros::PoseWithCovarianceStamped& message);
   ReceivedImage decoded(const Message& message, const std::string& topic) const;
   void process(const Pairs::Pair& pair);
@@ -55,8 +59,8 @@ class Node {
   ros::DiagnosticStatus localisation() const;
   void begin_anew();
 
-  NodeConfig config_;                                 // constant after construction
-  std::function<void(const std::string& line)> log_;  // constant after construction
+  NodeConfig config_;  // constant after construction
+  NodeLog log_;        // constant after construction
   Participant participant_;
   GraphAnnouncement graph_;
   CalibrationSource calibration_source_;
@@ -64,6 +68,7 @@ class Node {
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
   std::optional<Subscriber> left_, right_, command_, initial_pose_;
+  std::optional<NodeServices> services_;  // empty where none are offered
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;

@@ -43,6 +43,7 @@ struct FleetSettings {
 struct NodeConfig {
   std::string name = "byre";
   std::string name_space = "/";
+  std::optional<bool> services;  // whether commands are services too; empty: where ROS is by Cyclone DDS
 
   NodeTask task = NodeTask::mission;
   std::optional<std::filesystem::path> map;         // map that the robot is on, or that is gone on with
@@ -89,6 +90,9 @@ struct NodeConfig {
 
   std::string http_address = "127.0.0.1";  // address of this computer that /healthz and /metrics are served at
   std::optional<int> http_port;            // empty: they are not served
+
+  bool locks_memory = false;  // whether memory is kept from being paged out
+  int priority = 0;           // real-time priority of tracking; 0: as other programs
 
   FleetSettings fleet;
 

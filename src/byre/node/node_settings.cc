@@ -101,6 +101,10 @@ void add_slam(Table& table) {
       "node.name", [](auto& c) -> auto& { return c.name; }, "name of the node"));
   table.push_back(topic(
       "node.namespace", [](auto& c) -> auto& { return c.name_space; }, "namespace of the node"));
+  table.push_back(choice<std::optional<bool>>(
+      "node.services", {{"auto", std::nullopt}, {"true", true}, {"false", false}},
+      [](auto& c) -> auto& { return c.services; },
+      "commands as services too, for programs by rmw_cyclonedds_cpp; auto: as RMW_IMPLEMENTATION says"));
   table.push_back(choice<NodeTask>(
       "slam.task", {{"mission", NodeTask::mission}, {"extend", NodeTask::extend}, {"map", NodeTask::map}},
       [](auto& c) -> auto& { return c.task; }, "localisation in a kept map, going on with one, or making one"));
@@ -269,6 +273,20 @@ void add_fleet(Table& table) {
                    [](const NodeConfig& config) { return formatted("%g", config.fleet.rate); }, set_rate});
 }
 
+void add_process(Table& table) {
+  table.push_back(flag(
+      "process.lock_memory", [](auto& c) -> auto& { return c.locks_memory; }, "memory kept from being paged out"));
+  const auto set_priority = [](NodeConfig& config, std::string_view value) {
+    const auto number = parse_number(value);
+    if (!number || !(*number >= 0.0 && *number <= 99.0 && *number == std::floor(*number))) return false;
+    config.priority = static_cast<int>(*number);
+    return true;
+  };
+  table.push_back({"process.priority", "0 to 99",
+                   "real-time priority of tracking (SCHED_RR), mapping has none; 0: as other programs",
+                   [](const NodeConfig& config) { return std::to_string(config.priority); }, set_priority});
+}
+
 Table make_table() {
   Table table;
   add_slam(table);
@@ -278,6 +296,7 @@ Table make_table() {
   add_topics(table);
   add_http(table);
   add_fleet(table);
+  add_process(table);
   return table;
 }
 

@@ -2,10 +2,12 @@
 
 #include "byre/dataset/settings_file.h"
 #include "byre/input/output_file.h"
+#include "byre/node/kept_maps.h"
 #include "byre/node/map_messages.h"
 #include "byre/playback/options_file.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace byre {
@@ -49,6 +51,7 @@ FrameReport SlamRunner::process(const CameraImages& images) {
 }
 
 void SlamRunner::replace(Slam slam) {
+  slam.pause_mapping(slam_ && slam_->is_mapping_paused());
   slam_.emplace(std::move(slam));
   had_pose_ = false;
 }
@@ -65,10 +68,21 @@ Slam SlamRunner::make(const fs::path* map) const {
   return Slam::mapping(*calibration_, options_);
 }
 
-void SlamRunner::start(const Calibration& calibration) {
+std::string SlamRunner::start(const Calibration& calibration) {
   calibration_ = calibration;
-  replace(make(map_ ? &*map_ : nullptr));
-  if (slam_->is_metric()) return;
+  std::string said;
+  try {
+    replace(make(map_ ? &*map_ : nullptr));
+  } catch (const InputError& error) {
+    const bool is_kept = map_ && fs::exists(previous_map(*map_));
+    if (!is_kept) throw;
+    const fs::path previous = previous_map(*map_);
+    replace(make(&previous));
+    map_ = previous;
+    is_map_sound_ = false;
+    said = std::string(error.what()) + "; the previous map is used, " + previous.string();
+  }
+  if (slam_->is_metric()) return said;
   slam_.reset();
   throw InputError("the calibration", "is of one camera, which knows no metres without a map", "name a kept map");
 }
@@ -96,10 +110,12 @@ void SlamRunner::require_running() const {
   if (!slam_) throw InputError("byre node", "has no calibration yet", "wait for camera info");
 }
 
-std::string SlamRunner::save() const {
+std::string SlamRunner::save() {
   require_running();
   if (!config_.save) throw InputError("save", "has no file to write", "set slam.save");
+  if (slam_->keyframes() > 0 && is_map_sound_) keep_as_previous(*config_.save);
   slam_->save(*config_.save);
+  is_map_sound_ = true;
   return "saved " + config_.save->string();
 }
 
@@ -131,14 +147,21 @@ bool SlamRunner::look_near(PoseHint hint) {
   return true;
 }
 
-std::string obey(SlamRunner& runner, const std::string& line) {
-  const std::size_t end = std::min(line.find(' '), line.size());
-  const std::string word = line.substr(0, end);
-  const std::string rest = end < line.size() ? line.substr(end + 1) : "";
-  if (word == "load") return runner.load(rest);
-  if (rest.empty() && word == "save") return runner.save();
-  if (rest.empty() && word == "relocalise") return runner.relocalise();
-  throw InputError("'" + line.substr(0, 100) + "'", "is no command", "send save, load NAME or relocalise");
+std::string SlamRunner::pause_mapping(bool is_paused) {
+  require_running();
+  slam_->pause_mapping(is_paused);
+  return is_paused ? "nothing is added to the map until mapping is resumed" : "mapping goes on";
+}
+
+Obeyed obey(SlamRunner& runner, const std::string& line) {
+  constexpr std::string_view kLoad = "load ";
+  if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true};
+  if (line == "relocalise") return {runner.relocalise(), true};
+  if (line == "save") return {runner.save()};
+  if (line == "pause mapping") return {runner.pause_mapping(true)};
+  if (line == "resume mapping") return {runner.pause_mapping(false)};
+  throw InputError("'" + line.substr(0, 100) + "'", "is no command",
+                   "send save, load NAME, relocalise, pause mapping or resume mapping");
 }
 
 }  // namespace byre

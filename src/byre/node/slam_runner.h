@@ -17,8 +17,9 @@ class SlamRunner {
   // Throws InputError for options that cannot be read, and a file to save that cannot be written.
   explicit SlamRunner(const NodeConfig& config);
 
-  // Throws InputError as Slam does, and for a pair of cameras that knows no metres.
-  void start(const Calibration& calibration);
+  // Throws InputError as Slam does, and for a pair of cameras that knows no metres. Where the kept map cannot be used,
+  // and the one before it was kept, that is taken instead; then what there is to say about it, else empty.
+  std::string start(const Calibration& calibration);
 
   bool is_running() const { return slam_.has_value(); }
   // What wheels and a gyroscope told before the next frame. Precondition: is_running().
@@ -37,9 +38,10 @@ class SlamRunner {
   bool makes_a_map() const { return config_.task != NodeTask::mission; }
 
   // Each throws InputError for what cannot be done, and leaves everything as it was then.
-  std::string save() const;                   // what was done
+  std::string save();                         // what was done; the map that stood there is kept as the previous one
   std::string load(const std::string& name);  // a map beside the one that is loaded, by its file's name alone
   std::string relocalise();                   // looks for the robot from nothing, in the same map
+  std::string pause_mapping(bool is_paused);  // nothing is added to what is mapped meanwhile
   // hint: as poses are published. False where the task has no use for it.
   bool look_near(PoseHint hint);
   bool has_anything_to_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
@@ -54,11 +56,15 @@ class SlamRunner {
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
-  bool had_pose_ = false;  // whether any frame of slam_ had a pose
+  bool is_map_sound_ = true;  // whether the map that is there was used, so that it is worth keeping as the previous one
+  bool had_pose_ = false;     // whether any frame of slam_ had a pose
 };
 
-// What a line of the command topic asks for, done; the answer. Throws InputError for what is no command, or cannot be
-// done now.
-std::string obey(SlamRunner& runner, const std::string& line);
+// What a line of the command topic asks for, done. Throws InputError for what is no command, or cannot be done now.
+struct Obeyed {
+  std::string answer;
+  bool begins_anew = false;  // the robot is looked for from nothing
+};
+Obeyed obey(SlamRunner& runner, const std::string& line);
 
 }  // namespace byre

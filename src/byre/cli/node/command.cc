@@ -3,7 +3,9 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/features/image_threads.h"
 #include "byre/node/node.h"
+#include "byre/node/process_settings.h"
 
+#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -26,8 +28,8 @@ constexpr const char* kNodeFooter = R"(Examples:
   ROS_DOMAIN_ID=7 byre node --config robot.yaml --ros-distro humble
 
 A node of ROS 2 that needs no ROS: it speaks to others by Cyclone DDS. It heeds ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
-ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO and CYCLONEDDS_URI, and goes on until it is stopped (Ctrl-C,
-SIGTERM), when it keeps what was mapped. docs/ros2.md tells its topics, frames and settings.
+ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO, RMW_IMPLEMENTATION and CYCLONEDDS_URI, and goes on until
+it is stopped (Ctrl-C, SIGTERM), when it keeps what was mapped. docs/ros2.md tells its topics, frames and settings.
 
 Exit codes: 0 stopped, or --check found nothing wrong, 1 failed at work, 3 settings or files that cannot be used.)";
 
@@ -63,11 +65,12 @@ ExitCode run_node(const NodeOptions& options, std::ostream& result) {
   const NodeConfig config = sound_config(options);
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  const bool is_quiet = options.quiet;
-  Node node(config, network_of(options), program_environment()("CYCLONEDDS_URI").value_or(""),
-            [is_quiet](const std::string& line) {
-              if (!is_quiet) std::cerr << "byre node: " << line << std::endl;
-            });
+  NodeLogger logger(std::cerr, is_journal_read());
+  const NodeLog log = [&logger, is_quiet = options.quiet](LogLevel level, const std::string& line) {
+    if (!is_quiet) logger.tell(level, line, std::chrono::steady_clock::now().time_since_epoch());
+  };
+  apply_process_settings(config, log);
+  Node node(config, network_of(options), program_environment()("CYCLONEDDS_URI").value_or(""), log);
   node.run([&interrupt] { return interrupt.caught(); });
   return ExitCode::done;
 }

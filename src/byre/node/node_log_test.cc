@@ -1,0 +1,40 @@
+#include "byre/node/node_log.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(NodeLogger, TellsTheJournalHowMuchALineMatters) {
+  std::ostringstream journal, terminal;
+  NodeLogger(journal, true).tell(LogLevel::warning, "untrusted: no pose", {});
+  NodeLogger(terminal, false).tell(LogLevel::warning, "untrusted: no pose", {});
+  EXPECT_EQ(journal.str(), "<4>untrusted: no pose\n");
+  EXPECT_EQ(terminal.str(), "byre node: untrusted: no pose\n");
+}
+
+TEST(NodeLogger, LeavesOutWhatComesTooFastAndSaysHowMuch) {
+  std::ostringstream stream;
+  NodeLogger log(stream, false);
+  for (int i = 0; i < 100; ++i) log.tell(LogLevel::notice, "line " + std::to_string(i), {});
+  EXPECT_THAT(stream.str(), HasSubstr("line 29\n"));
+  EXPECT_THAT(stream.str(), Not(HasSubstr("line 30\n")));
+  log.tell(LogLevel::notice, "much later", from_seconds(1.0));
+  EXPECT_THAT(stream.str(), EndsWith("70 lines left out\nbyre node: much later\n"));
+}
+
+TEST(NodeLogger, LeavesNoErrorOut) {
+  std::ostringstream stream;
+  NodeLogger log(stream, false);
+  for (int i = 0; i < 50; ++i) log.tell(LogLevel::error, "error " + std::to_string(i), {});
+  EXPECT_THAT(stream.str(), HasSubstr("error 49\n"));
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,91 @@
+#include "byre/node/node_services.h"
+
+#include "byre/input_error.h"
+#include "byre/ros/message_reader.h"
+#include "byre/ros/message_writer.h"
+#include "byre/ros/services.h"
+
+#include <utility>
+
+namespace byre {
+namespace {
+
+// A request by its bytes, which must be all of them: one in the words of another vendor's DDS has no id in front, and
+// may be taken for another request.
+template <ros::Message Body>
+std::optional<ServiceMessage<Body>> whole_request(const Message& message, const std::string& service) {
+  constexpr std::size_t kMostPadding = 3;
+  const std::span<const std::byte> bytes = message.bytes();
+  try {
+    const auto request = ros::read_message<ServiceMessage<Body>>(bytes, ros::Encoding::cdr, service);
+    const std::size_t size = ros::write_message(request, ros::Encoding::cdr).size();
+    return bytes.size() - size <= kMostPadding ? std::optional(request) : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+template <typename Response>
+Response told(const Outcome& outcome) {
+  return {outcome.is_done, outcome.answer};
+}
+
+template <typename Request>
+std::function<ServiceCall(const Request&)> always(const std::string& command) {
+  return [command](const Request&) { return ServiceCall{command}; };
+}
+
+}  // namespace
+
+template <typename Kind>
+void NodeServices::offer(const std::string& name, std::function<ServiceCall(const typename Kind::Request&)> call_of,
+                         std::function<typename Kind::Response(const Outcome&)> response_of) {
+  const std::string whole = config_.topic(name);
+  const auto reply_to = [=](const Message& message, const Act& act) -> std::optional<std::vector<std::byte>> {
+    const auto request = whole_request<typename Kind::Request>(message, whole);
+    if (!request) return std::nullopt;
+    const Outcome outcome = act(call_of(request->body));
+    const ServiceMessage<typename Kind::Response> reply{request->call, response_of(outcome)};
+    return ros::write_message(reply, ros::Encoding::cdr);
+  };
+  services_.push_back({whole, ServiceServer(participant_, graph_, whole, std::string(Kind::kType)), reply_to});
+}
+
+NodeServices::NodeServices(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, NodeLog log)
+    : config_(config), participant_(participant), graph_(graph), log_(std::move(log)) {
+  using ros::LoadMap, ros::SetBool, ros::SetInitialPose, ros::Trigger;
+  offer<Trigger>("save", always<Trigger::Request>("save"), told<Trigger::Response>);
+  offer<Trigger>("relocalise", always<Trigger::Request>("relocalise"), told<Trigger::Response>);
+  offer<SetBool>(
+      "pause_mapping",
+      [](const SetBool::Request& request) { return ServiceCall{request.data ? "pause mapping" : "resume mapping"}; },
+      told<SetBool::Response>);
+  offer<LoadMap>(
+      "load_map", [](const LoadMap::Request& request) { return ServiceCall{"load " + request.map_url}; },
+      [](const Outcome& outcome) {
+        return LoadMap::Response{{}, outcome.is_done ? LoadMap::kSuccess : LoadMap::kUndefinedFailure};
+      });
+  offer<SetInitialPose>(
+      "set_initial_pose",
+      [](const SetInitialPose::Request& request) {
+        return ServiceCall{{}, request.pose};
+      },
+      [](const Outcome&) { return SetInitialPose::Response{}; });
+}
+
+void NodeServices::answer(const Act& act, Timestamp now) {
+  for (Service& service : services_) {
+    for (const Message& request : service.server.take()) {
+      if (auto reply = service.reply_to(request, act)) {
+        service.server.reply(std::move(*reply), now);
+      } else if (!std::exchange(service.was_misunderstood, true)) {
+        log_(LogLevel::warning, service.name +
+                                    " is called in words that are not rmw_cyclonedds_cpp's: send commands to " +
+                                    config_.topic(config_.command));
+      }
+    }
+    service.server.send_waiting(now);
+  }
+}
+
+}  // namespace byre

@@ -1,0 +1,40 @@
+#include "byre/node/process_settings.h"
+
+#include <gmock/gmock.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+namespace byre {
+namespace {
+
+using testing::IsEmpty;
+
+// What was told; the settings are taken back.
+std::string told_by(const NodeConfig& config, int& policy) {
+  std::string told;
+  apply_process_settings(config, [&told](LogLevel, const std::string& line) { told += line + "\n"; });
+  policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
+  const sched_param usual{};
+  sched_setscheduler(0, SCHED_OTHER, &usual);
+  munlockall();
+  return told;
+}
+
+TEST(ProcessSettings, LeaveAloneWhatNobodyAskedFor) {
+  int policy = 0;
+  EXPECT_THAT(told_by({}, policy), IsEmpty());
+  EXPECT_EQ(policy, SCHED_OTHER);
+}
+
+TEST(ProcessSettings, LetTrackingGoFirstOrSayWhyNot) {
+  NodeConfig config;
+  config.priority = 10;
+  int policy = 0;
+  const std::string told = told_by(config, policy);
+  const bool is_first = policy == SCHED_RR;
+  EXPECT_EQ(told.empty(), is_first);
+  EXPECT_EQ(told.find("raise LimitRTPRIO") == std::string::npos, is_first);
+}
+
+}  // namespace
+}  // namespace byre

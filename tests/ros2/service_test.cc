@@ -1,0 +1,120 @@
+// The commands of byre node as services, called by Fast DDS as rmw_cyclonedds calls them: with an id in front.
+
+#include "node_fixture.h"
+
+#include <cstdint>
+
+#include <gmock/gmock.h>
+
+namespace byre::testing_ros2 {
+namespace {
+
+using testing::HasSubstr;
+
+// Calls one service, and keeps the replies to itself as clients of ROS do.
+template <typename Request, typename RequestType, typename Response, typename ResponseType>
+class Client {
+ public:
+  Client(FastPeer& peer, const std::string& service, std::uint64_t id)
+      : id_(id),
+        requests_(peer.writer("rq/byre/" + service + "Request", TypeSupport(new RequestType), kVolatile)),
+        replies_(peer, "rr/byre/" + service + "Reply", kVolatile) {}
+
+  bool is_heard() const { return FastPeer::is_heard(requests_); }
+
+  std::optional<Response> call(Request request) {
+    request.client(id_);
+    request.number(++number_);
+    requests_->write(&request);
+    return replies_.find(
+        [&](const Response& response) { return response.client() == id_ && response.number() == number_; });
+  }
+
+ private:
+  std::uint64_t id_;
+  std::int64_t number_ = 0;
+  eprosima::fastdds::dds::DataWriter* requests_;
+  Inbox<Response, ResponseType> replies_;
+};
+
+using Trigger = Client<std_srvs::srv::Trigger_Request, std_srvs::srv::Trigger_RequestPubSubType,
+                       std_srvs::srv::Trigger_Response, std_srvs::srv::Trigger_ResponsePubSubType>;
+using SetBool = Client<std_srvs::srv::SetBool_Request, std_srvs::srv::SetBool_RequestPubSubType,
+                       std_srvs::srv::SetBool_Response, std_srvs::srv::SetBool_ResponsePubSubType>;
+using LoadMap = Client<nav2_msgs::srv::LoadMap_Request, nav2_msgs::srv::LoadMap_RequestPubSubType,
+                       nav2_msgs::srv::LoadMap_Response, nav2_msgs::srv::LoadMap_ResponsePubSubType>;
+using SetInitialPose =
+    Client<nav2_msgs::srv::SetInitialPose_Request, nav2_msgs::srv::SetInitialPose_RequestPubSubType,
+           nav2_msgs::srv::SetInitialPose_Response, nav2_msgs::srv::SetInitialPose_ResponsePubSubType>;
+
+constexpr const char* kOffered = "node:\n  services: true\n";
+
+TEST_F(ByreNode, AnswersServicesToWhoeverCalledThem) {
+  const std::vector<ImageFrame>& frames = Room::shared().frames();
+  NodeProcess node(folder_, kOffered + mission(), domain_);
+  Trigger save(peer_, "save", 0x1234567890abcdef), relocalise(peer_, "relocalise", 2), other(peer_, "save", 3);
+  LoadMap load(peer_, "load_map", 4);
+  SetInitialPose hint(peer_, "set_initial_pose", 5);
+  ASSERT_TRUE(is_connected() && save.is_heard() && relocalise.is_heard() && load.is_heard() && hint.is_heard())
+      << node.said();
+  ASSERT_TRUE(answer_to(feed_, odometry_, frames[0])) << node.said();
+
+  const auto saved = save.call({});
+  ASSERT_TRUE(saved.has_value()) << node.said();
+  EXPECT_FALSE(saved->success());
+  EXPECT_THAT(saved->message(), HasSubstr("set slam.save"));
+  EXPECT_TRUE(other.call({}).has_value()) << "another client";
+
+  nav2_msgs::srv::LoadMap_Request map;
+  map.map_url("../secret");
+  const auto refused = load.call(map);
+  EXPECT_TRUE(refused && refused->result() == 255) << node.said();
+  map.map_url("room.byre");
+  const auto loaded = load.call(map);
+  EXPECT_TRUE(loaded && loaded->result() == 0) << node.said();
+
+  nav2_msgs::srv::SetInitialPose_Request pose;
+  pose.pose().header().frame_id("map");
+  EXPECT_TRUE(hint.call(pose).has_value());
+  EXPECT_THAT(node.said(), HasSubstr("looking within 3.0 m of it"));
+  const auto looked = relocalise.call({});
+  EXPECT_TRUE(looked && looked->success()) << node.said();
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
+  EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
+  const std::vector<ImageFrame>& frames = Room::shared().frames();
+  NodeProcess node(folder_, kOffered + mapping(), domain_);
+  SetBool pause(peer_, "pause_mapping", 1);
+  ASSERT_TRUE(is_connected() && pause.is_heard()) << node.said();
+  std_srvs::srv::SetBool_Request is_paused;
+  is_paused.data(true);
+  const auto paused = pause.call(is_paused);
+  ASSERT_TRUE(paused && paused->success()) << node.said();
+  feed_.send(frames[0]);
+  EXPECT_TRUE(diagnosis(diagnostics_, "byre: localisation", "no pose")) << "no map begins";
+  command("resume mapping");
+  EXPECT_TRUE(
+      events_.find([](const auto& event) { return event.data().find("mapping goes on") != std::string::npos; }));
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
+  EXPECT_EQ(node.stop(), 0);
+}
+
+// A request by Fast DDS's own words has no id in front.
+TEST_F(ByreNode, LeavesRequestsAloneThatItDoesNotUnderstand) {
+  NodeProcess node(folder_, kOffered + mission(), domain_);
+  TypeSupport bare(new std_srvs::srv::BareTrigger_RequestPubSubType);
+  bare->setName("std_srvs::srv::dds_::Trigger_Request_");
+  auto* const requests = peer_.writer("rq/byre/saveRequest", bare, kVolatile);
+  ASSERT_TRUE(is_connected() && FastPeer::is_heard(requests)) << node.said();
+  std_srvs::srv::BareTrigger_Request request;
+  requests->write(&request);
+  command("hello again");
+  ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("hello again") != std::string::npos; }));
+  EXPECT_THAT(node.said(), HasSubstr("/byre/save is called in words that are not rmw_cyclonedds_cpp's"));
+  EXPECT_EQ(node.stop(), 0);
+}
+
+}  // namespace
+}  // namespace byre::testing_ros2
