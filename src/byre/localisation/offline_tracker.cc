@@ -80,10 +80,9 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   is_search_by_doubt_ = !is_search_needed(whereabouts, mapper);
   if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
   last_search_ = sought.frame.time;
-  const std::size_t number = whereabouts.trajectory().size() - 1;
-  search_.start([frame = sought.frame, rig = sought.rig, hint = sought.hint, number, offline = offline_,
+  search_.start([frame = sought.frame, rig = sought.rig, hint = sought.hint, offline = offline_,
                  options = options_.relocalise, tracked_share = mission_.seen_share()] {
-    auto found = search_place(*offline, {frame, rig, hint}, number, options);
+    auto found = search_place(*offline, {frame, rig, hint}, options);
     if (found) found->tracked_share = tracked_share;
     return found;
   });
@@ -100,16 +99,14 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
 OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
                                                      const Mapper& mapper) {
   constexpr double kElsewhere = 0.5;  // metres
-  const AnchoredTrajectory& trajectory = whereabouts.trajectory();
   const Confirmation& confirmation = whereabouts.confirmation();
   const Submaps& submaps = mapper.submaps();
   if (!whereabouts.has_pose() || !confirmation.is_believed() || mapper.has_correction()) return {};
-  if (found.frame >= trajectory.size()) return {};
-  const AnchoredPose& then = trajectory[found.frame];
-  if (submaps.frame(then.submap) != submaps.frame()) return {};
-  const Pose camera_from_online = camera_from_world(mapper.map(), then);
+  const AnchoredPose* const then = whereabouts.trajectory().find(found.time);
+  if (then == nullptr || submaps.frame(then->submap) != submaps.frame()) return {};
+  const Pose camera_from_online = camera_from_world(mapper.map(), *then);
   const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
-  const bool is_in_place = then.submap == submaps.present() && submaps.is_registered();
+  const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
   if (is_in_place && confirmation.is_proven()) {
     if (rival_.note(found, camera_from_online, options_.mission.registration)) {
       return {.events = {}, .refutes_pose = true, .refutes_way = true};

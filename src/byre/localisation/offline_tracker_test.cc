@@ -19,7 +19,7 @@ class OnAnOfflineMap : public ::testing::Test {
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
   Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), map_}};
   OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
-  Whereabouts whereabouts_{{}, {}, true};
+  Whereabouts whereabouts_{{}, {}, {}, true};
 
   HybridTrack track_of(std::size_t frame, int inliers = 100) const {
     HybridTrack track;
@@ -46,7 +46,7 @@ class OnAnOfflineMap : public ::testing::Test {
   // A place so many metres beside where the first frame was believed to be.
   FoundPlace place_beside(double metres, double seen_share) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
-    return {0, beside * true_camera_from_world(mission_, 0), 3.0, seen_share};
+    return {mission_.frames[0].time, beside * true_camera_from_world(mission_, 0), 3.0, seen_share};
   }
 };
 
@@ -98,7 +98,7 @@ TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
     track.offline_expected = 1000;
     whereabouts_.note({mission_.frames[i], track, false, true, 0}, mission_.rig, mapper_.map());
     tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
-    FoundPlace rival{whereabouts_.trajectory().size() - 1, true_camera_from_world(mission_, i), 3.0, 0.3};
+    FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
     rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
     rival.tracked_share = 0.05;
     if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) refuted_at = i;
@@ -124,7 +124,7 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place();
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->frame, whereabouts_.trajectory().size() - 1);
+  EXPECT_EQ(found->time, mission_.frames[4].time);
   EXPECT_THAT(found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
 }
 

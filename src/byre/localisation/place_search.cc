@@ -28,14 +28,14 @@ Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, c
   return found;
 }
 
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought, std::size_t number,
+std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought,
                                        const LocaliseOptions& options) {
   const Localisation found = localise_in(offline, sought, options);
   if (!found.tracked) return std::nullopt;
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
   const double seen = static_cast<double>(found.tracked->features.size()) / std::max(1, found.tracked->expected);
-  return FoundPlace{number, found.tracked->camera_from_world, depth, seen};
+  return FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, seen};
 }
 
 }  // namespace byre

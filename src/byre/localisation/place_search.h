@@ -21,7 +21,7 @@ Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, c
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {
-  std::size_t frame = 0;  // the caller's number of the frame
+  Timestamp time{};  // when the frame was taken that was found
   Pose camera_from_offline;
   double median_depth = 0.0;  // metres, of the points that say so
   double seen_share = 0.0;    // share of the points that should be in view there
@@ -31,7 +31,7 @@ struct FoundPlace {
 };
 
 // Looks for a frame in the offline map without a guess. Empty when it is not found.
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought, std::size_t number,
+std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought,
                                        const LocaliseOptions& options);
 
 }  // namespace byre

@@ -10,7 +10,7 @@ class RivalOfAWay : public ::testing::Test {
  protected:
   bool find(double along, double beside, double seen_share, std::optional<double> tracked_share) {
     const Pose tracked{Eigen::Quaterniond::Identity(), {-along, 0.0, 0.0}};
-    FoundPlace found{0, {Eigen::Quaterniond::Identity(), {-along - beside, 0.0, 0.0}}, 3.0, seen_share};
+    FoundPlace found{{}, {Eigen::Quaterniond::Identity(), {-along - beside, 0.0, 0.0}}, 3.0, seen_share};
     found.tracked_share = tracked_share;
     return rival_.note(found, tracked, {});
   }

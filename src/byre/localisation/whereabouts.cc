@@ -185,6 +185,16 @@ void Whereabouts::turn_camera(const Pose& after_from_before) {
   motion_.turn_camera(after_from_before);
 }
 
+void Whereabouts::settle_overdue(const MapView& map, const TrackOptions& tracking) {
+  trajectory_.settle_overdue(map, tracking);
+  const bool has_bridge = bridge_ || bridge_end_;
+  const std::size_t removed = trajectory_.thin_out(has_bridge ? bridge_begin_ : trajectory_.size());
+  if (has_bridge) bridge_begin_ -= removed;
+  if (!bridge_end_) return;
+  bridge_end_->first -= removed;
+  bridge_end_->second -= removed;
+}
+
 std::optional<Pose> Whereabouts::follow_map(const Rig& rig, const MapView& map) {
   if (!has_pose_ && !bridge_) return std::nullopt;
   const Pose before = odometry_.map_from_body();

@@ -29,8 +29,9 @@ class Whereabouts {
   };
 
   // on_offline_map: finds are to be confirmed, and sightings kept.
-  Whereabouts(const RegistrationOptions& registration, const HindsightOptions& hindsight, bool on_offline_map)
-      : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight) {}
+  Whereabouts(const RegistrationOptions& registration, const HindsightOptions& hindsight,
+              const TrajectoryOptions& trajectory, bool on_offline_map)
+      : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight, trajectory) {}
 
   bool has_pose() const { return has_pose_; }  // in the last frame
   const Confirmation& confirmation() const { return confirmation_; }
@@ -89,7 +90,8 @@ class Whereabouts {
   // By what the map moved the last pose, after_from_before; empty where there is none.
   std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
 
-  void settle_overdue(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_overdue(map, tracking); }
+  // Once for each frame: what was long ago is settled, and thinned out.
+  void settle_overdue(const MapView& map, const TrackOptions& tracking);
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:

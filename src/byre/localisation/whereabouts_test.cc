@@ -14,7 +14,7 @@ class TrueWhereabouts : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
   Map map_ = true_map(mission_, 4, Origin::online);
-  Whereabouts whereabouts_{{}, {}, true};
+  Whereabouts whereabouts_{{}, {}, {}, true};
 
   HybridTrack track_of(std::size_t frame) const {
     HybridTrack track;

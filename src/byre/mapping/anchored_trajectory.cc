@@ -19,10 +19,14 @@ Pose camera_from_world(const MapView& map, const AnchoredPose& pose) {
   return pose.camera_from_keyframe * camera_from_world(map, pose.keyframe);
 }
 
-std::optional<Pose> AnchoredTrajectory::camera_at(Timestamp time, const MapView& map) const {
+const AnchoredPose* AnchoredTrajectory::find(Timestamp time) const {
   const auto found = std::ranges::lower_bound(poses_, time, {}, &AnchoredPose::time);
-  if (found == poses_.end() || found->time != time) return {};
-  return byre::camera_from_world(map, *found);
+  return found == poses_.end() || found->time != time ? nullptr : &*found;
+}
+
+std::optional<Pose> AnchoredTrajectory::camera_at(Timestamp time, const MapView& map) const {
+  const AnchoredPose* const pose = find(time);
+  return pose == nullptr ? std::nullopt : std::optional(byre::camera_from_world(map, *pose));
 }
 
 Vector6 AnchoredTrajectory::velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const {
@@ -32,18 +36,18 @@ Vector6 AnchoredTrajectory::velocity_to(Timestamp time, const Pose& camera_from_
 }
 
 void AnchoredTrajectory::keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked) {
-  hindsight_.note(poses_.size() - 1, rig, features, tracked);
+  hindsight_.note(number_of(poses_.size() - 1), rig, features, tracked);
 }
 
 void AnchoredTrajectory::anchor_last_to(KeyframeId keyframe) {
   poses_.back().keyframe = keyframe;
   poses_.back().camera_from_keyframe = Pose{};
-  hindsight_.forget_from(poses_.size() - 1);
+  hindsight_.forget_from(number_of(poses_.size() - 1));
 }
 
 void AnchoredTrajectory::drop_doubtful() {
   poses_.resize(believed_end_);
-  hindsight_.forget_from(believed_end_);
+  hindsight_.forget_from(number_of(believed_end_));
 }
 
 void AnchoredTrajectory::bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map) {
@@ -57,6 +61,33 @@ void AnchoredTrajectory::bend(std::size_t first, std::size_t second, const Pose&
     const Pose bent = camera_from_first * inverse(interpolate(Pose{}, correction, share)) * first_from_world;
     poses_[i].camera_from_keyframe = bent * inverse(byre::camera_from_world(map, poses_[i].keyframe));
   }
+}
+
+// Index of the first pose that no limit may leave out.
+std::size_t AnchoredTrajectory::recent_begin() const {
+  const std::size_t recent = options_.max_poses / 2;
+  return options_.max_poses == 0 || poses_.size() < recent ? 0 : poses_.size() - recent;
+}
+
+std::size_t AnchoredTrajectory::thin_out(std::size_t end) {
+  if (options_.max_poses == 0 || poses_.size() <= options_.max_poses) return 0;
+  end = std::min({end, believed_end_, recent_begin()});
+  if (const auto first = hindsight_.first()) end = std::min(end, *first - thinned_out_);
+  const std::size_t most = std::max<std::size_t>(options_.max_poses / 4, 1);
+  if (end <= most) return 0;
+  const auto begin = poses_.begin(), middle = begin + static_cast<std::ptrdiff_t>(end);
+  const auto thin = [&](auto until) {
+    return std::unique(begin, until, [this](const AnchoredPose& kept, const AnchoredPose& next) {
+      return next.time - kept.time < spacing_;
+    });
+  };
+  auto kept = thin(middle);
+  for (; kept - begin > static_cast<std::ptrdiff_t>(most); kept = thin(kept)) spacing_ *= 2;
+  const auto removed = static_cast<std::size_t>(middle - kept);
+  poses_.erase(kept, middle);
+  believed_end_ -= removed;
+  thinned_out_ += removed;
+  return removed;
 }
 
 void AnchoredTrajectory::follow(const LengthChanges& changes) {
@@ -79,7 +110,11 @@ void AnchoredTrajectory::turn_camera(const Pose& after_from_before) {
 }
 
 void AnchoredTrajectory::settle_overdue(const MapView& map, const TrackOptions& tracking) {
-  if (const auto overdue = hindsight_.take_overdue()) settle(*overdue, map, tracking);
+  const auto first = hindsight_.first();
+  const bool is_old = first && *first < number_of(recent_begin());
+  if (const auto overdue = is_old ? hindsight_.take_oldest() : hindsight_.take_overdue()) {
+    settle(*overdue, map, tracking);
+  }
 }
 
 void AnchoredTrajectory::settle_all(const MapView& map, const TrackOptions& tracking) {
@@ -88,7 +123,7 @@ void AnchoredTrajectory::settle_all(const MapView& map, const TrackOptions& trac
 
 // Mapping has settled by now where the points lie that the frame was tracked on.
 void AnchoredTrajectory::settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking) {
-  AnchoredPose& anchored = poses_[seen.number];
+  AnchoredPose& anchored = poses_[seen.number - thinned_out_];
   const Pose keyframe_from_world = camera_from_world(map, anchored.keyframe);
   const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);

@@ -35,15 +35,21 @@ struct AnchoredPose {
 
 Pose camera_from_world(const MapView& map, const AnchoredPose& pose);
 
+struct TrajectoryOptions {
+  std::size_t max_poses = 0;  // most poses that are kept; 0: all. Newer ones all, older ones evenly thinned out
+};
+
 // One pose for each frame that had one, in order of time. The last of them may not be believed yet.
 class AnchoredTrajectory {
  public:
-  explicit AnchoredTrajectory(const HindsightOptions& hindsight) : hindsight_(hindsight) {}
+  explicit AnchoredTrajectory(const HindsightOptions& hindsight, const TrajectoryOptions& options = {})
+      : options_(options), hindsight_(hindsight) {}
 
   bool empty() const { return poses_.empty(); }
   std::size_t size() const { return poses_.size(); }
   const AnchoredPose& back() const { return poses_.back(); }
   const AnchoredPose& operator[](std::size_t number) const { return poses_[number]; }
+  const AnchoredPose* find(Timestamp time) const;  // null for a frame that had no pose, or whose pose was left out
   // The camera at a frame that had a pose then; empty for any other.
   std::optional<Pose> camera_at(Timestamp time, const MapView& map) const;
   // The camera's velocity from the last pose to one at a later time, see MotionModel; zero where no time went by.
@@ -62,6 +68,10 @@ class AnchoredTrajectory {
   // led to: each takes its share, by time, of what the way was told wrongly. told: first_from_second, of the camera.
   void bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map);
 
+  // Where there are more poses than options say, leaves out some of those before the last half of that number, but none
+  // from index end on. Returns how many: indices of all later poses become less by that.
+  std::size_t thin_out(std::size_t end);
+
   // What was measured relative to keyframes, in lengths that have changed since.
   void follow(const LengthChanges& changes);
   // The cameras of a rig were turned, and those of its keyframes with them.
@@ -78,10 +88,15 @@ class AnchoredTrajectory {
 
  private:
   void settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking);
+  std::size_t number_of(std::size_t index) const { return index + thinned_out_; }
+  std::size_t recent_begin() const;
 
+  TrajectoryOptions options_;  // constant after construction
   std::vector<AnchoredPose> poses_;
-  std::size_t believed_end_ = 0;  // poses before are believed
-  Hindsight hindsight_;           // numbers are indices into the poses
+  std::size_t believed_end_ = 0;                        // poses before are believed
+  Timestamp spacing_ = std::chrono::milliseconds(100);  // least time between poses that were thinned out
+  std::size_t thinned_out_ = 0;                         // poses left out so far
+  Hindsight hindsight_;                                 // numbers are indices into the poses, had none been left out
 };
 
 }  // namespace byre

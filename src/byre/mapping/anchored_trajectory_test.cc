@@ -108,6 +108,40 @@ TEST_F(AnchoredFrames, TellTheVelocityFromTheLastOfThem) {
   EXPECT_TRUE(trajectory_.velocity_to(trajectory_.back().time, camera_from_map, map_).isZero());
 }
 
+TEST_F(AnchoredFrames, AreThinnedOutEvenlyWhereThereAreTooManyAndNeverTheNewest) {
+  const TrajectoryOptions options{.max_poses = 40};
+  AnchoredTrajectory trajectory({}, options);
+  const Timestamp step = std::chrono::milliseconds(50);
+  std::size_t left_out = 0;
+  for (int i = 0; i < 1000; ++i) {
+    trajectory.add({i * step, keyframes_[0], kAhead, 0});
+    trajectory.believe_all();
+    left_out += trajectory.thin_out(trajectory.size());
+    ASSERT_EQ(trajectory.size() + left_out, static_cast<std::size_t>(i + 1));
+    ASSERT_LE(trajectory.size(), options.max_poses);
+  }
+  EXPECT_EQ(trajectory[0].time, Timestamp{});
+  const std::size_t recent = trajectory.size() - options.max_poses / 2;
+  const auto gap = [&](std::size_t i) { return trajectory[i].time - trajectory[i - 1].time; };
+  for (std::size_t i = recent + 1; i < trajectory.size(); ++i) EXPECT_EQ(gap(i), step) << i;
+  EXPECT_GE(gap(1), 20 * step);
+  for (std::size_t i = 2; i < recent && gap(i) > step; ++i) {
+    EXPECT_LE(gap(i), 2 * gap(1)) << i;
+    EXPECT_GE(2 * gap(i), gap(1)) << i;
+  }
+}
+
+TEST_F(AnchoredFrames, StayWhereSomebodyHoldsTheirIndexOrTheyAreNotBelieved) {
+  AnchoredTrajectory trajectory({}, {.max_poses = 40});
+  for (int i = 0; i < 100; ++i) trajectory.add({std::chrono::milliseconds(50 * i), keyframes_[0], kAhead, 0});
+  EXPECT_EQ(trajectory.thin_out(trajectory.size()), 0u);
+  trajectory.believe_all();
+  const std::size_t left_out = trajectory.thin_out(30);
+  EXPECT_GE(left_out, 20u);
+  EXPECT_EQ(trajectory[30 - left_out].time, std::chrono::milliseconds(50 * 30));
+  EXPECT_EQ(trajectory.thin_out(30 - left_out), 0u) << "all is done that may be";
+}
+
 TEST_F(AnchoredFrames, LieWhereTheKeyframeDoesThatTheyBecome) {
   trajectory_.anchor_last_to(keyframes_[0]);
   EXPECT_EQ(trajectory_.back().keyframe, keyframes_[0]);

@@ -15,8 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A node runs for weeks. The way of a quarter of an hour at 20 frames a second, and what came before it every so often.
+constexpr const char* kMostPoses = "20000";
+
 SlamOptions slam_options(const NodeConfig& config) {
   SlamOptions options;
+  options.settings.emplace_back("trajectory.max_poses", kMostPoses);
   options.workers = config.workers;
   options.vocabulary = config.vocabulary;
   options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);

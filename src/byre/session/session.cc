@@ -14,7 +14,7 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       mapper_(rig, mapper_options(options), std::move(lanes.local),
               offline ? make_inline_executor() : std::move(lanes.global), {std::move(vocabulary), offline}),
       tracker_(options),
-      whereabouts_(options.mission.registration, options.hindsight, offline != nullptr),
+      whereabouts_(options.mission.registration, options.hindsight, options.trajectory, offline != nullptr),
       input_watch_(options.image),
       shutter_(rig.readout_time) {
   if (offline) {

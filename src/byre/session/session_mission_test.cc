@@ -210,6 +210,26 @@ TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
   EXPECT_GT(moved, kLapFrames / 4);
 }
 
+TEST(Mission, KeepsAsManyPosesAsItIsToldAndReportsTheSame) {
+  const SimulatedMission mission = circling(2.0, 2);
+  SessionOptions options;
+  options.trajectory.max_poses = 60;
+  const auto map = mapped(0.4);
+  Session session = session_on(map, options), other = session_on(map);
+  const auto reports = reports_of(session, mission.frames), expected = reports_of(other, mission.frames);
+  for (std::size_t i = 0; i < reports.size(); ++i) EXPECT_EQ(reports[i].map_from_body, expected[i].map_from_body) << i;
+  session.finish();
+  session.finish_mission({});
+  const Trajectory kept = session.final_trajectory();
+  EXPECT_LE(kept.size(), options.trajectory.max_poses);
+  EXPECT_EQ(kept.back().time, mission.truth.back().time);
+  for (const StampedPose& pose : kept) {
+    const auto truth = std::ranges::find(mission.truth, pose.time, &StampedPose::time);
+    ASSERT_NE(truth, mission.truth.end());
+    EXPECT_THAT(pose.world_from_body, PoseNear(truth->world_from_body, 0.05, 0.5 * kDegree));
+  }
+}
+
 TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session on_map = session_on(mapped(1.0));

@@ -91,6 +91,28 @@ TEST(ToldMotion, KeepsBridgedPosesInTheTrajectory) {
   EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
 }
 
+TEST(ToldMotion, MayBridgeWhileTheTrajectoryIsThinnedOut) {
+  const SimulatedMission mission = lap();
+  SessionOptions options;
+  options.trajectory.max_poses = 16;
+  Session session(mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    const bool is_dark = i >= kDark && i < kLight;
+    session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+  }
+  session.finish();
+  const Trajectory kept = session.final_trajectory();
+  EXPECT_LE(kept.size(), options.trajectory.max_poses);
+  for (const StampedPose& pose : kept) {
+    const auto truth = std::ranges::find(mission.truth, pose.time, &StampedPose::time);
+    ASSERT_NE(truth, mission.truth.end());
+    const Pose expected = inverse(mission.truth.front().world_from_body) * truth->world_from_body;
+    EXPECT_LT((pose.world_from_body.translation - expected.translation).norm(), 0.05);
+  }
+}
+
 TEST(ToldMotion, EndsABridgeWhereItIsNotTold) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());

@@ -2,6 +2,7 @@
 
 #include "byre/image_condition.h"
 #include "byre/localisation/mission.h"
+#include "byre/mapping/anchored_trajectory.h"
 #include "byre/mapping/mapper_options.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hindsight.h"
@@ -33,6 +34,7 @@ struct SessionOptions {
   ImageConditionOptions image;
   StateOptions state;
   HindsightOptions hindsight;
+  TrajectoryOptions trajectory;
 };
 
 // What the session's mapper goes by, its offline weight that of tracking.

@@ -48,6 +48,10 @@ void Hindsight::forget_from(std::size_t number) {
   while (!frames_.empty() && frames_.back().number >= number) frames_.pop_back();
 }
 
+std::optional<std::size_t> Hindsight::first() const {
+  return frames_.empty() ? std::nullopt : std::optional(frames_.front().number);
+}
+
 std::optional<RememberedFrame> Hindsight::take_overdue() {
   return frames_.size() > options_.frames ? take_oldest() : std::nullopt;
 }

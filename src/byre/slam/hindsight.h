@@ -43,6 +43,7 @@ class Hindsight {
   // Frames from this number on are not to be looked at again.
   void forget_from(std::size_t number);
 
+  std::optional<std::size_t> first() const;       // number of the oldest frame
   std::optional<RememberedFrame> take_overdue();  // the oldest, where more wait than options say
   std::optional<RememberedFrame> take_oldest();
 

@@ -99,6 +99,9 @@ void add_run(Table& table) {
   table.push_back(flag(
       "map_online", [](auto& o) -> auto& { return o.session.map_online; },
       "mapping of what is new; without it a mission tracks the offline map alone"));
+  table.push_back(number(
+      "trajectory.max_poses", "poses", 0, 1e8, [](auto& o) -> auto& { return o.session.trajectory.max_poses; },
+      "most poses of the trajectory that are kept: the newer half, older ones evenly thinned out; 0: all"));
 }
 
 void add_features(Table& table) {
