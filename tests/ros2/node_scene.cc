@@ -4,7 +4,6 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <fcntl.h>
@@ -17,10 +16,13 @@ namespace byre::testing_ros2 {
 namespace fs = std::filesystem;
 using eprosima::fastdds::dds::TypeSupport;
 
-NodeProcess::NodeProcess(const fs::path& folder, const std::string& config, int domain) : folder_(folder) {
+NodeProcess::NodeProcess(const fs::path& folder, const std::string& config, int domain,
+                         std::vector<std::string> variables)
+    : folder_(folder) {
   std::ofstream(folder / "robot.yaml") << config;
   const std::string path = (folder / "robot.yaml").string();
-  std::vector<std::string> variables = {"ROS_LOCALHOST_ONLY=1", "ROS_DOMAIN_ID=" + std::to_string(domain)};
+  variables.emplace_back("ROS_LOCALHOST_ONLY=1");
+  variables.push_back("ROS_DOMAIN_ID=" + std::to_string(domain));
   std::vector<char*> environment;
   for (std::string& variable : variables) environment.push_back(variable.data());
   for (char** other = environ; *other != nullptr; ++other) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -18,7 +19,9 @@ namespace byre::testing_ros2 {
 // `byre node` as a service manager starts it, on the loopback interface; killed with this if it is still there.
 class NodeProcess {
  public:
-  NodeProcess(const std::filesystem::path& folder, const std::string& config, int domain);
+  // variables: of its environment, as NAME=VALUE, beside those of this program.
+  NodeProcess(const std::filesystem::path& folder, const std::string& config, int domain,
+              std::vector<std::string> variables = {});
   ~NodeProcess();
   NodeProcess(const NodeProcess&) = delete;
   NodeProcess& operator=(const NodeProcess&) = delete;
