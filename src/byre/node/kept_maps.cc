@@ -25,7 +25,11 @@ void keep_as_previous(const fs::path& map) {
   fs::create_hard_link(map, unfinished, error);
   if (error) fs::copy_file(map, unfinished, error);  // a file system without links
   if (!error) fs::rename(unfinished, previous, error);
-  if (!error) return;
+  if (!error) {
+    // Where both are one file already, as after an interrupted save, nothing is renamed.
+    fs::remove(unfinished, error);
+    return;
+  }
   throw InputError(previous.string(), "cannot be written (" + error.message() + ")",
                    "make space, or save into a folder that may be written to");
 }

@@ -39,6 +39,13 @@ TEST_F(KeptMaps, AreTheOneThatIsSavedAndTheOneBefore) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
+TEST_F(KeptMaps, LeaveNothingBesideWhereASaveWasInterruptedBeforeTheMapWasReplaced) {
+  std::ofstream(map_) << "monday";
+  for (int save = 0; save < 2; ++save) keep_as_previous(map_);
+  EXPECT_EQ(content(previous_map(map_)), "monday");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
 TEST_F(KeptMaps, OutliveWhatAnInterruptedSaveLeft) {
   std::ofstream(map_) << "monday";
   std::ofstream(folder_ / "barn.previous.byre.unfinished") << "half";
