@@ -25,8 +25,7 @@ Qos make_qos(const TopicQos& wanted) {
   return qos;
 }
 
-void tell_user_data(dds_qos_t* qos, const MessageType& type, const TopicQos& wanted, RosDistribution distribution) {
-  std::string told = wanted.note;
+void tell_user_data(dds_qos_t* qos, const MessageType& type, std::string told, RosDistribution distribution) {
   if (distribution != RosDistribution::humble && !type.hash.empty()) told += "typehash=" + type.hash + ";";
   if (!told.empty()) dds_qset_userdata(qos, told.data(), told.size());
 }
@@ -132,10 +131,11 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
   wake_ = DdsEntity(dds_create_waitset(participant_.handle()), doing);
 }
 
-Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos) {
+Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                               const std::string& note) {
   TypedTopic made = make_topic(participant_.handle(), topic, type);
   const Qos wanted = make_qos(qos);
-  tell_user_data(wanted.get(), type, qos, distribution_);
+  tell_user_data(wanted.get(), type, note, distribution_);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
   if (qos.is_latched) {
     dds_qset_durability_service(wanted.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
@@ -149,10 +149,11 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
   return publisher;
 }
 
-Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos) {
+Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                                  const std::string& note) {
   TypedTopic made = make_topic(participant_.handle(), topic, type);
   const Qos wanted = make_qos(qos);
-  tell_user_data(wanted.get(), type, qos, distribution_);
+  tell_user_data(wanted.get(), type, note, distribution_);
   Subscriber subscriber;
   subscriber.topic_ = std::move(made.topic);
   subscriber.reader_ =

@@ -24,7 +24,6 @@ struct TopicQos {
   bool is_reliable = true;
   bool is_latched = false;  // whether the last messages are kept for those who come later ("transient local")
   int depth = 10;           // messages kept for a reader that is slow
-  std::string note{};       // what other programs are told of the reader or writer beside its type, as "key=value;"
 };
 
 // A 16-byte id of DDS.
@@ -102,10 +101,13 @@ class Participant {
   // own_settings: CYCLONEDDS_URI. One at a time in a program may have a domain of one number.
   Participant(const RosNetwork& network, const std::string& own_settings);
 
-  // topic: begins with a slash, or is a name of DDS as it is.
-  Publisher publish(const std::string& topic, const MessageType& type, const TopicQos& qos);
+  // topic: begins with a slash, or is a name of DDS as it is. note: what other programs are told of the writer or
+  // reader beside its type, as "key=value;".
+  Publisher publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                    const std::string& note = {});
   // Its messages wake wait().
-  Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos);
+  Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                       const std::string& note = {});
 
   // Until a subscriber has messages, at longest for a time.
   void wait(std::chrono::nanoseconds longest);

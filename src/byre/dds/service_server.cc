@@ -25,9 +25,9 @@ std::string service_note(EntityId id, const std::string& service) {
 
 ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
                              const std::string& type) {
-  const TopicQos qos{.note = service_note(participant.id(), service)};
-  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""}, qos);
-  replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, qos);
+  const std::string note = service_note(participant.id(), service);
+  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""}, {}, note);
+  replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, {}, note);
   graph.add(requests_);
   graph.add(replies_);
 }
