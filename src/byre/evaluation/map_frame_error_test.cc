@@ -63,9 +63,11 @@ TEST(ErrorsBesideMap, LeaveOutWhatTheMapErrsByItself) {
   for (int i = 0; i <= 20; ++i) {
     const double x = i;
     path.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), {x, 0.1 * x * x, 0.0}}});
-    map_path.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), 1.1 * path.back().world_from_body.translation}});
+    map_path.push_back(
+        {from_seconds(i), {Eigen::Quaterniond::Identity(), 1.1 * path.back().world_from_body.translation}});
     const Eigen::Vector3d aside = Eigen::Vector3d(0.0, 0.0, 0.03);
-    mission.push_back({from_seconds(i), {Eigen::Quaterniond::Identity(), map_path.back().world_from_body.translation + aside}});
+    mission.push_back(
+        {from_seconds(i), {Eigen::Quaterniond::Identity(), map_path.back().world_from_body.translation + aside}});
   }
   const MapAlignment alignment = align_to_truth(map_path, Scale::fixed, path);
   EXPECT_GT(position_statistics(errors_in_map(mission, path, alignment)).max, 0.5);

@@ -134,7 +134,7 @@ class Session {
   Shutter shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
-  bool is_error_told_ = false;   // a navigation error
+  bool is_error_told_ = false;  // a navigation error
   bool is_mapping_paused_ = false;
   std::vector<SeenPoint> seen_;  // in the last frame
 };

@@ -85,7 +85,7 @@ class Engine {
 
   void look_near(const PoseHint& hint) { session_.look_near(hint); }  // see Slam
   void pause_mapping(bool is_paused) { session_.pause_mapping(is_paused); }
-  void hurry() { session_.hurry(); }                                  // see Session
+  void hurry() { session_.hurry(); }  // see Session
   void finish() { session_.finish(); }
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
   Finishing finish_map(const FinishHooks& hooks);
