@@ -56,17 +56,14 @@ class Answers : private eprosima::fastdds::dds::DataReaderListener {
   eprosima::fastdds::dds::DataReader* reader_;
 };
 
-double processor_seconds(const rusage& usage) {
+// Processor time of this process, or of those that it began and that have ended (getrusage(2)).
+double processor_seconds(int of_whom) {
+  rusage usage{};
+  getrusage(of_whom, &usage);
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double processor_seconds(int of_whom) {
-  rusage usage{};
-  getrusage(of_whom, &usage);
-  return processor_seconds(usage);
 }
 
 void tell(const char* what, std::vector<double> values) {
@@ -85,11 +82,11 @@ struct Playing {
   double rate = 20.0;
 };
 
-// Seconds between frames as in real time. The first ones wait until the node has its map and hears the cameras.
+// What the node made of the frames, sent as in real time once it hears the cameras.
 struct Played {
   std::vector<double> latency_ms;
   std::map<Timestamp, Answers::Answer> answers;
-  double node_seconds = 0.0;
+  double node_seconds = 0.0;  // processor time, with opening the map
 };
 
 Played play(const Playing& playing, const std::string& workers) {

@@ -39,6 +39,7 @@ void ServiceServer::reply(std::vector<std::byte> message, std::chrono::nanosecon
 }
 
 void ServiceServer::send_waiting(std::chrono::nanoseconds now) {
+  if (waiting_.empty()) return;
   const bool all_hear = replies_.subscribers() >= requests_.publishers();
   std::erase_if(waiting_, [&](Waiting& waiting) {
     if (!all_hear && now < waiting.until) return false;

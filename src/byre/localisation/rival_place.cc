@@ -25,7 +25,11 @@ bool RivalPlace::note(const FoundPlace& found, const Pose& camera_from_tracked, 
   const Eigen::Vector3d camera = inverse(camera_from_tracked).translation;
   if (rival_) {
     const auto confirmed = confirm(rival_->place, offline_from_tracked, camera, found.median_depth, options);
-    confirmed ? void(rival_->place = *confirmed) : forget();
+    if (confirmed) {
+      rival_->place = *confirmed;
+    } else {
+      forget();
+    }
   }
   if (!rival_) rival_ = Rival{{offline_from_tracked}, camera};
   return rival_->place.confirmations >= kFinds && (camera - rival_->begun_at).norm() >= kWay;

@@ -28,13 +28,8 @@ Frame dark(const Frame& frame, const Rig& rig) {
   return result;
 }
 
-// Frames of a robot that is blind for an eighth of a lap, and recognises no place.
-std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told, bool has_vocabulary) {
-  SessionOptions options;
-  options.min_kept_share = 0.0;  // where the prediction leads astray, nothing else is tried
-  options.relocalise.min_inliers = 1000000;
-  Session session(mission.rig, options, Lanes(make_inline_executor()),
-                  has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
+// What a session makes of the frames of a robot that is blind for an eighth of a lap.
+std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, bool is_told) {
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     std::optional<BodyMotion> motion;
@@ -43,6 +38,16 @@ std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_tol
     reports.push_back(session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion));
   }
   return reports;
+}
+
+// Such a robot recognises no place.
+std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told, bool has_vocabulary) {
+  SessionOptions options;
+  options.min_kept_share = 0.0;  // where the prediction leads astray, nothing else is tried
+  options.relocalise.min_inliers = 1000000;
+  Session session(mission.rig, options, Lanes(make_inline_executor()),
+                  has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
+  return fly(session, mission, is_told);
 }
 
 double error_of(const FrameReport& report, const SimulatedMission& mission, std::size_t frame) {
@@ -81,12 +86,7 @@ TEST(ToldMotion, GoesOnInTheDarkWithACovarianceThatGrows) {
 TEST(ToldMotion, KeepsBridgedPosesInTheTrajectory) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
-  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
-    std::optional<BodyMotion> motion;
-    if (i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
-    const bool is_dark = i >= kDark && i < kLight;
-    session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
-  }
+  fly(session, mission, true);
   session.finish();
   EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
 }
@@ -96,12 +96,7 @@ TEST(ToldMotion, MayBridgeWhileTheTrajectoryIsThinnedOut) {
   SessionOptions options;
   options.trajectory.max_poses = 16;
   Session session(mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
-  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
-    std::optional<BodyMotion> motion;
-    if (i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
-    const bool is_dark = i >= kDark && i < kLight;
-    session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
-  }
+  fly(session, mission, true);
   session.finish();
   const Trajectory kept = session.final_trajectory();
   EXPECT_LE(kept.size(), options.trajectory.max_poses);
