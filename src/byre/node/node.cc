@@ -22,6 +22,9 @@ Timestamp steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
+// Reading and writing a site's map on a slow disk: nothing is tracked meanwhile.
+constexpr std::chrono::minutes kLongestWithFiles{5};
+
 // Numbers change all the time.
 std::string without_digits(std::string text) {
   std::erase_if(text, [](char letter) { return letter >= '0' && letter <= '9'; });
@@ -93,6 +96,7 @@ void Node::take_images(Timestamp now) {
 }
 
 void Node::start() {
+  manager_.busy(kLongestWithFiles);
   const std::string said = runner_.start(*calibration_);
   if (!said.empty()) log_(LogLevel::warning, said);
 }
@@ -113,6 +117,7 @@ void Node::take_calibration(Timestamp now) {
 
 Outcome Node::answer(const std::string& asked, const std::function<std::string()>& done) {
   Outcome outcome;
+  manager_.busy(kLongestWithFiles);
   try {
     outcome = {true, done()};
   } catch (const InputError& error) {

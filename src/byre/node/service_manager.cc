@@ -1,6 +1,7 @@
 #include "byre/node/service_manager.h"
 
 #include <cstdint>
+#include <utility>
 
 #include <systemd/sd-daemon.h>
 
@@ -30,9 +31,20 @@ void ServiceManager::status(const std::string& text) {
 
 void ServiceManager::alive() {
   const auto now = std::chrono::steady_clock::now();
-  if (!interval_ || (last_alive_ && now - *last_alive_ < *interval_)) return;
+  if (!interval_ || (!is_busy_ && last_alive_ && now - *last_alive_ < *interval_)) return;
   last_alive_ = now;
+  if (std::exchange(is_busy_, false)) set_watchdog(2 * *interval_);
   sd_notify(0, "WATCHDOG=1");
+}
+
+void ServiceManager::busy(std::chrono::seconds longest) {
+  if (!interval_ || longest <= 2 * *interval_) return;
+  is_busy_ = true;
+  set_watchdog(longest);  // from now on
+}
+
+void ServiceManager::set_watchdog(std::chrono::microseconds time) {
+  sd_notify(0, ("WATCHDOG_USEC=" + std::to_string(time.count())).c_str());
 }
 
 }  // namespace byre

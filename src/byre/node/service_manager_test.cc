@@ -59,11 +59,35 @@ TEST(ServiceManager, HearsHowTheProgramIs) {
   EXPECT_EQ(socket.next(), "STOPPING=1");
 }
 
+TEST(ServiceManager, WaitsForWhatTakesLong) {
+  const NotifySocket socket;
+  setenv("WATCHDOG_USEC", "10000000", 1);
+  ServiceManager manager;
+  manager.alive();
+  EXPECT_EQ(socket.next(), "WATCHDOG=1");
+  manager.busy(std::chrono::seconds(300));
+  EXPECT_EQ(socket.next(), "WATCHDOG_USEC=300000000");
+  manager.alive();
+  EXPECT_EQ(socket.next(), "WATCHDOG_USEC=10000000") << "as it was before";
+  EXPECT_EQ(socket.next(), "WATCHDOG=1");
+  manager.alive();
+  EXPECT_EQ(socket.next(), "") << "half of the time is not over";
+}
+
+TEST(ServiceManager, NeedNotWaitForWhatIsShort) {
+  const NotifySocket socket;
+  setenv("WATCHDOG_USEC", "60000000", 1);
+  ServiceManager manager;
+  manager.busy(std::chrono::seconds(30));
+  EXPECT_EQ(socket.next(), "");
+}
+
 TEST(ServiceManager, IsNotNeeded) {
   unsetenv("NOTIFY_SOCKET");
   ServiceManager manager;
   EXPECT_NO_THROW(manager.ready());
   EXPECT_NO_THROW(manager.alive());
+  EXPECT_NO_THROW(manager.busy(std::chrono::seconds(300)));
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ class MotionFeed {
   std::size_t rate_ = 0;
 };
 
+// Jobs that finished since the last frame began, without those that were noted already.
+void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
+  const std::vector<double>& seconds = engine.log().job_seconds;
+  run.job_seconds.insert(run.job_seconds.end(), seconds.begin() + static_cast<std::ptrdiff_t>(noted), seconds.end());
+}
+
 // What was found out of wheels and a gyroscope.
 ToldMotion told_motion(const MotionPrior& prior) {
   return {!prior.is_empty(), prior.wheels(), prior.gyroscope(), prior.time_offset(), prior.slips(), 0};
@@ -61,7 +67,6 @@ void take_over_result(const Engine& engine, MapRun& run) {
   run.map = engine.kept_map();
   run.calibration = engine.calibration();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
-  run.job_seconds = engine.log().job_seconds;
   run.told = told_motion(engine.prior());
   run.told.led_afterwards = static_cast<int>(run.final.size() - seen.size());
   for (const MappedFrame& frame : run.frames) {
@@ -94,11 +99,13 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     run.warnings.insert(run.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
     feed.feed(engine, decoded.time);
     run.frames.push_back(mapped(engine, decoded));
+    note_jobs(engine, run);
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
     if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
     is_begun = is_begun || has_pose(run.frames.back());
     if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.session().self_calibration());
   }
+  const std::size_t noted_jobs = engine.log().job_seconds.size();
   if (hooks.should_stop()) engine.hurry();
   engine.finish();
   const FinishHooks finish_hooks = frugal(hooks);
@@ -109,6 +116,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
       run.finishing = engine.finish_map(finish_hooks);
     }
   }
+  note_jobs(engine, run, noted_jobs);
   take_over_result(engine, run);
   run.wall_seconds = watch.seconds();
   return run;

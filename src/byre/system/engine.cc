@@ -70,6 +70,7 @@ void Engine::refine_calibration(const Calibration& given, const EngineOptions& o
 }
 
 FrameReport Engine::process(const Frame& frame, const std::optional<BodyMotion>& motion) {
+  log_.job_seconds.clear();
   const bool is_told = !motion && last_frame_ && !prior_.is_empty();
   FrameReport report = session_.process(frame, is_told ? prior_.between(*last_frame_, frame.time) : motion);
   last_frame_ = frame.time;

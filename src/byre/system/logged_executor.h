@@ -8,7 +8,7 @@
 namespace byre {
 
 struct JobLog {
-  std::vector<double> job_seconds;  // wall time of each finished job, in order
+  std::vector<double> job_seconds;  // wall time of each job that finished since the last frame began, in order
   double submit_seconds = 0.0;      // calling thread's time: of whole jobs where they run inline, else next to none
 };
 
