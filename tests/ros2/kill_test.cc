@@ -1,0 +1,252 @@
+// byre node leaves its maps whole, and finds itself again, wherever it is killed: BYRE_NODE_KILLS, docs/ros2.md.
+
+#include "byre/input/binary_file.h"
+#include "byre/map/map_file.h"
+#include "staying_up_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre::testing_ros2 {
+namespace {
+
+// When a node is killed.
+enum class Moment : std::uint8_t { writing, saving, loading, tracking };
+
+constexpr std::array kMoments = {Moment::writing, Moment::saving, Moment::loading, Moment::tracking};
+
+const char* name_of(Moment moment) {
+  switch (moment) {
+    case Moment::writing:
+      return "while the file is written";
+    case Moment::saving:
+      return "after the command save";
+    case Moment::loading:
+      return "while it begins";
+    case Moment::tracking:
+      return "while it tracks";
+  }
+  return "";
+}
+
+struct RobotTask {
+  std::string name;
+  fs::path map;
+  fs::path saved;  // the map itself where that is gone on with
+
+  bool is_extended() const { return map == saved; }
+  std::string config() const {
+    return testing_ros2::config("  task: " + name + "\n  map: " + map.string() + "\n  save: " + saved.string() + "\n");
+  }
+};
+
+// A robot whose node is killed again and again, and started with the same settings.
+class KilledRobot {
+ public:
+  KilledRobot(fs::path folder, int domain, RobotTask task, std::uint64_t seed)
+      : folder_(std::move(folder)), domain_(domain), task_(std::move(task)), random_(seed) {
+    fs::create_directories(folder_);
+    map_bytes_ = read_file(task_.map);
+  }
+
+  // The node begins, finds itself, saves, and ends when it is asked to.
+  void live() {
+    const int before = sessions();
+    begin();
+    ASSERT_NO_FATAL_FAILURE(find_itself());
+    ASSERT_NO_FATAL_FAILURE(drive());
+    const auto asked = Clock::now();
+    others_->command("save");
+    ASSERT_TRUE(is_saved(20s)) << node_->said();
+    seconds_to_save_ = seconds_since(asked);
+    EXPECT_EQ(node_->stop(), 0) << node_->said();
+    look_at_files(before, true);
+    EXPECT_FALSE(fs::exists(unfinished())) << "what was left of another save is gone with the next one";
+    std::printf("%s, not killed: ready after %.2f s, found after %d frames, saved in %.3f s, %d sessions\n",
+                task_.name.c_str(), seconds_to_begin_, frames_to_find_, seconds_to_save_, sessions());
+  }
+
+  // The node begins, finds itself, is killed, and what it leaves is looked at.
+  void live_and_die(Moment moment) {
+    const int before = sessions();
+    const auto mark = mark_of_unfinished();
+    begin();
+    if (moment == Moment::loading) {
+      std::this_thread::sleep_for(up_to(1.2 * seconds_to_begin_));
+    } else {
+      ASSERT_NO_FATAL_FAILURE(find_itself());
+      ASSERT_NO_FATAL_FAILURE(drive());
+      wait_for(moment);
+    }
+    EXPECT_TRUE(node_->is_running()) << "it has ended by itself\n" << node_->said();
+    node_.reset();
+    const bool was_saved = is_saved(0s);
+    look_at_files(before, was_saved);
+    const bool is_unfinished = mark_of_unfinished() && mark_of_unfinished() != mark;
+    unfinished_ += is_unfinished ? 1 : 0;
+    saved_ += was_saved ? 1 : 0;
+    std::printf("%s, killed %s: %s%s%s, %d sessions, %ju bytes\n", task_.name.c_str(), name_of(moment),
+                moment == Moment::loading ? "" : formatted_find().c_str(), was_saved ? "saved" : "not saved",
+                is_unfinished ? ", an unfinished file beside" : "", sessions(),
+                fs::exists(task_.saved) ? static_cast<std::uintmax_t>(fs::file_size(task_.saved)) : 0);
+    std::fflush(stdout);
+  }
+
+  const std::string& name() const { return task_.name; }
+  int unfinished_files() const { return unfinished_; }  // kills that left one
+  int saves() const { return saved_; }                  // saves that were answered before the kill
+  int most_frames_to_find() const { return most_frames_to_find_; }
+
+ private:
+  static constexpr int kFramesToFind = 60;
+
+  fs::path unfinished() const { return task_.saved.string() + ".unfinished"; }
+  Clock::duration up_to(double seconds) {
+    std::uniform_real_distribution<double> draw(0.0, seconds);
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(draw(random_)));
+  }
+  int draw(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  // Recordings that the saved map is made of.
+  int sessions() const {
+    return fs::exists(task_.saved) ? static_cast<int>(load_map(task_.saved).recordings.size()) : 0;
+  }
+  std::string formatted_find() const { return "found after " + std::to_string(frames_to_find_) + " frames, "; }
+
+  void begin() {
+    others_.emplace(domain_);
+    begin_ = Clock::now();
+    node_.emplace(folder_, task_.config(), domain_);
+    visit_ = static_cast<std::size_t>(draw(0, static_cast<int>(Visits::shared().count()) - 1));
+  }
+
+  void find_itself() {
+    ASSERT_TRUE(others_->is_connected()) << node_->said();
+    seconds_to_begin_ = seconds_since(begin_);
+    constexpr int kKnown = 20;  // frames of a visit that the map at its smallest surely shows
+    for (int i = 0; i < kFramesToFind; ++i) {
+      at_ = i % (2 * kKnown) < kKnown ? i % kKnown : kKnown - 1 - i % kKnown;  // forth and back
+      const auto answer = others_->answer_to(frame(), next_time());
+      ASSERT_TRUE(answer) << node_->said();
+      if (!answer->has_pose) continue;
+      frames_to_find_ = i + 1;
+      most_frames_to_find_ = std::max(most_frames_to_find_, frames_to_find_);
+      return;
+    }
+    FAIL() << "it does not find itself in " << kFramesToFind << " frames\n" << node_->said();
+  }
+
+  // Onwards, to where half a map does not reach.
+  void drive() {
+    for (const int end = draw(40, std::ssize(Visits::shared()[visit_]) - 1); at_ < end;) {
+      ++at_;
+      ASSERT_TRUE(others_->answer_to(frame(), next_time())) << node_->said();
+    }
+  }
+
+  void wait_for(Moment moment) {
+    if (moment == Moment::tracking) {
+      others_->send(frame(), next_time());
+      std::this_thread::sleep_for(up_to(0.03));
+      return;
+    }
+    // What another save left is there already; it is shorter or older then.
+    const auto mark = mark_of_unfinished();
+    others_->command("save");
+    if (moment == Moment::saving) {
+      std::this_thread::sleep_for(up_to(1.5 * seconds_to_save_));
+      return;
+    }
+    const auto asked = Clock::now();
+    while (mark_of_unfinished() == mark && !others_->answer("save", 0s) && seconds_since(asked) < 20.0)
+      std::this_thread::yield();
+    std::this_thread::sleep_for(up_to(0.003));
+  }
+  std::optional<fs::file_time_type> mark_of_unfinished() const {
+    std::error_code absent;
+    const auto time = fs::last_write_time(unfinished(), absent);
+    return absent ? std::nullopt : std::optional(time);
+  }
+
+  bool is_saved(std::chrono::seconds patience) {
+    const auto answer = others_->answer("save", patience);
+    return answer && answer->at("done") == true;
+  }
+
+  const ImageFrame& frame() const { return Visits::shared()[visit_][static_cast<std::size_t>(at_)]; }
+  Timestamp next_time() { return time_ += kFrameTime; }
+
+  void look_at_files(int sessions_before, bool was_saved) const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(task_.saved.parent_path())) {
+      names.insert(entry.path().filename().string());
+    }
+    const fs::path previous = task_.saved.parent_path() / (task_.saved.stem().string() + ".previous.byre");
+    for (const fs::path& file : {task_.saved, unfinished(), previous}) names.erase(file.filename().string());
+    names.erase(previous.filename().string() + ".unfinished");
+    EXPECT_THAT(names, testing::IsEmpty()) << "nothing piles up";
+    const int most = task_.is_extended() ? sessions_before + 1 : 1;
+    EXPECT_THAT(sessions(), testing::AllOf(testing::Ge(was_saved ? most : sessions_before), testing::Le(most)));
+    if (!task_.is_extended()) {
+      EXPECT_EQ(read_file(task_.map), map_bytes_) << "a mission's map stays as it is";
+    }
+    for (const fs::path& file : {task_.saved, previous}) {
+      if (!fs::exists(file)) continue;
+      const std::string validate = std::string(BYRE_PROGRAM) + " validate " + file.string() + " > " +
+                                   (folder_ / "faults.txt").string() + " 2>&1";
+      EXPECT_EQ(std::system(validate.c_str()), 0) << validate;
+    }
+  }
+
+  // Constant after construction.
+  fs::path folder_;  // what the node is started with
+  int domain_;
+  RobotTask task_;
+  std::vector<std::byte> map_bytes_;
+
+  std::mt19937_64 random_;
+  std::optional<Others> others_;
+  std::optional<NodeProcess> node_;
+  Clock::time_point begin_;
+  std::size_t visit_ = 0;
+  int at_ = 0;  // index of the visit's last frame
+  Timestamp time_ = 1000s;
+  double seconds_to_begin_ = 1.0;
+  double seconds_to_save_ = 0.1;
+  int frames_to_find_ = 0;
+  int most_frames_to_find_ = 0;
+  int unfinished_ = 0;
+  int saved_ = 0;
+};
+
+TEST_F(ByreNodeStaysUp, WholeWhateverItIsKilledAt) {
+  const int kills = number_from_environment("BYRE_NODE_KILLS", 3);
+  const fs::path extended = folder_ / "extended" / "barn.byre", beside = folder_ / "beside" / "beside.byre";
+  for (const fs::path& file : {extended, beside}) fs::create_directories(file.parent_path());
+  fs::copy_file(Visits::shared().half_map(), extended);
+  std::array robots = {KilledRobot(folder_ / "extend", domain_, {"extend", extended, extended}, 1),
+                       KilledRobot(folder_ / "mission", domain_, {"mission", Visits::shared().half_map(), beside}, 2)};
+  for (KilledRobot& robot : robots) ASSERT_NO_FATAL_FAILURE(robot.live());
+  for (int i = 0; i < kills; ++i) {
+    const auto moment = static_cast<std::size_t>(i) % kMoments.size();
+    const auto robot = (static_cast<std::size_t>(i) + static_cast<std::size_t>(i) / kMoments.size()) % robots.size();
+    std::printf("%d: ", i + 1);
+    ASSERT_NO_FATAL_FAILURE(robots[robot].live_and_die(kMoments[moment])) << "kill " << i + 1;
+  }
+  for (KilledRobot& robot : robots) {
+    ASSERT_NO_FATAL_FAILURE(robot.live());
+    std::printf("%s: found after %d frames at most, %d saves before kills, %d kills in the midst of writing\n",
+                robot.name().c_str(), robot.most_frames_to_find(), robot.saves(), robot.unfinished_files());
+  }
+}
+
+}  // namespace
+}  // namespace byre::testing_ros2
