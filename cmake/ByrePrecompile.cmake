@@ -8,7 +8,7 @@ set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesy
 set(BYRE_PRECOMPILED_cold_room ${BYRE_PRECOMPILED_room})
 set(BYRE_PRECOMPILED_test ${BYRE_PRECOMPILED_room} <gmock/gmock.h> <gtest/gtest.h>)
 set(BYRE_PRECOMPILED_test_apart ${BYRE_PRECOMPILED_test})
-set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp>)
+set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp> <CLI/CLI.hpp>)
 set(BYRE_PRECOMPILED_command_test ${BYRE_PRECOMPILED_command} <gmock/gmock.h> <gtest/gtest.h>)
 
 # The first target of a kind precompiles, the others of that kind, which must be compiled with the same flags, use what

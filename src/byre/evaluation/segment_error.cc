@@ -1,11 +1,11 @@
 #include "byre/evaluation/segment_error.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -76,8 +76,7 @@ Eigen::Vector3d principal_spread(const std::vector<PosePair>& pairs) {
     covariance += offset * offset.transpose();
   }
   covariance /= static_cast<double>(pairs.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
+  return symmetric_eigenvalues(covariance).cwiseMax(0.0).cwiseSqrt().reverse();
 }
 
 }  // namespace byre

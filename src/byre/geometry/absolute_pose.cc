@@ -1,5 +1,6 @@
 #include "byre/geometry/absolute_pose.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/geometry/perspective_three_point.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <random>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -162,8 +162,8 @@ bool on_one_line(std::span<const PointSighting> sightings, const std::vector<boo
     if (chosen[i]) covariance += offset * offset.transpose();
   }
   constexpr double kThinnest = 1e-3;  // width over length
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return !(eigen.eigenvalues()[1] > kThinnest * kThinnest * eigen.eigenvalues()[2]);
+  const Eigen::Vector3d squared_widths = symmetric_eigenvalues(covariance);
+  return !(squared_widths[1] > kThinnest * kThinnest * squared_widths[2]);
 }
 
 }  // namespace

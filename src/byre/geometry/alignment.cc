@@ -1,8 +1,8 @@
 #include "byre/alignment.h"
 
-#include <cassert>
+#include "byre/geometry/decompositions.h"
 
-#include <Eigen/SVD>
+#include <cassert>
 
 namespace byre {
 namespace {
@@ -44,17 +44,16 @@ std::optional<Similarity> align(Points points_in_source, Points points_in_target
     source_variance += source.squaredNorm();
   }
 
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d& singular = svd.singularValues();
+  const auto [left, singular, right] = singular_values(covariance);
   // On a line only one singular value survives, and the turn about the line is free. Quadratic in the line's width.
   constexpr double kThinnest = 1e-9;
   if (!(singular[1] > kThinnest * singular[0])) return std::nullopt;
 
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();  // eq. 39 and 43: a rotation, never a reflection
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign.z() = -1.0;
+  if ((left * right.transpose()).determinant() < 0.0) sign.z() = -1.0;
   Similarity result;
   result.target_from_source.rotation =
-      Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose())).normalized();
+      Eigen::Quaterniond(Eigen::Matrix3d(left * sign.asDiagonal() * right.transpose())).normalized();
   if (scale == Scale::free) result.scale = singular.dot(sign) / source_variance;  // eq. 42
   result.target_from_source.translation =
       target_mean - result.target_from_source.rotation * (result.scale * source_mean);  // eq. 41

@@ -1,12 +1,13 @@
 #include "byre/geometry/essential.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace byre {
 namespace {
@@ -47,7 +48,7 @@ constexpr auto kProducts = [] {
 }();
 
 // first_begin: the first term of `first` that is not zero; second is linear.
-Polynomial times_linear(const Polynomial& first, int first_begin, const Polynomial& second) {
+[[gnu::noinline]] Polynomial times_linear(const Polynomial& first, int first_begin, const Polynomial& second) {
   Polynomial product = Polynomial::Zero();
   for (int i = first_begin; i < kTerms; ++i) {
     for (int j = kLinear; j < kTerms; ++j) {
@@ -175,9 +176,7 @@ Eigen::Matrix3d essential_of(const Pose& second_from_first) {
 }
 
 std::array<Pose, 4> motions_from_essential(const Eigen::Matrix3d& essential) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(essential, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d left = svd.matrixU();
-  Eigen::Matrix3d right = svd.matrixV();
+  auto [left, values, right] = singular_values(essential);
   if (left.determinant() < 0.0) left = -left;
   if (right.determinant() < 0.0) right = -right;
   Eigen::Matrix3d quarter_turn;

@@ -1,12 +1,13 @@
 #include "byre/geometry/homography.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace byre {
 namespace {
@@ -84,7 +85,7 @@ std::optional<Eigen::Matrix3d> fit_homography(std::span<const TwoViewMatch> matc
   const auto normalised = null_matrix(normal_matrix);
   if (!normalised) return std::nullopt;
   const Eigen::Matrix3d homography = normalise_second.inverse() * *normalised * normalise_first;
-  const double scale = Eigen::JacobiSVD<Eigen::Matrix3d>(homography).singularValues()[1];
+  const double scale = singular_values(homography).values[1];
   // What is in front of one camera is in front of the other.
   const Eigen::Vector3d& first = matches.front().ray_in_first;
   const double sign = matches.front().ray_in_second.dot(homography * first) < 0.0 ? -1.0 : 1.0;
@@ -94,16 +95,17 @@ std::optional<Eigen::Matrix3d> fit_homography(std::span<const TwoViewMatch> matc
 
 std::vector<Pose> motions_from_homography(const Eigen::Matrix3d& homography) {
   constexpr double kRotation = 1e-9;  // squared singular values alike to this are those of a rotation
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(homography.transpose() * homography);
-  const double least = eigen.eigenvalues()[0];
-  const double largest = eigen.eigenvalues()[2];
+  const Eigen::Matrix3d squared = homography.transpose() * homography;
+  const SymmetricEigen<3> eigen = symmetric_eigen(squared);
+  const double least = eigen.values[0];
+  const double largest = eigen.values[2];
   if (!(largest - least > kRotation)) return {};
   const double along_least = std::sqrt(std::max(0.0, 1.0 - least) / (largest - least));
   const double along_largest = std::sqrt(std::max(0.0, largest - 1.0) / (largest - least));
   // The first needs the part along the largest value's direction that the least value allows, and vice versa.
-  const Eigen::Vector3d largest_part = along_least * eigen.eigenvectors().col(2);
-  const Eigen::Vector3d least_part = along_largest * eigen.eigenvectors().col(0);
-  const Eigen::Vector3d middle = eigen.eigenvectors().col(1);
+  const Eigen::Vector3d largest_part = along_least * eigen.vectors.col(2);
+  const Eigen::Vector3d least_part = along_largest * eigen.vectors.col(0);
+  const Eigen::Vector3d middle = eigen.vectors.col(1);
   const Pose one = motion_of_plane(homography, middle, (largest_part + least_part).normalized());
   const Pose other = motion_of_plane(homography, middle, (largest_part - least_part).normalized());
   return {one, reversed(one), other, reversed(other)};

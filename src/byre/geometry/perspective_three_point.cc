@@ -1,11 +1,12 @@
 #include "byre/geometry/perspective_three_point.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace byre {
@@ -108,13 +109,13 @@ std::optional<std::array<Eigen::Vector3d, 2>> intersect(const Conic& conic, cons
 // The directions common to both conics, of either sign and any length.
 std::vector<Eigen::Vector3d> common_directions(const Conic& first, const Conic& second) {
   const auto [line_pair, conic] = degenerate_member(first, second);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(line_pair);
-  const double a = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
-  const double b = std::sqrt(std::max(0.0, -eigen.eigenvalues()[0]));
-  const Eigen::Vector3d crossing = eigen.eigenvectors().col(1);
+  const SymmetricEigen<3> eigen = symmetric_eigen(line_pair);
+  const double a = std::sqrt(std::max(0.0, eigen.values[2]));
+  const double b = std::sqrt(std::max(0.0, -eigen.values[0]));
+  const Eigen::Vector3d crossing = eigen.vectors.col(1);
   // The lines, as planes of directions, have the normals a e2 + b e0 and a e2 - b e0; both contain e1, their crossing.
-  const Eigen::Vector3d along_e2 = b * eigen.eigenvectors().col(2);
-  const Eigen::Vector3d along_e0 = a * eigen.eigenvectors().col(0);
+  const Eigen::Vector3d along_e2 = b * eigen.vectors.col(2);
+  const Eigen::Vector3d along_e0 = a * eigen.vectors.col(0);
   std::vector<Eigen::Vector3d> directions;
   for (const Eigen::Vector3d& on_line : {(along_e2 - along_e0).eval(), (along_e2 + along_e0).eval()}) {
     const auto pair = intersect(conic, crossing, on_line.normalized());

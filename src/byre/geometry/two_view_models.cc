@@ -1,5 +1,6 @@
 #include "byre/geometry/two_view_models.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/geometry/essential.h"
 #include "byre/geometry/homography.h"
 
@@ -12,9 +13,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 namespace byre {
 namespace {
@@ -93,10 +92,10 @@ Eigen::Quaterniond fit_rotation(Matches matches) {
   for (const TwoViewMatch& match : matches) {
     products.noalias() += match.ray_in_second.normalized() * match.ray_in_first.normalized().transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
+  const auto [left, values, right] = singular_values(products);
+  const double sign = left.determinant() * right.determinant() < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d signs(1.0, 1.0, sign);
-  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+  return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
 }
 
 // The three kinds of model: how many matches make one, the models they make, the test of a match, and a better fit.
@@ -308,8 +307,7 @@ double direction_sigma(const Pose& second_from_first, std::span<const TwoViewMat
   if (!information.isPositive() || !(information.rcond() > 1e-12)) return std::numeric_limits<double>::infinity();
   const Matrix5 covariance = information.solve(Matrix5::Identity());
   const Eigen::Matrix2d of_direction = covariance.bottomRightCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(of_direction, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(of_direction)[1]));
 }
 
 TwoViewModel<Eigen::Quaterniond> search_rotation(std::span<const TwoViewMatch> matches, const TwoViewSearch& search) {

@@ -1,12 +1,13 @@
 #include "byre/map/driving_plane.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <span>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace byre {
@@ -43,16 +44,16 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
   DrivingPlane plane;
   plane.point_in_map = mean_of(path_in_map);
   const Eigen::Matrix3d covariance = covariance_of(path_in_map, plane.point_in_map);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);  // least first
-  plane.thickness = root(axes.eigenvalues()[0]);
-  plane.width = root(axes.eigenvalues()[1]);
-  plane.length = root(axes.eigenvalues()[2]);
+  const Eigen::Vector3d squared_extents = symmetric_eigenvalues(covariance);  // least first
+  plane.thickness = root(squared_extents[0]);
+  plane.width = root(squared_extents[1]);
+  plane.length = root(squared_extents[2]);
 
   const double count = std::min(static_cast<double>(path_in_map.size()), kIndependentPositions);
   const double unevenness = std::max(plane.thickness, kFloorUnevenness * plane.length);
   plane.up_information = Eigen::Matrix3d::Identity() / (kRigUpSigma * kRigUpSigma);
   if (unevenness > 0.0) {
-    const Eigen::Matrix3d in_plane = covariance - axes.eigenvalues()[0] * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d in_plane = covariance - squared_extents[0] * Eigen::Matrix3d::Identity();
     plane.up_information += count / (unevenness * unevenness) * in_plane;
   }
   plane.up_in_map = (plane.up_information.inverse() * up_of_rig_in_map).normalized();

@@ -1,12 +1,12 @@
 #include "byre/map/floor_plan.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/map/floor_plan_consensus.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -24,14 +24,12 @@ constexpr double kRoughest = 0.1;  // thickness of a path, of its width
 
 // A level frame with its origin in the plane that was driven on.
 Pose level_from_map(const DrivingPlane& plane) {
-  const Eigen::Quaterniond rotation =
-      Eigen::Quaterniond::FromTwoVectors(plane.up_in_map, Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Quaterniond rotation = rotation_between(plane.up_in_map, Eigen::Vector3d::UnitZ()).normalized();
   return {rotation, -(rotation * plane.point_in_map)};
 }
 
 double largest_tilt_sigma(const DrivingPlane& plane) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(plane.up_information, Eigen::EigenvaluesOnly);
-  return 1.0 / std::sqrt(solver.eigenvalues()[0]);
+  return 1.0 / std::sqrt(symmetric_eigenvalues(plane.up_information)[0]);
 }
 
 // What is seen from above; points high above the floor may be off by its tilt.
@@ -191,7 +189,7 @@ bool lie_in_line(const std::vector<Eigen::Vector2d>& points) {
   const Eigen::Vector2d mean = mean_of_picks(points);
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& point : points) scatter += (point - mean) * (point - mean).transpose();
-  const Eigen::Vector2d spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues();
+  const Eigen::Vector2d spread = symmetric_eigenvalues(scatter);
   return spread[0] < kThinnest * kThinnest * spread[1];
 }
 

@@ -1,8 +1,8 @@
 #include "byre/body_motion.h"
 
-#include <cmath>
+#include "byre/geometry/decompositions.h"
 
-#include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace byre {
 namespace {
@@ -21,9 +21,8 @@ Matrix6 covariance_of_wheels(const Pose& motion) {
 
 // The symmetric root.
 Matrix6 deviation_of(const Matrix6& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(covariance);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         solver.eigenvectors().transpose();
+  const auto [values, vectors] = symmetric_eigen(covariance);
+  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * vectors.transpose();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "byre/motion/gyroscope_mounting.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/geometry/median.h"
 
 #include <array>
@@ -7,8 +8,6 @@
 #include <cmath>
 #include <utility>
 #include <vector>
-
-#include <Eigen/SVD>
 
 namespace byre {
 namespace {
@@ -41,10 +40,10 @@ std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen) {
 Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias) {
   Eigen::Matrix3d sum = 1e-12 * Eigen::Matrix3d::Identity();
   for (const TurnPair& pair : pairs) sum += pair.seen * (pair.told - bias * pair.seconds).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const auto [left, values, right] = singular_values(sum);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  signs.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose()));
+  signs.z() = (left * right.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
 }
 
 Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quaterniond& body_from_gyroscope) {

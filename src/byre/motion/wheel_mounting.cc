@@ -1,5 +1,6 @@
 #include "byre/motion/wheel_mounting.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/geometry/median.h"
 
 #include <algorithm>
@@ -150,7 +151,7 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   const TurnErrors turn_errors = find_turn_errors(told, *up);
   std::vector<MotionPair> motions = told;
   for (MotionPair& motion : motions) motion.base = without_turn_errors(turn_errors, motion.base);
-  const Eigen::Quaterniond level_from_body = Eigen::Quaterniond::FromTwoVectors(*up, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
   std::vector<PlanarMotion> planar_motions;
   double way = 0.0;
   for (const MotionPair& motion : motions) {

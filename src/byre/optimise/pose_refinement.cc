@@ -1,5 +1,6 @@
 #include "byre/optimise/pose_refinement.h"
 
+#include "byre/geometry/decompositions.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
@@ -13,7 +14,6 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace byre {
@@ -220,10 +220,9 @@ std::optional<Matrix6> inverse_of(const Matrix6& normal_matrix) {
   constexpr double kSingular = 1e-10;  // smallest eigenvalue, once the diagonal is scaled to ones
   const Vector6 scale = normal_matrix.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6 scaled = scale.asDiagonal() * normal_matrix * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(scaled);
-  if (!(eigen.eigenvalues()[0] > kSingular)) return std::nullopt;
-  const Matrix6 scaled_inverse =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const auto [values, vectors] = symmetric_eigen(scaled);
+  if (!(values[0] > kSingular)) return std::nullopt;
+  const Matrix6 scaled_inverse = vectors * values.cwiseInverse().asDiagonal() * vectors.transpose();
   return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
 }
 

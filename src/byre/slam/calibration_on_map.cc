@@ -97,8 +97,10 @@ void CalibrationOnMap::add(const Frame& frame, const Rig& rig, const TrackedFram
   const Eigen::LDLT<Matrix6> factor(pose_pose);
   if (factor.info() != Eigen::Success) return;
   const double share = kIndependence;
-  information_ += share * (information - pose_calibration.transpose() * factor.solve(pose_calibration));
-  right_side_ += share * (right_side - pose_calibration.transpose() * factor.solve(right_side_of_pose));
+  const Eigen::Matrix<double, 6, kCalibrationParameters> solved_calibration = factor.solve(pose_calibration);
+  const Vector6 solved_pose = factor.solve(right_side_of_pose);
+  information_ += share * (information - pose_calibration.transpose() * solved_calibration);
+  right_side_ += share * (right_side - pose_calibration.transpose() * solved_pose);
   add_rows(*frame.features, change);
   ++frames_;
 }

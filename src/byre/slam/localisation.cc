@@ -1,6 +1,7 @@
 #include "byre/slam/localisation.h"
 
 #include "byre/geometry/absolute_pose.h"
+#include "byre/geometry/decompositions.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/place_matching.h"
 
@@ -8,8 +9,6 @@
 #include <cmath>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -146,8 +145,7 @@ double spread_of(const std::vector<TrackedFeature>& features, const Rig& rig) {
     covariance += offset * offset.transpose();
   }
   covariance /= static_cast<double>(features.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) / std::hypot(rig.width, rig.height);
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(covariance)[0])) / std::hypot(rig.width, rig.height);
 }
 
 LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,

@@ -1,12 +1,11 @@
 #include "byre/viewer/ground.h"
 
 #include "byre/dataset/image_file.h"
+#include "byre/geometry/decompositions.h"
 #include "byre/input_error.h"
 #include "byre/map/driving_plane.h"
 
 #include <cassert>
-
-#include <Eigen/Eigenvalues>
 
 namespace byre {
 namespace {
@@ -22,9 +21,9 @@ Eigen::Vector3d direction_of(const DrivingPlane& plane) {
     const Eigen::Vector3d offset = onto_plane * (position - plane.point_in_map);
     spread += offset * offset.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const bool has_length = solver.eigenvalues()[2] > 1e-12;
-  const Eigen::Vector3d along = has_length ? solver.eigenvectors().col(2).eval() : plane.up_in_map.unitOrthogonal();
+  const auto [values, vectors] = symmetric_eigen(spread);
+  const bool has_length = values[2] > 1e-12;
+  const Eigen::Vector3d along = has_length ? vectors.col(2).eval() : plane.up_in_map.unitOrthogonal();
   const Eigen::Vector3d gone = plane.path_in_map.back() - plane.path_in_map.front();
   return along.dot(gone) < 0.0 ? (-along).eval() : along;
 }
