@@ -8,10 +8,12 @@ namespace byre {
 
 // How far a pose found from nothing may be relied on. It is believed once the frames that follow have been tracked on
 // it; the more of them, the less the robot can have come there by itself. It is trusted once some frames have seen much
-// of what should be there.
+// of what should be there; the more, where it was looked for near a hint alone, for a hint may name a place that looks
+// alike.
 struct Confirmation {
   int frames_to_believe = 0;
   int frames_to_prove = 0;
+  bool is_by_hint = false;  // nobody looked for it elsewhere yet
 
   bool is_believed() const { return frames_to_believe == 0; }
   bool is_proven() const { return frames_to_prove == 0; }
@@ -23,6 +25,7 @@ struct FindEvidence {
   std::optional<double> seconds_since_believed;  // since the last believed pose; empty: there was none
   std::optional<double> seconds_since_proven;    // since the last one beyond doubt
   double shift = 0.0;                            // metres from the last pose
+  bool is_by_hint = false;                       // it was looked for near a hint alone
 };
 
 // What a find needs:

@@ -48,6 +48,15 @@ TEST(ConfirmedFurther, IsProvenByFramesAloneThatSeeMuchOfWhatShouldBeThere) {
   EXPECT_EQ(confirmed_further({3, 3}, 100, 6, kOptions), (Confirmation{2, 2}));
 }
 
+TEST(ConfirmedFurther, AsksMoreOfWhatWasLookedForNearAHintAlone) {
+  FindEvidence find;
+  find.is_by_hint = true;
+  const Confirmation hinted = confirmation_of(find, kOptions);
+  EXPECT_EQ(hinted, (Confirmation{3, 3, true}));
+  EXPECT_EQ(confirmed_further(hinted, 100, 11, kOptions), (Confirmation{2, 3, true}));
+  EXPECT_EQ(confirmed_further(hinted, 100, 12, kOptions), (Confirmation{2, 2, true}));
+}
+
 TEST(Confirmation, IsNotAskedForByDefault) {
   EXPECT_TRUE(Confirmation{}.is_believed());
   EXPECT_TRUE(Confirmation{}.is_proven());

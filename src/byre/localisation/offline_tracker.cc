@@ -80,8 +80,9 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   is_search_by_doubt_ = !is_search_needed(whereabouts, mapper);
   if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
   last_search_ = sought.frame.time;
-  search_.start([frame = sought.frame, rig = sought.rig, hint = sought.hint, offline = offline_,
-                 options = options_.relocalise, tracked_share = mission_.seen_share()] {
+  const bool is_hint_to_be_checked = whereabouts.confirmation().is_by_hint && mapper.submaps().is_registered();
+  search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
+                 offline = offline_, options = options_.relocalise, tracked_share = mission_.seen_share()] {
     auto found = search_place(*offline, {frame, rig, hint}, options);
     if (found) found->tracked_share = tracked_share;
     return found;
@@ -94,8 +95,8 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
 }
 
 // A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it;
-// one that was proven, to a rival that is found again and again. The online map is corrected where offline points do
-// not hold it.
+// one that was proven, or that a hint led to, to a rival that is found again and again. The online map is corrected
+// where offline points do not hold it.
 OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
                                                      const Mapper& mapper) {
   constexpr double kElsewhere = 0.5;  // metres
@@ -107,14 +108,14 @@ OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, co
   const Pose camera_from_online = camera_from_world(mapper.map(), *then);
   const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
   const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
-  if (is_in_place && confirmation.is_proven()) {
+  if (is_in_place && (confirmation.is_proven() || confirmation.is_by_hint)) {
     if (rival_.note(found, camera_from_online, options_.mission.registration)) {
       return {.events = {}, .refutes_pose = true, .refutes_way = true};
     }
+    if (confirmation.is_by_hint && agreement.translation <= kElsewhere) return {.events = {}, .agrees_with_hint = true};
     if (is_search_by_doubt_) return {};
-  }
-  if (is_in_place && !confirmation.is_proven() && agreement.translation > kElsewhere &&
-      found.seen_share >= options_.mission.registration.proving_share) {
+  } else if (is_in_place && agreement.translation > kElsewhere &&
+             found.seen_share >= options_.mission.registration.proving_share) {
     return {.events = {}, .refutes_pose = true};
   }
   return {.events = {}, .correction = correction_by(found, camera_from_online, submaps.frame())};

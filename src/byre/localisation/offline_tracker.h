@@ -60,6 +60,7 @@ class OfflineTracker {
     std::vector<SessionEvent> events{};
     bool refutes_pose = false;                     // the robot is elsewhere
     bool refutes_way = false;                      // it was elsewhere while it was trusted, nobody knows since when
+    bool agrees_with_hint = false;                 // it is where a hint had led, and nowhere else
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
@@ -70,7 +71,7 @@ class OfflineTracker {
   void lose();
 
   // Looks for the last frame in the offline map beside tracking: while its points do not hold the pose, or may do so by
-  // chance, and from time to time where few of them are seen.
+  // chance, and from time to time where few of them are seen. What a hint led to is looked for everywhere.
   void search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper);
 
   // A health with what is known of the offline map in it.

@@ -106,6 +106,36 @@ TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
   EXPECT_GT(refuted_at, 8U) << "not by one find";
 }
 
+TEST_F(OnAnOfflineMap, BelievesWhatAHintLedToUntilARivalIsFoundAllAlongTheWay) {
+  mapper_.begin_where_found(track_of(0));
+  std::size_t refuted_at = 0;
+  for (std::size_t i = 0; i < mission_.frames.size() && refuted_at == 0; ++i) {
+    HybridTrack track = track_of(i, 90);
+    track.offline_expected = 1000;
+    whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
+    tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
+    ASSERT_FALSE(whereabouts_.confirmation().is_proven()) << "as much would prove another find";
+    FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
+    rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
+    rival.tracked_share = 0.09;
+    if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) refuted_at = i;
+  }
+  EXPECT_GT(refuted_at, 8U) << "not by one find";
+}
+
+TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
+  mapper_.begin_where_found(track_of(0));
+  for (std::size_t i = 0; i < 4; ++i) {
+    HybridTrack track = track_of(i, 70);
+    track.offline_expected = 1000;
+    whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
+  }
+  tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
+  const auto found = tracker_.collect_place();
+  ASSERT_TRUE(found) << "in the whole map, for the hint says that the robot is elsewhere";
+  EXPECT_TRUE(tracker_.consider(*found, whereabouts_, mapper_).agrees_with_hint);
+}
+
 TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;

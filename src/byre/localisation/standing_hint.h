@@ -13,6 +13,7 @@ bool is_near(const PoseHint& hint, const Pose& map_from_body);
 // The last hint given, while it counts.
 class StandingHint {
  public:
+  void withdraw() { hint_.reset(); }
   void give(const PoseHint& hint);  // one that is not finite takes the last one back
   // Once for each frame, in order of time.
   void pass(Timestamp frame);

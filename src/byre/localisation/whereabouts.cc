@@ -91,7 +91,9 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   if (!seen.from_nothing) {
     confirmation_ = confirmed_further(confirmation_, track.offline_expected, track.offline_inliers, registration_);
   } else if (on_offline_map_) {
-    confirmation_ = confirmation_of(evidence_of_find(seen.frame.time, body), registration_);
+    FindEvidence find = evidence_of_find(seen.frame.time, body);
+    find.is_by_hint = seen.is_by_hint;
+    confirmation_ = confirmation_of(find, registration_);
   }
   if (seen.from_nothing && seen.is_registered) note_end_of_bridge(rig, map);
   progress.step = move_to(seen, body, rig, map);

@@ -62,6 +62,7 @@ class Whereabouts {
     bool from_nothing = false;
     bool is_registered = false;
     std::size_t submap = 0;
+    bool is_by_hint = false;  // where it was found from nothing: it was looked for near a hint alone
   };
   // What a tracked frame changed.
   struct Progress {
@@ -87,6 +88,10 @@ class Whereabouts {
   void turn(const RigTurn& turn, const Map& online);
   void turn_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.remember_offset({}); }
+  // The submap was found to lie in the offline map, which is still to be proven.
+  void note_registration(bool is_by_hint) { confirmation_ = {0, registration_.confirmations, is_by_hint}; }
+  // It was looked for in the whole map too, and found where the hint had led.
+  void note_agreement() { confirmation_.is_by_hint = false; }
   // By what the map moved the last pose, after_from_before; empty where there is none.
   std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
 

@@ -120,7 +120,9 @@ void Session::take_over_results(FrameReport& report) {
   if (const auto found = mission_ ? mission_->collect_place() : std::nullopt) {
     const OfflineTracker::Consequence consequence = mission_->consider(*found, whereabouts_, mapper_);
     if (consequence.correction) mapper_.correct_later(*consequence.correction);
+    if (consequence.agrees_with_hint) whereabouts_.note_agreement();
     if (consequence.refutes_pose) {
+      if (whereabouts_.confirmation().is_by_hint) hint_.withdraw();
       mapper_.leave_map_frame();
       lose_pose(ImageFault::none, report);
     }
@@ -131,6 +133,7 @@ void Session::take_over_results(FrameReport& report) {
   }
   if (mapper_.correct_online()) {
     whereabouts_.note_online_correction();
+    if (!was_registered && is_registered()) whereabouts_.note_registration(hint_.get().has_value());
     report.events.push_back(SessionEvent::online_corrected);
   }
   const auto correction = whereabouts_.follow_map(rig_, map());
@@ -193,6 +196,7 @@ Session::Located Session::locate(const InputFrame& input) {
   if (!located.track && can_search) {
     located.track = tracker_.find(frame, scene);
     located.from_nothing = located.track.has_value();
+    located.is_by_hint = located.from_nothing && hint_.get();
     if (located.track) mapper_.begin_where_found(*located.track);
   }
   mapper_.expect_beginning_beside(rig_, !located.track && whereabouts_.bridge());
@@ -225,7 +229,8 @@ Session::Located Session::begin_submap(const Frame& frame) {
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
   const HybridTrack& track = *located.track;
   const Whereabouts::Progress progress = whereabouts_.note(
-      {input.frame, track, located.from_nothing, is_registered(), mapper_.submaps().present()}, rig_, map());
+      {input.frame, track, located.from_nothing, is_registered(), mapper_.submaps().present(), located.is_by_hint},
+      rig_, map());
   tracker_.note(track);
   keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
   if (progress.was_proven && !located.from_nothing) {

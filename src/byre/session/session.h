@@ -100,6 +100,7 @@ class Session {
   struct Located {
     std::optional<HybridTrack> track;
     bool from_nothing = false;
+    bool is_by_hint = false;     // it was looked for near a hint alone
     bool begins_submap = false;  // a first keyframe was made of it
     TwoViewFailure start_failure = TwoViewFailure::none;
   };

@@ -242,10 +242,10 @@ double error_beside_wrong_anchors(double offline_weight, double offline_sigma) {
 }
 
 TEST(HybridMapping, FollowsOfflinePointsBesideWrongAnchors) {
-  constexpr double kSigma = 0.005;  // metres
+  constexpr double kAnchorSigma = 0.005;  // metres
   const double displacement = kDisplacement.translation.norm();
-  EXPECT_THAT(error_beside_wrong_anchors(2.0, kSigma), Lt(0.2 * displacement));
-  EXPECT_THAT(error_beside_wrong_anchors(8.0, kSigma), Lt(error_beside_wrong_anchors(0.125, kSigma)));
+  EXPECT_THAT(error_beside_wrong_anchors(2.0, kAnchorSigma), Lt(0.2 * displacement));
+  EXPECT_THAT(error_beside_wrong_anchors(8.0, kAnchorSigma), Lt(error_beside_wrong_anchors(0.125, kAnchorSigma)));
 }
 
 TEST(HybridMapping, TrustsOfflinePointsNoFurtherThanTheirCovariance) {
