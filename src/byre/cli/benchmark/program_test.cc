@@ -37,8 +37,8 @@ TEST_F(BenchmarkProgram, WritesTablesFiguresAndPlots) {
   EXPECT_THAT(outcome.errors, HasSubstr("room no_map, run 2 of 2"));
   EXPECT_THAT(read("out/first/benchmark.md"), HasSubstr(outcome.output));
   EXPECT_THAT(read("out/first/benchmark.md"), HasSubstr("](room_error.svg)"));
-  const auto json = nlohmann::json::parse(read("out/first/benchmark.json"));
-  EXPECT_THAT(json["cases"][0]["arms"][0]["runs"], SizeIs(2));
+  const auto parsed = nlohmann::json::parse(read("out/first/benchmark.json"));
+  EXPECT_THAT(parsed["cases"][0]["arms"][0]["runs"], SizeIs(2));
   EXPECT_THAT(read("out/first/room_path.svg"), HasSubstr("</svg>"));
   EXPECT_TRUE(fs::exists(folder_ / "out/first/trajectories/room.no_map.2.final.txt"));
 }
