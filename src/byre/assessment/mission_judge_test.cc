@@ -7,7 +7,9 @@ namespace {
 
 Trajectory curve(double offset) {
   Trajectory path;
-  for (int i = 0; i < 5; ++i) path.push_back({from_seconds(i), Pose{{}, {1.0 * i, 0.5 * i * i, offset}}});
+  for (int i = 0; i < 5; ++i) {
+    path.push_back({from_seconds(i), Pose{Eigen::Quaterniond::Identity(), {1.0 * i, 0.5 * i * i, offset}}});
+  }
   return path;
 }
 
