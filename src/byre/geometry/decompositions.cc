@@ -1,5 +1,8 @@
 #include "byre/geometry/decompositions.h"
 
+#include <cmath>
+#include <numbers>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
@@ -40,8 +43,17 @@ SingularValues singular_values(const Eigen::Matrix3d& matrix) {
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }
 
+// Eigen's FromTwoVectors, but for opposite directions, where it decomposes a matrix.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  constexpr double kOpposite = 1e-12;
+  const Eigen::Vector3d first = from.normalized(), second = to.normalized();
+  const double cosine = second.dot(first);
+  if (cosine < kOpposite - 1.0) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, first.unitOrthogonal()));
+  }
+  const double twice_cosine_of_half = std::sqrt((1.0 + cosine) * 2.0);
+  const Eigen::Vector3d axis = first.cross(second) * (1.0 / twice_cosine_of_half);
+  return {0.5 * twice_cosine_of_half, axis.x(), axis.y(), axis.z()};
 }
 
 }  // namespace byre
