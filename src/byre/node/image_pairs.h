@@ -21,7 +21,8 @@ struct PairingCounts {
   int without_right = 0;  // left images that were handed over alone
 };
 
-// Puts left and right images together by their stamps. The newest wins: whoever asks late misses the older ones.
+// Puts left and right images together by their stamps. Whoever asks late by one pair misses none; by more, the newest
+// wins.
 // Times of arrival are those of one clock that never goes back.
 template <typename Image>
 class ImagePairs {
@@ -39,12 +40,9 @@ class ImagePairs {
   void add_left(Timestamp stamp, Image image, Timestamp arrival) { add(lefts_, stamp, std::move(image), arrival); }
   void add_right(Timestamp stamp, Image image, Timestamp arrival) { add(rights_, stamp, std::move(image), arrival); }
 
-  // The newest pair that is complete, else the newest left image that has waited long enough.
+  // Of two complete pairs the older one, of more the newest; else the newest left image that has waited long enough.
   std::optional<Pair> next(Timestamp now) {
-    for (std::size_t i = lefts_.size(); i-- > 0;) {
-      const auto right = partner_of(lefts_[i].stamp);
-      if (right || !options_.has_right) return take(i, right);
-    }
+    if (const auto left = next_whole()) return take(*left, partner_of(lefts_[*left].stamp));
     for (std::size_t i = lefts_.size(); i-- > 0;) {
       if (now - lefts_[i].arrival < options_.wait) continue;
       ++counts_.without_right;
@@ -73,6 +71,20 @@ class ImagePairs {
     if (queue.size() <= kMostWaiting) return;
     queue.pop_front();
     if (&queue == &lefts_) ++counts_.passed_over;
+  }
+
+  // Index of the left image whose pair comes next; empty where none is complete.
+  std::optional<std::size_t> next_whole() const {
+    constexpr std::size_t kCaughtUp = 2;  // complete pairs, of which none is left out
+    std::optional<std::size_t> newest, oldest;
+    std::size_t count = 0;
+    for (std::size_t i = lefts_.size(); i-- > 0;) {
+      if (options_.has_right && !partner_of(lefts_[i].stamp)) continue;
+      if (!newest) newest = i;
+      oldest = i;
+      ++count;
+    }
+    return count <= kCaughtUp ? oldest : newest;
   }
 
   std::optional<std::size_t> nearest_to(Timestamp stamp) const {

@@ -16,21 +16,34 @@ using std::chrono_literals::operator""s;
 
 using Pairs = ImagePairs<int>;
 
-TEST(ImagePairs, GivesTheNewestWholePairAndPassesOlderOnesOver) {
+// So many pairs that nobody has asked for yet.
+Pairs waiting_pairs(int count) {
   Pairs pairs({true, 0ms, 50ms});
-  pairs.add_left(1s, 1, 0ms);
-  pairs.add_right(1s, 11, 0ms);
-  pairs.add_left(2s, 2, 1ms);
-  pairs.add_right(2s, 12, 1ms);
-  pairs.add_left(3s, 3, 2ms);
+  for (int i = 1; i <= count; ++i) {
+    pairs.add_left(Timestamp(i * 1s), i, 0ms);
+    pairs.add_right(Timestamp(i * 1s), 10 + i, 0ms);
+  }
+  return pairs;
+}
+
+TEST(ImagePairs, GivesTheNewestWholePairAndPassesOlderOnesOver) {
+  Pairs pairs = waiting_pairs(3);
+  pairs.add_left(4s, 4, 2ms);
   const auto pair = pairs.next(3ms);
   ASSERT_TRUE(pair.has_value());
-  EXPECT_EQ(pair->left, 2);
-  EXPECT_EQ(pair->right, 12);
-  EXPECT_EQ(pairs.counts().passed_over, 1);
-  EXPECT_FALSE(pairs.next(4ms)) << "the third waits for its right image";
-  pairs.add_right(3s, 13, 5ms);
-  EXPECT_EQ(pairs.next(5ms)->right, 13);
+  EXPECT_EQ(pair->left, 3);
+  EXPECT_EQ(pair->right, 13);
+  EXPECT_EQ(pairs.counts().passed_over, 2);
+  EXPECT_FALSE(pairs.next(4ms)) << "the fourth waits for its right image";
+  pairs.add_right(4s, 14, 5ms);
+  EXPECT_EQ(pairs.next(5ms)->right, 14);
+}
+
+TEST(ImagePairs, PassesNoneOverWhereTheyAreAskedForLateByOne) {
+  Pairs pairs = waiting_pairs(2);
+  EXPECT_EQ(pairs.next(1ms)->left, 1);
+  EXPECT_EQ(pairs.next(2ms)->left, 2);
+  EXPECT_EQ(pairs.counts().passed_over, 0);
 }
 
 TEST(ImagePairs, GivesALeftImageAloneOnceItHasWaited) {
@@ -57,6 +70,7 @@ TEST(ImagePairs, AreLeftImagesAloneOfOneCamera) {
   Pairs pairs({false, 0ms, 50ms});
   pairs.add_left(1s, 1, 0ms);
   pairs.add_left(2s, 2, 0ms);
+  EXPECT_EQ(pairs.next(0ms)->left, 1);
   EXPECT_EQ(pairs.next(0ms)->left, 2);
   EXPECT_FALSE(pairs.next(0ms));
 }
