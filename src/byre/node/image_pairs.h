@@ -40,7 +40,7 @@ class ImagePairs {
   void add_left(Timestamp stamp, Image image, Timestamp arrival) { add(lefts_, stamp, std::move(image), arrival); }
   void add_right(Timestamp stamp, Image image, Timestamp arrival) { add(rights_, stamp, std::move(image), arrival); }
 
-  // Of two complete pairs the older one, of more the newest; else the newest left image that has waited long enough.
+  // The older one of two complete pairs, the newest of more; else the newest left image that has waited long enough.
   std::optional<Pair> next(Timestamp now) {
     if (const auto left = next_whole()) return take(*left, partner_of(lefts_[*left].stamp));
     for (std::size_t i = lefts_.size(); i-- > 0;) {
