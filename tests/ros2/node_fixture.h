@@ -32,6 +32,25 @@ using Graph =
     Inbox<rmw_dds_common::msg::ParticipantEntitiesInfo, rmw_dds_common::msg::ParticipantEntitiesInfoPubSubType>;
 using eprosima::fastdds::dds::TypeSupport;
 
+inline void send_text(eprosima::fastdds::dds::DataWriter* writer, const std::string& text) {
+  std_msgs::msg::String message;
+  message.data(text);
+  writer->write(&message);
+}
+
+// Whether the node and its peer have. Endpoints are told in the order in which they were made: where the node answers a
+// command, it knows the cameras' writers too, and where the answer arrives, so do its other messages.
+inline bool have_found_one_another(CameraFeed& feed, Texts& events, eprosima::fastdds::dds::DataWriter* command) {
+  if (!feed.is_heard()) return false;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    send_text(command, "hello");
+    if (events.find([](const auto& event) { return event.data().find("hello") != std::string::npos; },
+                    std::chrono::seconds(1)))
+      return feed.settle();
+  }
+  return false;
+}
+
 inline constexpr PeerQos kVolatile{true, false, 100};
 inline constexpr PeerQos kLatched{true, true, 100};
 
@@ -96,24 +115,8 @@ class ByreNode : public testing::Test {
     return config("  map: " + Room::shared().map().string() + "\n", more);
   }
 
-  // Whether all have found one another. Endpoints are told in the order in which they were made: where the node answers
-  // a command, it knows the cameras' writers too, and where the answer arrives, so do its other messages.
-  bool is_connected() {
-    if (!feed_.is_heard() || !diagnostics_.first()) return false;
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      command("hello");
-      if (events_.find([](const auto& event) { return event.data().find("hello") != std::string::npos; },
-                       std::chrono::seconds(1)))
-        return feed_.settle();
-    }
-    return false;
-  }
-
-  void command(const std::string& text) {
-    std_msgs::msg::String message;
-    message.data(text);
-    command_->write(&message);
-  }
+  bool is_connected() { return diagnostics_.first() && have_found_one_another(feed_, events_, command_); }
+  void command(const std::string& text) { send_text(command_, text); }
 
   // Sends a frame and waits for what the node makes of it.
   std::optional<nav_msgs::msg::Odometry> answer_to(CameraFeed& feed, Odometry& odometry, const ImageFrame& frame,

@@ -126,21 +126,8 @@ class Others {
  public:
   explicit Others(int domain) : peer_(domain) {}
 
-  // Whether the node is there, and all have found one another.
-  bool is_connected() {
-    if (!feed_.is_heard()) return false;
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      command("hello");
-      if (answer("hello", 1s)) return feed_.settle();
-    }
-    return false;
-  }
-
-  void command(const std::string& text) {
-    std_msgs::msg::String message;
-    message.data(text);
-    command_->write(&message);
-  }
+  bool is_connected() { return have_found_one_another(feed_, events_, command_); }
+  void command(const std::string& text) { send_text(command_, text); }
   // What was done, or could not be done, as the node says.
   std::optional<nlohmann::json> answer(const std::string& command, std::chrono::seconds patience = 20s) {
     const std::string part = "\"command\":\"" + command + "\"";

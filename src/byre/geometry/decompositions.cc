@@ -43,6 +43,12 @@ SingularValues singular_values(const Eigen::Matrix3d& matrix) {
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }
 
+Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& matrix) {
+  const auto [left, values, right] = singular_values(matrix);
+  const Eigen::Vector3d signs(1.0, 1.0, left.determinant() * right.determinant() < 0.0 ? -1.0 : 1.0);
+  return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
+}
+
 // Eigen's FromTwoVectors, but for opposite directions, where it decomposes a matrix.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   constexpr double kOpposite = 1e-12;

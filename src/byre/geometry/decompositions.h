@@ -30,6 +30,10 @@ struct SingularValues {
 };
 SingularValues singular_values(const Eigen::Matrix3d& matrix);
 
+// The rotation R with the largest trace of R^T * matrix: the nearest one, or by Kabsch (1976) the one that brings two
+// sets of directions together, of which matrix is the sum of products target * source^T. Never a reflection.
+Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& matrix);
+
 // The least rotation that takes one direction to the other; of unit length, but for rounding.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

@@ -27,6 +27,14 @@ TEST(Decompositions, ReadTheLowerTriangleOfSymmetricMatrices) {
   EXPECT_TRUE(symmetric_eigenvalues(Eigen::Matrix2d{{2.0, 99.0}, {0.0, 1.0}}).isApprox(Eigen::Vector2d(1.0, 2.0)));
 }
 
+TEST(Decompositions, TellTheNearestRotationAndNeverAReflection) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
+  const Eigen::Matrix3d stretched = turn * Eigen::Vector3d(3.0, 2.0, 0.5).asDiagonal();
+  EXPECT_TRUE(nearest_rotation(stretched).isApprox(turn, 1e-12));
+  const Eigen::Matrix3d reflected = turn * Eigen::Vector3d(3.0, 2.0, -0.5).asDiagonal();
+  EXPECT_TRUE(nearest_rotation(reflected).isApprox(turn, 1e-12));
+}
+
 TEST(Decompositions, TurnOneDirectionIntoTheOtherEvenTheOpposite) {
   const Eigen::Vector3d from(1.0, 2.0, 3.0);
   for (const Eigen::Vector3d& to : {Eigen::Vector3d(-2.0, 0.1, 1.0), from, Eigen::Vector3d(-from)}) {

@@ -92,10 +92,7 @@ Eigen::Quaterniond fit_rotation(Matches matches) {
   for (const TwoViewMatch& match : matches) {
     products.noalias() += match.ray_in_second.normalized() * match.ray_in_first.normalized().transpose();
   }
-  const auto [left, values, right] = singular_values(products);
-  const double sign = left.determinant() * right.determinant() < 0.0 ? -1.0 : 1.0;
-  const Eigen::Vector3d signs(1.0, 1.0, sign);
-  return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
+  return nearest_rotation(products);
 }
 
 // The three kinds of model: how many matches make one, the models they make, the test of a match, and a better fit.

@@ -43,6 +43,28 @@ class OnAnOfflineMap : public ::testing::Test {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}}, whereabouts_,
                          mapper_);
   }
+  struct Way {
+    std::size_t begin = 0;    // its first frame
+    int inliers = 0;          // of 1000 points expected in each frame
+    bool is_by_hint = false;  // a hint led to where it begins; else it was proven before
+  };
+  // The first frame of a way in which a place 5 m away, which shows much more in each, refutes where tracking is; zero
+  // where none does.
+  std::size_t frame_that_refutes(const Way& way) {
+    for (std::size_t i = way.begin; i < mission_.frames.size(); ++i) {
+      HybridTrack track = track_of(i, way.inliers);
+      track.offline_expected = 1000;
+      const bool is_find = way.is_by_hint && i == way.begin;
+      whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find}, mission_.rig, mapper_.map());
+      tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
+      EXPECT_NE(whereabouts_.confirmation().is_proven(), way.is_by_hint) << i;
+      FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
+      rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
+      rival.tracked_share = way.inliers / 1000.0;
+      if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) return i;
+    }
+    return 0;
+  }
   // A place so many metres beside where the first frame was believed to be.
   FoundPlace place_beside(double metres, double seen_share) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
@@ -92,35 +114,13 @@ TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
 TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
   note_found(0);
   ASSERT_TRUE(whereabouts_.confirmation().is_proven());
-  std::size_t refuted_at = 0;
-  for (std::size_t i = 4; i < mission_.frames.size() && refuted_at == 0; ++i) {
-    HybridTrack track = track_of(i, 50);
-    track.offline_expected = 1000;
-    whereabouts_.note({mission_.frames[i], track, false, true, 0}, mission_.rig, mapper_.map());
-    tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
-    FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
-    rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
-    rival.tracked_share = 0.05;
-    if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) refuted_at = i;
-  }
-  EXPECT_GT(refuted_at, 8U) << "not by one find";
+  EXPECT_GT(frame_that_refutes({.begin = 4, .inliers = 50, .is_by_hint = false}), 8U) << "not by one find";
 }
 
 TEST_F(OnAnOfflineMap, BelievesWhatAHintLedToUntilARivalIsFoundAllAlongTheWay) {
   mapper_.begin_where_found(track_of(0));
-  std::size_t refuted_at = 0;
-  for (std::size_t i = 0; i < mission_.frames.size() && refuted_at == 0; ++i) {
-    HybridTrack track = track_of(i, 90);
-    track.offline_expected = 1000;
-    whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
-    tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
-    ASSERT_FALSE(whereabouts_.confirmation().is_proven()) << "as much would prove another find";
-    FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
-    rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
-    rival.tracked_share = 0.09;
-    if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) refuted_at = i;
-  }
-  EXPECT_GT(refuted_at, 8U) << "not by one find";
+  EXPECT_GT(frame_that_refutes({.begin = 0, .inliers = 90, .is_by_hint = true}), 8U) << "not by one find";
+  EXPECT_FALSE(whereabouts_.confirmation().is_proven()) << "as much would prove another find";
 }
 
 TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {

@@ -40,10 +40,7 @@ std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen) {
 Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias) {
   Eigen::Matrix3d sum = 1e-12 * Eigen::Matrix3d::Identity();
   for (const TurnPair& pair : pairs) sum += pair.seen * (pair.told - bias * pair.seconds).transpose();
-  const auto [left, values, right] = singular_values(sum);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  signs.z() = (left * right.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
+  return nearest_rotation(sum);
 }
 
 Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quaterniond& body_from_gyroscope) {
