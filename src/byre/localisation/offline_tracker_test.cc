@@ -45,7 +45,7 @@ class OnAnOfflineMap : public ::testing::Test {
   }
   struct Way {
     std::size_t begin = 0;    // its first frame
-    int inliers = 0;          // of 1000 points expected in each frame
+    int inliers = 0;          // points seen in each frame, where 1000 should be
     bool is_by_hint = false;  // a hint led to where it begins; else it was proven before
   };
   // The first frame of a way in which a place 5 m away, which shows much more in each, refutes where tracking is; zero
