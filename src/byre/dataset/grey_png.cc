@@ -89,7 +89,8 @@ bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above,
           differences, above, [](int left, int up, int) { return (left + up) / 2; }, row);
       return true;
     case 4:
-      predict<BytesAPixel>(differences, above, paeth, row);
+      predict<BytesAPixel>(
+          differences, above, [](int left, int up, int corner) { return paeth(left, up, corner); }, row);
       return true;
     default:
       return false;
