@@ -246,6 +246,13 @@ void bind_slam_itself(py::module_& module) {
             return matrix_of(slam.plan_from_body(pose_of(map_from_body, "map_from_body")));
           },
           py::arg("map_from_body"), "The pose on the floor plan that the map is registered on, or None.")
+      .def(
+          "plan_covariance",
+          [](const Slam& slam, const Eigen::Matrix4d& map_from_body, const Matrix6& covariance) {
+            return slam.plan_covariance(pose_of(map_from_body, "map_from_body"), covariance);
+          },
+          py::arg("map_from_body"), py::arg("covariance"),
+          "The covariance of that pose on the floor plan, with what the registration leaves open, or None.")
       .def_property_readonly("calibration", &Slam::calibration, "As it is known by now.")
       .def_property_readonly("is_metric", &Slam::is_metric)
       .def_property_readonly("keyframes", &Slam::keyframes)

@@ -108,6 +108,9 @@ class Slam {
 
   // Where a pose in the map lies on the floor plan that the map is registered on; empty when it is on none.
   std::optional<Pose> plan_from_body(const Pose& map_from_body) const;
+  // How well it is known there: as FrameReport::covariance, which is that of the pose in the map, with what the
+  // registration leaves open. Empty when the map is on no plan.
+  std::optional<Matrix6> plan_covariance(const Pose& map_from_body, const Matrix6& covariance) const;
 
   const Rig& rig() const;           // the ideal camera that features are given in
   Calibration calibration() const;  // calibration as it is known by now

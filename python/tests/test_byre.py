@@ -212,6 +212,7 @@ def test_missions_are_told_whether_to_trust(room, frames, room_map):
     assert reports[-1].health.doubt == byre.Doubt.none
     assert reports[-1].health.offline_inliers > 50
     assert slam.plan_from_body(np.eye(4)) is None
+    assert slam.plan_covariance(np.eye(4), np.eye(6)) is None
     assert "trusted" in repr(reports[-1])
 
 

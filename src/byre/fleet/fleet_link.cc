@@ -27,9 +27,8 @@ FleetLink::FleetLink(const FleetOptions& options)
     : client_(named(options.broker, options.identity), presence_of(options.identity)),
       reporter_(options.identity, options.rate, [this](const MqttMessage& message) { client_.publish(message); }) {}
 
-void FleetLink::note(const FrameReport& report, const std::optional<Pose>& map_from_body, Timestamp arrived,
-                     const std::string& advice) {
-  keeper_.note(report, map_from_body, arrived, advice);
+void FleetLink::note(const FrameReport& report, Timestamp arrived, const std::string& advice) {
+  keeper_.note(report, arrived, advice);
 }
 
 void FleetLink::tell(const FleetMap& map, Timestamp now) {

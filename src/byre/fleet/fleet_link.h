@@ -21,8 +21,7 @@ class FleetLink {
   explicit FleetLink(const FleetOptions& options);
 
   // A frame, as FleetPositionKeeper takes it.
-  void note(const FrameReport& report, const std::optional<Pose>& map_from_body, Timestamp arrived,
-            const std::string& advice);
+  void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
   void begin_anew() { keeper_.begin_anew(); }
 
   // Publishes what is due. now: a time that never goes back

@@ -30,17 +30,16 @@ double localization_score(const FrameReport& report) {
   return report.health.verdict == Verdict::trusted ? score : std::min(score, kMostDegraded);
 }
 
-void FleetPositionKeeper::note(const FrameReport& report, const std::optional<Pose>& map_from_body, Timestamp arrived,
-                               const std::string& advice) {
-  const bool is_believed = map_from_body && report.health.verdict != Verdict::untrusted;
+void FleetPositionKeeper::note(const FrameReport& report, Timestamp arrived, const std::string& advice) {
+  const bool is_believed = report.map_from_body && report.health.verdict != Verdict::untrusted;
   position_.score = localization_score(report);
   position_.problem = problem_of(report);
   position_.advice = advice;
   position_.deviation.reset();
   if (is_believed) {
-    const Eigen::Vector3d ahead = map_from_body->rotation * Eigen::Vector3d::UnitX();
-    position_.x = map_from_body->translation.x();
-    position_.y = map_from_body->translation.y();
+    const Eigen::Vector3d ahead = report.map_from_body->rotation * Eigen::Vector3d::UnitX();
+    position_.x = report.map_from_body->translation.x();
+    position_.y = report.map_from_body->translation.y();
     position_.theta = std::atan2(ahead.y(), ahead.x());
     position_.deviation = position_error(report.health, {});
     if (report.health.verdict == Verdict::trusted) position_.is_initialised = true;

@@ -34,10 +34,9 @@ double localization_score(const FrameReport& report);
 // known where the robot is (event navigation_error), or no frames come.
 class FleetPositionKeeper {
  public:
-  // map_from_body: pose in the frame that is published; arrived: a time that never goes back; advice: what to do about
+  // The report's pose is in the frame that is published. arrived: a time that never goes back; advice: what to do about
   // the frame's doubt.
-  void note(const FrameReport& report, const std::optional<Pose>& map_from_body, Timestamp arrived,
-            const std::string& advice);
+  void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
 
   // What comes next is in another map, or is looked for anew.
   void begin_anew();

@@ -34,7 +34,7 @@ FrameReport report(Verdict verdict, const Pose& pose, Timestamp time = 1s) {
 
 class FleetPositionTest : public testing::Test {
  protected:
-  void note(const FrameReport& frame) { keeper_.note(frame, frame.map_from_body, frame.time, "advice"); }
+  void note(const FrameReport& frame) { keeper_.note(frame, frame.time, "advice"); }
 
   FleetPositionKeeper keeper_;
 };

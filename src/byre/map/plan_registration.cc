@@ -7,6 +7,15 @@ Pose plan_from_body(const PlanRegistration& registration, const Pose& map_from_b
   return plan_from_map * scale_lengths(map_from_body, scale);
 }
 
+Matrix6 covariance_on_plan(const PlanRegistration& registration, const Pose& map_from_body, const Matrix6& covariance) {
+  const double scale = registration.plan_from_map.scale;
+  const Pose body_from_map = inverse(scale_lengths(map_from_body, scale));
+  Eigen::Matrix<double, 6, 7> of_registration;
+  of_registration << adjoint(body_from_map), Vector6::Zero();
+  of_registration.topRightCorner<3, 1>() = -body_from_map.translation;  // a longer map carries the body outwards
+  return scale_lengths(covariance, scale) + of_registration * registration.covariance * of_registration.transpose();
+}
+
 PlanJacobian plan_jacobian(const Similarity& plan_from_map, const Eigen::Vector3d& point_in_map) {
   const Eigen::Matrix3d rotation = plan_from_map.target_from_source.rotation.toRotationMatrix();
   const Eigen::Vector3d scaled = plan_from_map.scale * point_in_map;

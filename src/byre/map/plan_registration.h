@@ -22,6 +22,11 @@ struct PlanRegistration {
 // A pose that is known in the map, on the plan: lengths become metres, and the rest is a rigid motion.
 Pose plan_from_body(const PlanRegistration& registration, const Pose& map_from_body);
 
+// How well that pose is known on the plan: covariance of delta in plan_from_body * exp_pose(delta), metres and radians.
+// covariance: that of delta in map_from_body * exp_pose(delta), in the map's lengths. What the registration leaves open
+// is added, as it has nothing to do with what a frame shows.
+Matrix6 covariance_on_plan(const PlanRegistration& registration, const Pose& map_from_body, const Matrix6& covariance);
+
 // How well it is known where a point of the map lies on the plan: covariance of x and y, square metres.
 Eigen::Matrix2d plan_covariance_at(const PlanRegistration& registration, const Eigen::Vector3d& point_in_map);
 

@@ -39,6 +39,31 @@ TEST(PlanRegistration, HasTheJacobianOfItsSmallMotions) {
   }
 }
 
+// By finite differences: a small motion of everything that a pose on the plan hangs on.
+TEST(PlanRegistration, AddsWhatItLeavesOpenToTheCovarianceOfAPose) {
+  PlanRegistration registration = any_registration();
+  const Eigen::Matrix<double, 7, 1> sigmas{0.02, 0.03, 0.01, 0.002, 0.001, 0.004, 0.005};
+  registration.covariance =
+      sigmas.asDiagonal() * (0.2 * Matrix7::Ones() + 0.8 * Matrix7::Identity()) * sigmas.asDiagonal();
+  const Pose map_from_body{rotation_exp({0.4, 0.5, -0.6}), {1.0, 2.0, 3.0}};
+  const Matrix6 in_map = 1e-4 * (Matrix6::Identity() + Matrix6::Ones());
+  const Pose on_plan = plan_from_body(registration, map_from_body);
+  constexpr double kStep = 1e-6;
+  Eigen::Matrix<double, 6, 13> slopes;
+  for (int i = 0; i < 13; ++i) {
+    Eigen::Matrix<double, 13, 1> delta = Eigen::Matrix<double, 13, 1>::Zero();
+    delta[i] = kStep;
+    PlanRegistration moved = registration;
+    moved.plan_from_map.target_from_source = moved.plan_from_map.target_from_source * exp_pose(delta.head<6>());
+    moved.plan_from_map.scale *= std::exp(delta[6]);
+    const Pose there = plan_from_body(moved, map_from_body * exp_pose(delta.tail<6>()));
+    slopes.col(i) = log_pose(inverse(on_plan) * there) / kStep;
+  }
+  const Matrix6 expected = slopes.leftCols<7>() * registration.covariance * slopes.leftCols<7>().transpose() +
+                           slopes.rightCols<6>() * in_map * slopes.rightCols<6>().transpose();
+  EXPECT_LT((covariance_on_plan(registration, map_from_body, in_map) - expected).norm(), 1e-4 * expected.norm());
+}
+
 TEST(PlanRegistration, IsKnownWorseFarFromWhereItsYawIsUncertain) {
   PlanRegistration registration;
   registration.covariance(0, 0) = registration.covariance(1, 1) = 1e-4;

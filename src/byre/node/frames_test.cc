@@ -19,9 +19,11 @@ double distance(const Pose& a, const Pose& b) {
   return (a.translation - b.translation).norm() + angle_between(a.rotation, b.rotation);
 }
 
-FrameReport report_at(const std::optional<Pose>& odometry, Verdict verdict = Verdict::trusted) {
+FrameReport report_at(const std::optional<Pose>& odometry, const std::optional<Pose>& in_map,
+                      Verdict verdict = Verdict::trusted) {
   FrameReport report;
   report.state = State::tracking;
+  report.map_from_body = in_map;
   report.odometry_from_body = odometry;
   report.health.verdict = verdict;
   return report;
@@ -29,37 +31,37 @@ FrameReport report_at(const std::optional<Pose>& odometry, Verdict verdict = Ver
 
 TEST(PoseFrames, PutMapAndOdometryTogether) {
   PoseFrames frames;
-  frames.note(report_at(some_pose(1)), some_pose(2));
+  frames.note(report_at(some_pose(1), some_pose(2)));
   EXPECT_LT(distance(*frames.map_from_odom() * *frames.odom_from_base(), some_pose(2)), 1e-9);
   EXPECT_FALSE(frames.is_held());
 }
 
 TEST(PoseFrames, HoldTheMapWhileItIsDoubtfulAndWithdrawItOnceTheRobotIsLost) {
   PoseFrames frames;
-  frames.note(report_at(some_pose(1), Verdict::untrusted), some_pose(2));
+  frames.note(report_at(some_pose(1), some_pose(2), Verdict::untrusted));
   EXPECT_FALSE(frames.map_from_odom()) << "nothing was trusted so far";
-  frames.note(report_at(some_pose(1)), some_pose(2));
+  frames.note(report_at(some_pose(1), some_pose(2)));
   const Pose known = *frames.map_from_odom();
-  frames.note(report_at(some_pose(3), Verdict::untrusted), some_pose(0.5));
+  frames.note(report_at(some_pose(3), some_pose(0.5), Verdict::untrusted));
   ASSERT_TRUE(frames.map_from_odom());
   EXPECT_LT(distance(*frames.map_from_odom(), known), 1e-12);
   EXPECT_TRUE(frames.is_held());
-  FrameReport lost = report_at(std::nullopt, Verdict::untrusted);
+  FrameReport lost = report_at(std::nullopt, std::nullopt, Verdict::untrusted);
   lost.events = {SessionEvent::navigation_error};
-  frames.note(lost, std::nullopt);
+  frames.note(lost);
   EXPECT_FALSE(frames.map_from_odom());
   EXPECT_FALSE(frames.odom_from_base());
 }
 
 TEST(PoseFrames, GoOnWithOdometryWhereTrackingBeginsAnew) {
   PoseFrames frames;
-  frames.note(report_at(some_pose(1)), some_pose(2));
+  frames.note(report_at(some_pose(1), some_pose(2)));
   const Pose before = *frames.odom_from_base();
   frames.begin_anew();
   EXPECT_FALSE(frames.map_from_odom());
-  frames.note(report_at(some_pose(7)), std::nullopt);
+  frames.note(report_at(some_pose(7), std::nullopt));
   EXPECT_LT(distance(*frames.odom_from_base(), before), 1e-9);
-  frames.note(report_at(some_pose(7) * some_pose(0.2)), std::nullopt);
+  frames.note(report_at(some_pose(7) * some_pose(0.2), std::nullopt));
   EXPECT_LT(distance(*frames.odom_from_base(), before * some_pose(0.2)), 1e-9);
 }
 

@@ -48,9 +48,9 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   return status;
 }
 
-std::string health_line(const FrameReport& report, const std::optional<Pose>& map_from_body) {
+std::string health_line(const FrameReport& report) {
   nlohmann::ordered_json line = {{"time_ns", report.time.count()}, {"state", to_string(report.state)}};
-  line["pose"] = map_from_body ? pose_json(*map_from_body, report.covariance) : nlohmann::ordered_json();
+  line["pose"] = report.map_from_body ? pose_json(*report.map_from_body, report.covariance) : nlohmann::ordered_json();
   line["health"] = health_json(report.health);
   return dumped(line);
 }

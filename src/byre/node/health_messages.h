@@ -14,6 +14,6 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report);
 std::string advice_for(Doubt doubt);
 
 // Time, state, health and the pose in the map, as one line of JSON.
-std::string health_line(const FrameReport& report, const std::optional<Pose>& map_from_body);
+std::string health_line(const FrameReport& report);
 
 }  // namespace byre

@@ -234,10 +234,10 @@ void Node::process(const Pairs::Pair& pair) {
 
 void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   if (is_dropped(report.input)) return;  // it has no pose, and says nothing of where the robot is
-  map_from_body_ = report.map_from_body ? std::optional(runner_.published(*report.map_from_body)) : std::nullopt;
-  pose_frames_.note(report, map_from_body_);
-  outputs_.tell_frame(left.header, report, map_from_body_, pose_frames_);
-  if (fleet_) fleet_->note(report, map_from_body_, steady_now(), advice_for(report.health.doubt));
+  map_from_body_ = report.map_from_body;
+  pose_frames_.note(report);
+  outputs_.tell_frame(left.header, report, pose_frames_);
+  if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
   note_events(report);
   last_report_ = report;

@@ -121,18 +121,17 @@ void NodeOutputs::tell_events(const FrameReport& report) {
   for (std::string line; std::getline(lines, line);) send_text(events_, line);
 }
 
-void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report,
-                             const std::optional<Pose>& map_from_body, const PoseFrames& frames) {
+void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames) {
   if (frames.odom_from_base()) {
     tell_odometry({image.stamp, config_.odom_frame}, report, *frames.odom_from_base());
   } else {
     last_.reset();
   }
-  if (map_from_body && report.health.verdict != Verdict::untrusted) {
-    send(pose_, pose_message(in_map(image), *map_from_body, report.covariance));
+  if (report.map_from_body && report.health.verdict != Verdict::untrusted) {
+    send(pose_, pose_message(in_map(image), *report.map_from_body, report.covariance));
   }
   tell_transforms(image, frames);
-  if (is_wanted(health_)) send_text(health_, health_line(report, map_from_body));
+  if (is_wanted(health_)) send_text(health_, health_line(report));
   tell_events(report);
   ++frames_;
 }

@@ -23,9 +23,8 @@ class NodeOutputs {
   // watchers: where everything is told as well; null for nowhere. All but the settings outlive this.
   NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
-  // Everything about a frame. image: of its left image; map_from_body: pose in the map frame that is published.
-  void tell_frame(const ros::Header& image, const FrameReport& report, const std::optional<Pose>& map_from_body,
-                  const PoseFrames& frames);
+  // Everything about a frame, its pose in the map frame that is published. image: of its left image.
+  void tell_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
   void tell_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
   // Images as they came, to watchers alone.
   void tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);

@@ -14,8 +14,8 @@ class PoseFrames {
   // Poses that come next are of another run, whose odometry has a frame of its own, and of another map.
   void begin_anew();
 
-  // map_from_body: the report's pose, in the map frame that is published.
-  void note(const FrameReport& report, const std::optional<Pose>& map_from_body);
+  // The report's pose in the map: in the map frame that is published.
+  void note(const FrameReport& report);
 
   const std::optional<Pose>& odom_from_base() const { return odom_from_base_; }  // empty while it is not known
   const std::optional<Pose>& map_from_odom() const { return map_from_odom_; }    // empty before and when withdrawn

@@ -51,6 +51,10 @@ SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(sla
 FrameReport SlamRunner::process(const CameraImages& images) {
   FrameReport report = slam_->process(images);
   had_pose_ = had_pose_ || report.map_from_body;
+  if (!config_.in_plan || !report.map_from_body) return report;
+  const auto covariance = slam_->plan_covariance(*report.map_from_body, report.covariance);
+  report.covariance = covariance.value_or(report.covariance);
+  report.map_from_body = published(*report.map_from_body);
   return report;
 }
 

@@ -25,6 +25,7 @@ class SlamRunner {
   // What wheels and a gyroscope told before the next frame. Precondition: is_running().
   void tell_wheels(const StampedPose& odometry_from_base) { slam_->tell_wheels(odometry_from_base); }
   void tell_gyroscope(const AngularRate& rate) { slam_->tell_gyroscope(rate); }
+  // The next frame; its pose in the map and the covariance of that are as they are published.
   FrameReport process(const CameraImages& images);
 
   // A pose of the body, as it is published: on the floor plan where that is wanted.

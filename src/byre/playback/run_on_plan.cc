@@ -11,7 +11,9 @@ Trajectory on_plan(Trajectory trajectory, const PlanRegistration& registration) 
 
 MappedFrame on_plan(MappedFrame frame, const PlanRegistration& registration) {
   if (!frame.report || !frame.report->map_from_body) return frame;
-  frame.report->map_from_body = plan_from_body(registration, *frame.report->map_from_body);
+  FrameReport& report = *frame.report;
+  report.covariance = covariance_on_plan(registration, *report.map_from_body, report.covariance);
+  report.map_from_body = plan_from_body(registration, *report.map_from_body);
   return frame;
 }
 

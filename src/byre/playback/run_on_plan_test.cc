@@ -35,5 +35,17 @@ TEST(RunOnPlan, MovesEveryPoseInTheMapAndNoOther) {
   EXPECT_THAT(*moved.frames[2].report->odometry_from_body, PoseNear(kMapFromBody, 0.0, 1e-9));
 }
 
+TEST(RunOnPlan, TellsWhatTheRegistrationLeavesOpen) {
+  PlanRegistration registration = turned_and_shifted();
+  registration.covariance(5, 5) = 1e-4;  // about the map's vertical, beside whose origin the body stands
+  MappedFrame frame;
+  frame.report.emplace();
+  frame.report->map_from_body = Pose{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};
+  frame.report->covariance = 1e-6 * Matrix6::Identity();
+  const Matrix6 on_floor = on_plan(frame, registration).report->covariance;
+  EXPECT_NEAR(on_floor(0, 0), 1e-6, 1e-12);
+  EXPECT_NEAR(on_floor(1, 1), 1e-6 + 100.0 * 1e-4, 1e-9);
+}
+
 }  // namespace
 }  // namespace byre

@@ -270,6 +270,11 @@ std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {
   return plan ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
 }
 
+std::optional<Matrix6> Slam::plan_covariance(const Pose& map_from_body, const Matrix6& covariance) const {
+  const auto& plan = parts_->plan;
+  return plan ? std::optional(covariance_on_plan(*plan, map_from_body, covariance)) : std::nullopt;
+}
+
 const Rig& Slam::rig() const {
   return parts_->engine.rig();
 }

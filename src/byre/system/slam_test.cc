@@ -97,6 +97,7 @@ TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
   EXPECT_EQ(report.health.verdict, Verdict::trusted) << to_string(report.health.doubt);
   ASSERT_TRUE(report.map_from_body);
   EXPECT_FALSE(slam.plan_from_body(*report.map_from_body)) << "the map is on no plan";
+  EXPECT_FALSE(slam.plan_covariance(*report.map_from_body, report.covariance));
   slam.finish();
   EXPECT_GT(slam.trajectory().size(), 10u);
 }
@@ -136,6 +137,8 @@ TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
   const Eigen::Vector3d in_map = poses.back().world_from_body.translation;
   const Eigen::Vector3d on_floor = slam.plan_from_body(poses.back().world_from_body).value().translation;
   EXPECT_LT((on_floor - in_map - Eigen::Vector3d(10.0, 20.0, 0.0)).norm(), 1e-9);
+  const Matrix6 in_doubt = slam.plan_covariance(poses.back().world_from_body, Matrix6::Identity()).value();
+  EXPECT_LT((in_doubt - Matrix6::Identity()).norm(), 1e-12) << "the registration was given as exact";
   slam.finish();
   ASSERT_GT(slam.keyframes(), 0);
   EXPECT_EQ(slam.point_positions().size(), static_cast<std::size_t>(slam.points()));
