@@ -54,11 +54,14 @@ class PairSum {
       by_region_[image_region_of(keypoint.pixel.x(), keypoint.pixel.y(), rig_)].push_back(keypoint.row_offset);
     }
     ++pairs_;
+    by_part_.note(features, rig_);
     if (features.size() > 0) matched_.push_back(static_cast<double>(errors.size()) / features.size());
     if (!errors.empty()) row_errors_.push_back(median(std::move(errors)));
   }
 
-  PairCheck result() const { return {pairs_, median_or_zero(matched_), median_or_zero(row_errors_), common_error()}; }
+  PairCheck result() const {
+    return {pairs_, median_or_zero(matched_), by_part_.at_best(), median_or_zero(row_errors_), common_error()};
+  }
 
  private:
   // Medians, as what is matched wrong lies anywhere.
@@ -77,6 +80,7 @@ class PairSum {
   Rig rig_;
   int pairs_ = 0;
   std::vector<double> matched_, row_errors_;
+  MatchedByPart by_part_{1.0};
   ByImageRegion<std::vector<double>> by_region_;
 };
 
@@ -189,7 +193,13 @@ void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
                         "look for what drops them, or use one camera with --camera left"});
   }
   if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
-  if (check.pair->matched < kLeastStereoShare) {
+  if (is_partly_hidden({check.pair->matched, check.pair->matched_at_best, check.pair->row_error})) {
+    findings.push_back(
+        {false,
+         formatted("only %.1f %% of the features are found in the right image, but %.0f %% in parts of it",
+                   100.0 * check.pair->matched, 100.0 * check.pair->matched_at_best),
+         "something hides parts of what the cameras see: see that the lenses are clean"});
+  } else if (check.pair->matched < kLeastStereoShare) {
     findings.push_back(
         {true, formatted("only %.1f %% of the features are found in the right image", 100.0 * check.pair->matched),
          "left and right may be swapped, upside down or out of step, or the calibration another one's"});

@@ -26,6 +26,7 @@ struct CameraCheck {
 struct PairCheck {
   int pairs = 0;
   double matched = 0.0;            // share of the left image's features found in the right one
+  double matched_at_best = 0.0;    // the same in the tenth of the image where it is largest
   double row_error = 0.0;          // pixels by which they lie off their row
   double calibration_error = 0.0;  // pixels off their row that features of a part of the image have in common, rms
 };

@@ -167,7 +167,7 @@ InputFrame Session::input_of(const Frame& rectified) {
   if (mission_ && mission_->calibrator()) frame = mission_->calibrator()->corrected(rectified);
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
-  const InputEvidence evidence = input_watch_.look_at(frame);
+  const InputEvidence evidence = input_watch_.look_at(frame, rig_);
   return {std::move(frame), fault, evidence};
 }
 

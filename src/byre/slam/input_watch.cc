@@ -1,9 +1,9 @@
 #include "byre/slam/input_watch.h"
 
-#include "byre/features/stereo_fit.h"
 #include "byre/geometry/median.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,10 +19,12 @@ double blend(std::optional<double> before, double now) {
 
 }  // namespace
 
-InputEvidence InputWatch::look_at(const Frame& frame) {
+InputWatch::InputWatch(const ImageConditionOptions& image) : image_(image), by_part_(kMemory) {}
+
+InputEvidence InputWatch::look_at(const Frame& frame, const Rig& rig) {
   InputEvidence evidence;
   note_repetition(frame, evidence);
-  if (frame.condition && frame.right_condition) note_pair(frame, evidence);
+  if (frame.condition && frame.right_condition) note_pair(frame, rig, evidence);
   return evidence;
 }
 
@@ -34,7 +36,7 @@ void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
   last_content_ = frame.content;
 }
 
-void InputWatch::note_pair(const Frame& frame, InputEvidence& evidence) {
+void InputWatch::note_pair(const Frame& frame, const Rig& rig, InputEvidence& evidence) {
   if (fault_of(*frame.condition, image_) != ImageFault::none) return;
   evidence.right_fault = fault_of(*frame.right_condition, image_);
   if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeaturesJudged) return;
@@ -46,7 +48,9 @@ void InputWatch::note_pair(const Frame& frame, InputEvidence& evidence) {
   const double matched = static_cast<double>(row_errors.size()) / frame.features->size();
   matched_ = blend(matched_, matched);
   if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median(std::move(row_errors)));
-  evidence.cameras_disagree = *matched_ < kLeastStereoShare || row_error_.value_or(0.0) > kMostRowOffset;
+  by_part_.note(*frame.features, rig);
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  evidence.cameras_disagree = !images_fit({*matched_, by_part_.at_best(), row_error_.value_or(kUnknown)});
 }
 
 }  // namespace byre

@@ -5,6 +5,13 @@
 namespace byre {
 namespace {
 
+const Rig kRig = [] {
+  Rig rig;
+  rig.width = 640;
+  rig.height = 480;
+  return rig;
+}();
+
 constexpr ImageCondition kGoodImage{100.0f, 20.0f, 0.0f, 0.8f};
 constexpr ImageCondition kBlackImage{1.0f, 0.2f, 1.0f, 0.0f};
 
@@ -34,27 +41,27 @@ Frame at(double seconds, std::uint64_t content) {
 bool disagree_after(int frames, const Frame& frame) {
   InputWatch watch({});
   bool disagree = false;
-  for (int i = 0; i < frames; ++i) disagree = watch.look_at(frame).cameras_disagree;
+  for (int i = 0; i < frames; ++i) disagree = watch.look_at(frame, kRig).cameras_disagree;
   return disagree;
 }
 
 TEST(InputWatch, TellsForHowLongAnImageIsRepeated) {
   InputWatch watch({});
-  EXPECT_FALSE(watch.look_at(at(0.0, 7)).is_repeated);
-  EXPECT_FALSE(watch.look_at(at(0.1, 8)).is_repeated);
-  const InputEvidence once = watch.look_at(at(0.2, 8));
+  EXPECT_FALSE(watch.look_at(at(0.0, 7), kRig).is_repeated);
+  EXPECT_FALSE(watch.look_at(at(0.1, 8), kRig).is_repeated);
+  const InputEvidence once = watch.look_at(at(0.2, 8), kRig);
   EXPECT_TRUE(once.is_repeated);
   EXPECT_NEAR(once.frozen_seconds, 0.1, 1e-9);
-  EXPECT_NEAR(watch.look_at(at(0.3, 8)).frozen_seconds, 0.2, 1e-9);
-  const InputEvidence moving = watch.look_at(at(0.4, 9));
+  EXPECT_NEAR(watch.look_at(at(0.3, 8), kRig).frozen_seconds, 0.2, 1e-9);
+  const InputEvidence moving = watch.look_at(at(0.4, 9), kRig);
   EXPECT_FALSE(moving.is_repeated);
   EXPECT_EQ(moving.frozen_seconds, 0.0);
 }
 
 TEST(InputWatch, SimulatedFramesWithoutImagesAreNotTakenForRepeated) {
   InputWatch watch({});
-  watch.look_at(at(0.0, 0));
-  EXPECT_FALSE(watch.look_at(at(0.1, 0)).is_repeated);
+  watch.look_at(at(0.0, 0), kRig);
+  EXPECT_FALSE(watch.look_at(at(0.1, 0), kRig).is_repeated);
 }
 
 TEST(InputWatch, PairsThatFitAreLeftAlone) {
@@ -67,17 +74,32 @@ TEST(InputWatch, PairsThatShareNothingOrLieOnOtherRowsDisagree) {
   EXPECT_TRUE(disagree_after(1, pair_with(90, 1.0f)));
 }
 
+TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
+  Frame frame = pair_with(0, 0.0f);
+  std::vector<Keypoint> keypoints = frame.features->keypoints();
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    keypoints[i].pixel = {static_cast<float>(i % 20) * 32.0f, static_cast<float>(i / 20) * 48.0f};
+    if (keypoints[i].pixel.x() > 32.0f) continue;  // one side of the image is clean
+    keypoints[i].disparity = 10.0f;
+    keypoints[i].disparity_sigma = 0.2f;
+    keypoints[i].row_offset = 0.2f;
+  }
+  frame.features =
+      std::make_shared<const Features>(640, 480, keypoints, frame.features->descriptors(), std::vector<Patch>{});
+  EXPECT_FALSE(disagree_after(10, frame));
+}
+
 TEST(InputWatch, OneBadPairAmongGoodOnesIsForgiven) {
   InputWatch watch({});
-  for (int i = 0; i < 5; ++i) watch.look_at(pair_with(120, 0.2f));
-  EXPECT_FALSE(watch.look_at(pair_with(4, 0.2f)).cameras_disagree);
+  for (int i = 0; i < 5; ++i) watch.look_at(pair_with(120, 0.2f), kRig);
+  EXPECT_FALSE(watch.look_at(pair_with(4, 0.2f), kRig).cameras_disagree);
 }
 
 TEST(InputWatch, ABlindRightCameraIsToldAsSuch) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.right_condition = kBlackImage;
-  const InputEvidence evidence = watch.look_at(frame);
+  const InputEvidence evidence = watch.look_at(frame, kRig);
   EXPECT_EQ(evidence.right_fault, ImageFault::dark);
   EXPECT_FALSE(evidence.cameras_disagree);
 }
@@ -86,7 +108,7 @@ TEST(InputWatch, WhereTheLeftImageIsOfNoUseTheRightOneIsNotBlamed) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.condition = frame.right_condition = kBlackImage;
-  const InputEvidence evidence = watch.look_at(frame);
+  const InputEvidence evidence = watch.look_at(frame, kRig);
   EXPECT_EQ(evidence.right_fault, ImageFault::none);
   EXPECT_FALSE(evidence.cameras_disagree);
 }
@@ -95,7 +117,7 @@ TEST(InputWatch, OneCameraAloneHasNoPairToJudge) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.right_condition.reset();
-  EXPECT_FALSE(watch.look_at(frame).cameras_disagree);
+  EXPECT_FALSE(watch.look_at(frame, kRig).cameras_disagree);
 }
 
 }  // namespace

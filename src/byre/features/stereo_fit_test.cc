@@ -1,0 +1,70 @@
+#include "byre/features/stereo_fit.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+Rig image_of(int width, int height) {
+  Rig rig;
+  rig.width = width;
+  rig.height = height;
+  return rig;
+}
+
+// Features all over an image of 800 x 600 pixels, of which those left of a column are found in the right image.
+Features found_left_of(float column) {
+  std::vector<Keypoint> keypoints;
+  for (float v = 10.0f; v < 600.0f; v += 20.0f) {
+    for (float u = 10.0f; u < 800.0f; u += 20.0f) {
+      Keypoint& keypoint = keypoints.emplace_back(Keypoint{{u, v}});
+      if (u >= column) continue;
+      keypoint.disparity = 10.0f;
+      keypoint.disparity_sigma = 0.2f;
+    }
+  }
+  const std::vector<Descriptor> descriptors(keypoints.size());
+  return {800, 600, std::move(keypoints), descriptors, {}};
+}
+
+TEST(StereoFit, OfImagesThatShareEnoughOnTheirRowsIsGood) {
+  EXPECT_TRUE(images_fit({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.7}));
+  EXPECT_FALSE(images_fit({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.9}));
+  EXPECT_FALSE(images_fit({.matched = 0.1, .matched_at_best = 0.1, .row_error = 0.2}));
+}
+
+TEST(StereoFit, OfSoiledLensesIsGoodWhereBothSee) {
+  constexpr StereoFit kSoiled{.matched = 0.08, .matched_at_best = 0.4, .row_error = 0.3};
+  EXPECT_TRUE(images_fit(kSoiled));
+  EXPECT_TRUE(is_partly_hidden(kSoiled));
+  EXPECT_FALSE(is_partly_hidden({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.3}));
+}
+
+TEST(StereoFit, OfATurnedCameraIsBadThoughSomePartsMatch) {
+  EXPECT_FALSE(images_fit({.matched = 0.08, .matched_at_best = 0.4, .row_error = 0.7}));
+}
+
+TEST(MatchedByPart, IsTheShareWhereItIsLargest) {
+  const Rig rig = image_of(800, 600);
+  MatchedByPart matched(1.0);
+  EXPECT_EQ(matched.at_best(), 0.0);
+  matched.note(found_left_of(100.0f), rig);
+  EXPECT_EQ(matched.at_best(), 1.0) << "one of eight columns of parts is a tenth";
+  MatchedByPart nothing(1.0);
+  nothing.note(found_left_of(0.0f), rig);
+  EXPECT_EQ(nothing.at_best(), 0.0);
+}
+
+TEST(MatchedByPart, ForgetsWhatWasBefore) {
+  const Rig rig = image_of(800, 600);
+  MatchedByPart remembers(1.0), forgets(0.5);
+  for (MatchedByPart* matched : {&remembers, &forgets}) {
+    matched->note(found_left_of(800.0f), rig);
+    for (int i = 0; i < 3; ++i) matched->note(found_left_of(0.0f), rig);
+  }
+  EXPECT_NEAR(remembers.at_best(), 1.0 / 4.0, 1e-9);
+  EXPECT_NEAR(forgets.at_best(), 0.125 / 1.875, 1e-9);
+}
+
+}  // namespace
+}  // namespace byre
