@@ -122,11 +122,13 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
   return sighting;
 }
 
-// Weighs all observations anew at this pose; all in front of the camera are inliers so far.
+// Weighs all observations anew at this pose; all in front of the camera are inliers so far. Sightings of another pose
+// lend their memory.
 std::vector<Sighting> sight(std::span<const PoseObservation> observations, const Rig& rig,
-                            const Pose& camera_from_world, double systematic_sigma) {
+                            const Pose& camera_from_world, double systematic_sigma,
+                            std::vector<Sighting> sightings = {}) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
-  std::vector<Sighting> sightings;
+  sightings.clear();
   sightings.reserve(observations.size());
   for (const PoseObservation& observation : observations) {
     sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
@@ -316,8 +318,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   const std::optional<KnownPose> known = known_pose(prior);
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
-  const auto sight_from = [&](const Pose& pose) { return sight(observations, rig, pose, options.systematic_sigma); };
-  std::vector<Sighting> sightings = sight_from(predicted_camera_from_world);
+  std::vector<Sighting> sightings = sight(observations, rig, predicted_camera_from_world, options.systematic_sigma);
   // Far from the solution all errors are large: gates and loss follow their median down, so that no minority that
   // happens to fit captures the pose.
   for (int round = 0; round < options.rounds; ++round) {
@@ -326,12 +327,13 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
     if (count_inliers(sightings) < kMinInliers) return std::nullopt;
     result.camera_from_world =
         descend(sightings, known, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
-    sightings = sight_from(result.camera_from_world);
+    sightings = sight(observations, rig, result.camera_from_world, options.systematic_sigma, std::move(sightings));
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
   choose_inliers(sightings, result.variance_factor);
   result.inlier_count = count_inliers(sightings);
   if (result.inlier_count < kMinInliers) return std::nullopt;
+  result.inliers.reserve(sightings.size());
   for (const Sighting& sighting : sightings) result.inliers.push_back(sighting.inlier);
   return with_covariance(std::move(result), std::move(sightings), known, rig, options);
 }
