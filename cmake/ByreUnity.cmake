@@ -12,6 +12,7 @@ set(BYRE_TESTS_APART optimise)
 
 # Files that include themselves once for each processor, and those whose objects are picked one by one.
 set(BYRE_FILES_APART features/downscale.cc features/remap.cc features/gaussian_blur.cc features/fast_corners.cc
+    features/block_differences.cc
     dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc viewer/web_library.cc)
 list(TRANSFORM BYRE_FILES_APART PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
 set_source_files_properties(${BYRE_FILES_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
