@@ -1,5 +1,5 @@
+#include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/report.h"
-
 #include "byre/input/formatted.h"
 
 #include <algorithm>
@@ -8,55 +8,6 @@
 
 namespace byre {
 namespace {
-
-constexpr const char* kNothing = "–";
-
-// Characters as a terminal shows them: bytes of UTF-8 that begin one.
-std::size_t shown_length(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0U) != 0x80U; }));
-}
-
-// A table whose columns are padded, so that it can be read as it is. Columns without any content are left out.
-class MarkdownTable {
- public:
-  explicit MarkdownTable(std::vector<std::string> titles) : titles_(std::move(titles)) {}
-
-  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-
-  std::string text() const {
-    if (rows_.empty()) return "";
-    std::string separator = "|";
-    for (std::size_t i = 0; i < titles_.size(); ++i) {
-      if (is_used(i)) separator += std::string(width(i) + 2, '-') + "|";
-    }
-    std::string text = line(titles_) + separator + "\n";
-    for (const std::vector<std::string>& row : rows_) text += line(row);
-    return text;
-  }
-
- private:
-  bool is_used(std::size_t column) const {
-    return std::ranges::any_of(rows_, [column](const auto& row) { return row[column] != kNothing; });
-  }
-
-  std::size_t width(std::size_t column) const {
-    std::size_t most = shown_length(titles_[column]);
-    for (const std::vector<std::string>& row : rows_) most = std::max(most, shown_length(row[column]));
-    return most;
-  }
-
-  std::string line(const std::vector<std::string>& cells) const {
-    std::string text = "|";
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (is_used(i)) text += " " + cells[i] + std::string(width(i) - shown_length(cells[i]), ' ') + " |";
-    }
-    return text + "\n";
-  }
-
-  std::vector<std::string> titles_;
-  std::vector<std::vector<std::string>> rows_;
-};
 
 std::string number(double value, double scale, int digits) {
   return formatted("%.*f", digits, scale * value);

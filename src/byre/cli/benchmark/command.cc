@@ -1,6 +1,7 @@
 #include "byre/benchmark/benchmark_run.h"
 #include "byre/benchmark/plots.h"
 #include "byre/benchmark/report.h"
+#include "byre/benchmark/speed.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
@@ -19,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -29,6 +31,7 @@ namespace fs = std::filesystem;
 
 struct BenchmarkCommandOptions {
   std::string protocol;
+  SpeedCase speed;  // measured in place of a protocol, where it names a recording
   BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .engine = {}};
   OptionsFile options_file;
   std::optional<Pace> pace;
@@ -36,6 +39,7 @@ struct BenchmarkCommandOptions {
   std::optional<fs::path> vocabulary;
   bool quiet = false;
 
+  bool is_of_speed() const { return !speed.recording.empty(); }
   EngineOptions engine_options() const {
     EngineOptions engine = read_engine_options(options_file);
     if (pace) engine.pace = *pace;
@@ -47,12 +51,17 @@ constexpr const char* kBenchmarkFooter = R"(Examples:
   byre benchmark euroc --data ~/recordings/euroc
   byre benchmark mh_short --data ~/recordings/euroc --runs 1 -o out
   byre benchmark my_barn.yaml --data /data --only "tuesday*" monday --pace live
+  byre benchmark --speed ~/recordings/euroc/MH_01_easy --runs 3
+  byre benchmark --speed monday --map barn.byre --camera left -o out
 
 Each case of the protocol is run with each of its arms: no_map (plain SLAM), localise_only (on the map of another
 recording, nothing mapped) and hybrid (on that map, with an online one beside it). Maps are made once. Into the folder
 go benchmark.md (the tables that are printed), benchmark.json, plots as SVG, the maps, and every run's trajectories,
-for "byre evaluate". Cases whose recordings are not there are skipped. Ctrl-C keeps what was measured until then, then
-the exit code is 130. docs/benchmark.md explains the protocol and the figures.)";
+for "byre evaluate". Cases whose recordings are not there are skipped.
+With --speed one recording is run, at its own pace unless told otherwise, and the times of a frame's stages are printed,
+with CPU time, memory, and where the machine tells it instructions; with -o as speed.md and speed.json too.
+Ctrl-C keeps what was measured until then, then the exit code is 130. docs/benchmark.md explains the protocol and the
+figures.)";
 
 // The plots of the cases, as Markdown that shows them.
 std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
@@ -104,6 +113,43 @@ class BenchmarkProgress {
   std::optional<Progress> progress_;
 };
 
+void write_speed(const SpeedCase& what, const std::vector<SpeedMeasures>& runs, const fs::path& folder) {
+  write_whole(folder / "speed.md", speed_markdown(what, runs));
+  write_whole(folder / "speed.json", speed_json(what, runs));
+}
+
+ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& result) {
+  SpeedCase& what = options.speed;
+  what.engine = options.engine_options();
+  what.engine.pace = options.pace.value_or(Pace::live);
+  what.engine.vocabulary = open_vocabulary(options.vocabulary);
+  what.cores = static_cast<int>(std::thread::hardware_concurrency());
+  const fs::path& folder = options.run.output;
+  std::vector<fs::path> outputs;
+  if (!folder.empty()) {
+    make_folder(folder);
+    outputs = {folder / "speed.md", folder / "speed.json"};
+  }
+  limit_image_threads(1);
+  const InterruptCatcher interrupt(outputs);
+  BenchmarkProgress progress(options.quiet);
+  MapRunHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_frame = [&progress](int done, const MappedFrame& frame) { progress.update(done, frame); };
+  const int frames = open_recording(what.recording, what.range, what.open)->size();
+  const int count = options.runs.value_or(1);
+  std::vector<SpeedMeasures> runs;
+  for (int i = 0; i < count && !interrupt.caught(); ++i) {
+    progress.begin("run " + std::to_string(i + 1) + " of " + std::to_string(count), frames);
+    const SpeedMeasures measured = measure_speed(what, hooks);
+    if (!interrupt.caught()) runs.push_back(measured);
+    if (!folder.empty()) write_speed(what, runs, folder);
+  }
+  progress.end();
+  result << speed_markdown(what, runs);
+  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+}
+
 ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& result) {
   const fs::path file = find_benchmark_protocol(options.protocol);
   BenchmarkProtocol protocol = read_benchmark_protocol(file);
@@ -138,22 +184,41 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
 
 }  // namespace
 
+// What is only of --speed; returns that.
+CLI::Option* declare_speed(CLI::App& command, SpeedCase& speed) {
+  CLI::Option* const recording = add_input(command, Input::recording, "--speed", speed.recording,
+                                           "Measure the speed of this recording, in place of a protocol")
+                                     ->type_name("RECORDING");
+  const std::size_t count_before = command.get_options().size();
+  add_input(command, Input::file, "--map", speed.map, "The offline map of a mission (none: plain SLAM)")
+      ->type_name("MAP");
+  declare_open_options(command, speed.open);
+  declare_frame_range(command, speed.range);
+  const std::vector<CLI::Option*> declared = command.get_options();
+  for (std::size_t i = count_before; i < declared.size(); ++i) declared[i]->needs(recording)->group("With --speed");
+  return recording;
+}
+
 Action declare_benchmark(CLI::App& command) {
   constexpr int kMostRuns = 1000;
   const auto options = std::make_shared<BenchmarkCommandOptions>();
+  CLI::Option* const speed = declare_speed(command, options->speed);
   add_input(command, Input::file, "PROTOCOL", options->protocol,
             "A protocol file, or one that comes with byre: euroc, twin, mh_short")
       ->type_name("FILE|NAME")
-      ->required();
+      ->excludes(speed);
   add_input(command, Input::folder, "--data", options->run.data, "Folder in which the protocol's recordings lie (.)")
-      ->type_name("FOLDER");
+      ->type_name("FOLDER")
+      ->excludes(speed);
   add_output(command, Output::folder, "-o,--output", options->run.output,
-             "Folder for results, made if need be (benchmark_PROTOCOL)")
+             "Folder for results, made if need be (benchmark_PROTOCOL; with --speed none)")
       ->type_name("FOLDER");
-  command.add_option("--runs", options->runs, "Runs of each arm, instead of the protocol's")
+  command
+      .add_option("--runs", options->runs,
+                  "Runs of each arm, instead of the protocol's; with --speed of the recording (1)")
       ->type_name("N")
       ->check(between(1, kMostRuns));
-  add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...");
+  add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...")->excludes(speed);
   declare_pace(command, options->pace);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary to recognise places with (the one byre comes with)")
@@ -161,7 +226,14 @@ Action declare_benchmark(CLI::App& command) {
   declare_options_file(command, options->options_file, [options = options.get()] { return options->engine_options(); });
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kBenchmarkFooter);
-  return [options](std::ostream& result) { return run_benchmark_command(*options, result); };
+  check_when_parsed(command, [options = options.get()] {
+    require_sense(options->speed.range);
+    if (options->protocol.empty() && !options->is_of_speed()) throw CLI::RequiredError("PROTOCOL or --speed");
+  });
+  return [options](std::ostream& result) {
+    if (options->is_of_speed()) return measure_speed_command(*options, result);
+    return run_benchmark_command(*options, result);
+  };
 }
 
 }  // namespace byre::cli

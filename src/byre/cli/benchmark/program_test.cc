@@ -51,6 +51,33 @@ TEST_F(BenchmarkProgram, RepeatsItselfQuietly) {
   EXPECT_EQ(read("a/trajectories/room.no_map.1.final.txt"), read("b/trajectories/room.no_map.1.final.txt"));
 }
 
+TEST_F(BenchmarkProgram, MeasuresTheSpeedOfARecording) {
+  const std::string room = "'" + RenderedFixture::shared().folder().string() + "'";
+  const Outcome outcome = run("benchmark --speed " + room + " --frames 0:6 --runs 2 --pace paced -o speed");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("6 frames, 6 with a pose; without a map; pace paced"));
+  EXPECT_THAT(outcome.output, HasSubstr("| stereo "));
+  EXPECT_THAT(outcome.output, HasSubstr("| CPU time, s "));
+  EXPECT_EQ(read("speed/speed.md"), outcome.output);
+  const auto parsed = nlohmann::json::parse(read("speed/speed.json"));
+  ASSERT_THAT(parsed["runs"], SizeIs(2));
+  const auto& first = parsed["runs"][0];
+  EXPECT_EQ(first["stages"]["frame"]["count"], 6);
+  EXPECT_GT(first["stages"]["frame"]["mean_ms"], first["stages"]["extract"]["mean_ms"]);
+  EXPECT_GT(first["first_pose_s"], 0.0);
+  EXPECT_GT(first["wall_s"], first["first_pose_s"]);
+}
+
+TEST_F(BenchmarkProgram, TakesAProtocolOrARecordingAndNotBoth) {
+  const std::string room = "'" + RenderedFixture::shared().folder().string() + "'";
+  EXPECT_EQ(run("benchmark room.yaml --speed " + room).exit_code, 2);
+  EXPECT_EQ(run("benchmark --speed " + room + " --only room").exit_code, 2);
+  EXPECT_EQ(run("benchmark room.yaml --stride 2").exit_code, 2);
+  const Outcome neither = run("benchmark --runs 2");
+  EXPECT_EQ(neither.exit_code, 2);
+  EXPECT_THAT(neither.errors, HasSubstr("PROTOCOL or --speed"));
+}
+
 TEST_F(BenchmarkProgram, SaysWhatIsWrongWithItsInput) {
   EXPECT_EQ(run("benchmark").exit_code, 2);
   EXPECT_EQ(run("benchmark room.yaml --runs 0").exit_code, 2);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+inline constexpr const char* kNothing = "–";  // the cell of what there is no figure of
+
+// A table in Markdown whose columns are padded, so that it can be read as it is. Columns without any content are left
+// out.
+class MarkdownTable {
+ public:
+  explicit MarkdownTable(std::vector<std::string> titles) : titles_(std::move(titles)) {}
+
+  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+
+  std::string text() const;  // empty without rows
+
+ private:
+  bool is_used(std::size_t column) const;
+  std::size_t width(std::size_t column) const;
+  std::string line(const std::vector<std::string>& cells) const;
+
+  std::vector<std::string> titles_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace byre

@@ -1,0 +1,69 @@
+#include "byre/benchmark/speed.h"
+
+#include "byre/benchmark/event_counter.h"
+#include "byre/benchmark/peak_memory.h"
+#include "byre/playback/scaled_recording.h"
+#include "byre/system/resources.h"
+#include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
+
+#include <array>
+
+namespace byre {
+namespace {
+
+constexpr auto kStages = std::to_array<FrameStage>({
+    {"decode, ahead", "decode", &StageSeconds::decode},
+    {"rectify", "rectify", &StageSeconds::rectify},
+    {"extract", "extract", &StageSeconds::extract},
+    {"stereo", "stereo", &StageSeconds::stereo},
+    {"track", "track", &StageSeconds::track},
+    {"map", "map", &StageSeconds::map},
+    {"frame", "frame", &StageSeconds::total},
+});
+
+SpeedMeasures measures_of(const MapRun& run) {
+  SpeedMeasures measures;
+  const FrameCounts counts = count_frames(run.frames);
+  measures.frames = counts.frames - counts.unreadable;
+  measures.with_pose = counts.with_pose;
+  measures.keyframes = counts.keyframes;
+  for (const FrameStage& stage : kStages) measures.stages.push_back(summarise_stage(run.frames, stage.seconds));
+  measures.jobs = summarise_times(run.job_seconds);
+  return measures;
+}
+
+}  // namespace
+
+std::span<const FrameStage> frame_stages() {
+  return kStages;
+}
+
+SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
+  const bool is_reset = reset_peak_memory();
+  const double cpu_before = resources_used_so_far().cpu_seconds;
+  const EventCounter instructions(EventCounter::Event::instructions);
+  const Stopwatch watch;
+
+  EngineOptions engine = what.engine;
+  const ScaledRecording opened = open_scaled(what.recording, what.range, what.open, what.map.has_value());
+  if (what.map) engine.offline = load_offline_map(*what.map, *engine.vocabulary);
+  std::optional<double> first_pose_seconds;
+  MapRunHooks watched = hooks;
+  watched.after_frame = [&](int done, const MappedFrame& frame) {
+    const bool has_pose = frame.report && frame.report->map_from_body;
+    if (has_pose && !first_pose_seconds) first_pose_seconds = watch.seconds();
+    hooks.after_frame(done, frame);
+  };
+  const MapRun run = run_map(*opened.recording, engine, watched);
+
+  SpeedMeasures measures = measures_of(run);
+  measures.first_pose_seconds = first_pose_seconds;
+  measures.wall_seconds = watch.seconds();
+  measures.cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  measures.instructions = instructions.count();
+  if (is_reset) measures.peak_memory_mb = peak_memory_mb();
+  return measures;
+}
+
+}  // namespace byre

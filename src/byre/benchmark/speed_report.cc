@@ -1,0 +1,134 @@
+#include "byre/benchmark/markdown_table.h"
+#include "byre/benchmark/speed.h"
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using SpeedFigure = std::function<std::optional<double>(const SpeedMeasures&)>;
+
+double mean_frame_ms(const SpeedMeasures& run) {
+  return run.stages.back().mean_ms;
+}
+
+// The figure of the median run, and where runs differ the range of all.
+std::string cell_with_range(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median,
+                            const SpeedFigure& figure, int digits) {
+  const auto shown = [digits](double value) { return formatted("%.*f", digits, value); };
+  std::optional<double> least, most;
+  for (const SpeedMeasures& run : runs) {
+    const std::optional<double> value = figure(run);
+    if (!value) continue;
+    least = std::min(*value, least.value_or(*value));
+    most = std::max(*value, most.value_or(*value));
+  }
+  if (!figure(median)) return kNothing;
+  const std::string text = shown(*figure(median));
+  return shown(*least) == shown(*most) ? text : text + " (" + shown(*least) + " to " + shown(*most) + ")";
+}
+
+std::string stage_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
+  MarkdownTable table({"wall time of a frame, ms", "mean", "median", "95 %", "99 %", "worst"});
+  for (std::size_t i = 0; i < frame_stages().size(); ++i) {
+    std::vector<std::string> cells = {frame_stages()[i].name};
+    for (double TimeSummary::*figure : {&TimeSummary::mean_ms, &TimeSummary::p50_ms, &TimeSummary::p95_ms,
+                                        &TimeSummary::p99_ms, &TimeSummary::max_ms}) {
+      cells.push_back(cell_with_range(
+          runs, median, [&](const SpeedMeasures& run) { return run.stages[i].*figure; }, 2));
+    }
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+std::string cost_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
+  constexpr double kMega = 1e6;
+  MarkdownTable table({"the whole run", "figure"});
+  const auto add = [&](const char* name, const SpeedFigure& figure, int digits) {
+    table.add({name, cell_with_range(runs, median, figure, digits)});
+  };
+  add(
+      "first pose after, s", [](const SpeedMeasures& run) { return run.first_pose_seconds; }, 2);
+  add(
+      "CPU time, s", [](const SpeedMeasures& run) { return run.cpu_seconds; }, 2);
+  add(
+      "wall time, s", [](const SpeedMeasures& run) { return run.wall_seconds; }, 2);
+  add(
+      "peak memory, MB", [](const SpeedMeasures& run) { return run.peak_memory_mb; }, 0);
+  add(
+      "instructions a frame, millions",
+      [](const SpeedMeasures& run) -> std::optional<double> {
+        if (!run.instructions || run.frames == 0) return std::nullopt;
+        return static_cast<double>(*run.instructions) / kMega / run.frames;
+      },
+      1);
+  add(
+      "keyframes", [](const SpeedMeasures& run) { return run.keyframes; }, 0);
+  add(
+      "mapping jobs", [](const SpeedMeasures& run) { return run.jobs.count; }, 0);
+  add(
+      "mean mapping job, ms", [](const SpeedMeasures& run) { return run.jobs.mean_ms; }, 1);
+  add(
+      "longest mapping job, ms", [](const SpeedMeasures& run) { return run.jobs.max_ms; }, 1);
+  return table.text();
+}
+
+Json times_json(const TimeSummary& times) {
+  return {{"count", times.count},   {"mean_ms", times.mean_ms}, {"p50_ms", times.p50_ms},
+          {"p95_ms", times.p95_ms}, {"p99_ms", times.p99_ms},   {"max_ms", times.max_ms}};
+}
+
+template <typename Value>
+Json json_of(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json run_json(const SpeedMeasures& run) {
+  Json json = {{"frames", run.frames}, {"with_pose", run.with_pose}, {"keyframes", run.keyframes}};
+  for (std::size_t i = 0; i < frame_stages().size(); ++i) {
+    json["stages"][frame_stages()[i].key] = times_json(run.stages[i]);
+  }
+  json["mapping_jobs"] = times_json(run.jobs);
+  json["first_pose_s"] = json_of(run.first_pose_seconds);
+  json["wall_s"] = run.wall_seconds;
+  json["cpu_s"] = run.cpu_seconds;
+  json["instructions"] = json_of(run.instructions);
+  json["peak_memory_mb"] = json_of(run.peak_memory_mb);
+  return json;
+}
+
+}  // namespace
+
+std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> runs) {
+  std::string text = "# Speed of " + what.recording.string() + "\n\n";
+  if (runs.empty()) return text + "Nothing was measured.\n";
+  std::ranges::sort(runs, {}, mean_frame_ms);
+  const SpeedMeasures& median = runs[(runs.size() - 1) / 2];
+  text += formatted("%d frames, %d with a pose; %s; pace %s; %d cores", median.frames, median.with_pose,
+                    what.map ? ("on the map " + what.map->string()).c_str() : "without a map",
+                    std::string(name_of(what.engine.pace)).c_str(), what.cores);
+  if (runs.size() > 1) {
+    text += formatted(". Of %zu runs, the one whose frames took the median time, with the range of all", runs.size());
+  }
+  text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(runs, median);
+  if (!median.instructions) text += "\nThis machine does not let programs count instructions.\n";
+  return text;
+}
+
+std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& runs) {
+  Json json = {{"recording", what.recording.string()},
+               {"map", what.map ? Json(what.map->string()) : Json()},
+               {"pace", name_of(what.engine.pace)},
+               {"cores", what.cores},
+               {"runs", Json::array()}};
+  for (const SpeedMeasures& run : runs) json["runs"].push_back(run_json(run));
+  return json.dump(2) + "\n";
+}
+
+}  // namespace byre
