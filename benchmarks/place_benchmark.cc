@@ -1,3 +1,5 @@
+#include "hot_loop.h"
+
 #include "byre/place/place_index.h"
 
 #include <algorithm>
@@ -31,7 +33,7 @@ void find_words(benchmark::State& state) {
   std::vector<Descriptor> descriptors(kFeatures);
   for (Descriptor& descriptor : descriptors) descriptor = random_descriptor(random);
   const Features features(640, 480, std::vector<Keypoint>(kFeatures, Keypoint{{1.0f, 1.0f}}), descriptors, {});
-  for (auto _ : state) benchmark::DoNotOptimize(vocabulary.words_of(features));
+  measure_hot_loop(state, [&] { benchmark::DoNotOptimize(vocabulary.words_of(features)); });
 }
 BENCHMARK(find_words)->Unit(benchmark::kMillisecond);
 
@@ -86,7 +88,7 @@ void query_places(benchmark::State& state) {
   std::mt19937_64 random(3);
   const std::vector<Word> words = uneven_words(vocabulary, random);
   std::size_t places = 0;
-  for (auto _ : state) places = find_places(index, view, words, {}).size();
+  measure_hot_loop(state, [&] { places = find_places(index, view, words, {}).size(); });
   state.counters["places"] = static_cast<double>(places);
 }
 BENCHMARK(query_places)->Unit(benchmark::kMillisecond)->Arg(1000)->Arg(10000);

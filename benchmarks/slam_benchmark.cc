@@ -1,3 +1,5 @@
+#include "hot_loop.h"
+
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/session/session.h"
@@ -23,10 +25,10 @@ void find_expected_points(benchmark::State& state) {
   const Pose predicted = prediction_error * true_camera_from_world(mission, kFrame);
   const std::vector<PointId> points = map.point_ids();
   std::vector<GuidedMatch> matches;
-  for (auto _ : state) {
+  measure_hot_loop(state, [&] {
     const std::vector<ExpectedPoint> expected = project_points(view, points, predicted, mission.rig);
     matches = match_expected(*mission.frames[kFrame].features, view, expected, {});
-  }
+  });
   state.counters["points"] = static_cast<double>(points.size());
   state.counters["matched"] = static_cast<double>(matches.size());
 }
@@ -73,7 +75,7 @@ void describe_window(benchmark::State& state, const MapWindow& window) {
 void cut_window_around_newest(benchmark::State& state) {
   const UnfinishedMap& unfinished = unfinished_map();
   MapWindow window;
-  for (auto _ : state) window = cut_window(unfinished.map, {unfinished.newest}, {});
+  measure_hot_loop(state, [&] { window = cut_window(unfinished.map, {unfinished.newest}, {}); });
   describe_window(state, window);
 }
 BENCHMARK(cut_window_around_newest)->Unit(benchmark::kMillisecond);
@@ -82,7 +84,7 @@ void run_mapping_job(benchmark::State& state) {
   const UnfinishedMap& unfinished = unfinished_map();
   const MapWindow window = cut_window(unfinished.map, {unfinished.newest}, {});
   MapDelta delta;
-  for (auto _ : state) delta = extend_map(window, {});
+  measure_hot_loop(state, [&] { delta = extend_map(window, {}); });
   describe_window(state, window);
   state.counters["new_points"] = static_cast<double>(delta.new_points.size());
 }

@@ -22,7 +22,7 @@ packages=(
   # packages
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
-  libgtest-dev libgmock-dev libbenchmark-dev clang-format zsh
+  libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
   # sanitizers, whose tests take less than half as long by this version as by g++ 12, and fuzzing
   clang-16 libclang-rt-16-dev
   # tests of bags that others wrote

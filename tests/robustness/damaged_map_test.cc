@@ -1,7 +1,7 @@
 // Damaged map files: each is either read as a sound map or refused with an InputError. $BYRE_MUTANTS says how many are
 // tried; by default a few thousand.
 
-#include "allocations.h"
+#include "../allocations.h"
 #include "mutate_map.h"
 
 #include "byre/input_error.h"

@@ -8,6 +8,7 @@ namespace {
 thread_local byre::Allocations allocations;
 
 void* allocate(std::size_t size, std::size_t alignment) {
+  ++allocations.count;
   allocations.bytes += size;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Compares what the hot loops cost with what they cost before, in instructions and in memory allocated.
+
+Both say the same on every machine with the same instruction set, whatever runs beside it; times do not. Instructions
+are counted by valgrind (callgrind) between the first and the last of one pass of the loop.
+
+Usage: check_hot_loops.py BENCHMARKS KEPT.json [--write]
+  BENCHMARKS is the program byre_benchmarks, KEPT.json holds figures by the name of the benchmark. With --write they are
+  replaced by those measured now.
+Exit code: 0 none costs more than a tenth more, 1 some do, 2 wrong usage, 77 valgrind is not installed.
+"""
+
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ALLOWED = 1.10  # times what was kept
+FIGURES = ("instructions", "allocations", "allocated_bytes")
+SKIPPED = 77
+
+
+def chosen(names):
+    return ["--benchmark_filter=^(" + "|".join(names) + ")$", "--benchmark_min_time=0"]  # so each loop has one pass
+
+
+def measured_memory(program, names):
+    """Allocations and bytes of one pass, by name, in the order in which they are run."""
+    output = subprocess.run([program, *chosen(names), "--benchmark_format=json"], check=True, capture_output=True,
+                            text=True).stdout
+    return {one["name"]: {figure: round(one[figure]) for figure in FIGURES[1:]}
+            for one in json.loads(output)["benchmarks"]}
+
+
+def measured_instructions(program, names):
+    """Instructions of one pass, in the order in which they are run. A pass lies between two functions of the benchmark
+    library; callgrind counts from the first and writes a file at the second."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run(
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out",
+             "--zero-before=benchmark::State::StartKeepRunning()",
+             "--dump-before=benchmark::State::FinishKeepRunning()", program, *chosen(names)],
+            capture_output=True, text=True)
+        if run.returncode != 0:
+            sys.exit(f"check_hot_loops.py: {program} failed under valgrind:\n{run.stderr}")
+        dumps = sorted(pathlib.Path(folder).glob("out.*"), key=lambda dump: int(dump.suffix[1:]))
+        return [int(re.search(r"^totals: (\d+)", dump.read_text(), re.MULTILINE)[1]) for dump in dumps]
+
+
+def measured(program, names):
+    figures = measured_memory(program, names)
+    missing = set(names) - set(figures)
+    if missing:
+        sys.exit(f"check_hot_loops.py: {program} has no benchmark {', '.join(sorted(missing))}")
+    instructions = measured_instructions(program, names)
+    if len(instructions) != len(figures):
+        sys.exit(f"check_hot_loops.py: {len(instructions)} loops were counted, not {len(figures)}")
+    return {name: {"instructions": count, **figures[name]} for name, count in zip(figures, instructions)}
+
+
+def compare(kept, now):
+    """Lines of a table, and whether anything costs too much."""
+    lines, too_much = [f"{'':40} {'instructions':>22} {'allocations':>16} {'bytes':>18}"], False
+    for name, before in kept.items():
+        cells = []
+        for figure in FIGURES:
+            ratio = now[name][figure] / before[figure] if before[figure] else 1.0 + now[name][figure]
+            too_much = too_much or ratio > ALLOWED
+            cells.append(f"{now[name][figure]:>11,} ({ratio:.2f})" + ("!" if ratio > ALLOWED else " "))
+        lines.append(f"{name:40} {cells[0]:>22} {cells[1]:>16} {cells[2]:>18}")
+    return lines, too_much
+
+
+def main():
+    arguments = [argument for argument in sys.argv[1:] if argument != "--write"]
+    if len(arguments) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    if not shutil.which("valgrind"):
+        print("Skipped: valgrind is not installed, which counts instructions")
+        return SKIPPED
+    program, file = arguments[0], pathlib.Path(arguments[1])
+    kept = json.loads(file.read_text())
+    now = measured(program, list(kept))
+    if "--write" in sys.argv:
+        file.write_text(json.dumps(now, indent=2) + "\n")
+        return 0
+    lines, too_much = compare(kept, now)
+    print("\n".join(lines))
+    if too_much:
+        print(f"\nWhat is marked (!) costs more than {ALLOWED:.2f} times what {file.name} says. If that is worth it, "
+              f"say why, and keep the new figures: check_hot_loops.py {program} {file} --write")
+    return 1 if too_much else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
