@@ -98,17 +98,19 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   return best;
 }
 
-std::optional<HybridTrack> Tracker::find(const Frame& frame, const Scene& scene) const {
+Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
+  Find result;
   if (scene.mission) {
-    const Localisation found =
-        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint}, options_.relocalise);
-    if (found.tracked) return found_in(Origin::offline, *found.tracked);
+    const auto [found, refused] = localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way},
+                                              {options_.relocalise, options_.mission.bounds});
+    if (found.tracked) return {found_in(Origin::offline, *found.tracked)};
+    result.refused = refused;
   }
   const PlaceIndex* const places = scene.mapper.places();
-  if (!places || scene.mapper.online().keyframe_count() == 0) return std::nullopt;
+  if (!places || scene.mapper.online().keyframe_count() == 0) return result;
   const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options_.relocalise);
-  if (!found.tracked || is_like_another_place(*found.tracked)) return std::nullopt;
-  return found_in(Origin::online, *found.tracked);
+  if (found.tracked && !is_like_another_place(*found.tracked)) result.track = found_in(Origin::online, *found.tracked);
+  return result;
 }
 
 bool Tracker::is_doubtful(const HybridTrack& track, const Scene& scene) const {

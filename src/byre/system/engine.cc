@@ -27,6 +27,16 @@ std::optional<RefinedCalibration> known_before(const Calibration& given, const E
   return known_calibration(options.offline->recordings(), given);
 }
 
+// Other cameras than those of the map may sit at another height, and tilted.
+SessionOptions session_options(const Calibration& given, const EngineOptions& options) {
+  SessionOptions session = options.session;
+  const bool is_told = options.offline && !options.offline->recordings().empty();
+  if (is_told && !is_by_cameras_of(options.offline->recordings(), given)) {
+    session.mission.bounds.is_on_ground_of_map = false;
+  }
+  return session;
+}
+
 }  // namespace
 
 std::string_view name_of(Pace pace) {
@@ -54,7 +64,7 @@ std::string_view name_of(OfflinePolicy policy) {
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
     : known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
-      session_(extractor_.rig(), options.session, make_lanes(options.pace, options.offline != nullptr, log_),
+      session_(extractor_.rig(), session_options(given, options), make_lanes(options.pace, options.offline != nullptr, log_),
                options.vocabulary, options.offline) {
   if (options.self_calibrate) refine_calibration(given, options, before.has_value());
   if (before) session_.continue_map(std::move(*before));

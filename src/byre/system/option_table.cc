@@ -296,6 +296,17 @@ void add_mission(Table& table) {
       [](auto& o) -> auto& { return o.session.mission.registration.proving_share; },
       "points seen before a pose found from nothing is trusted"));
   table.push_back(number(
+      "mission.plane_margin_m", "metres", 0, 1e3,
+      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin; },
+      "height off the driving plane of the map from which a place found is refused, beyond what is uncertain"));
+  table.push_back(number(
+      "mission.plane_margin_rad", "radians", 0, 4,
+      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin_tilt; }, "tilt against it, likewise"));
+  table.push_back(number(
+      "mission.wall_margin_m", "metres", 0, 1e3,
+      [](auto& o) -> auto& { return o.session.mission.bounds.wall_margin; },
+      "distance behind a wall of the floor plan from which a place found is refused, beyond what is uncertain"));
+  table.push_back(number(
       "mission.min_offline_inliers", "points", 1, 1e5,
       [](auto& o) -> auto& { return o.session.mission.view.min_inliers; }, "offline points that hold a pose"));
   table.push_back(number(

@@ -199,7 +199,7 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   EngineOptions engine = engine_options(options, vocabulary);
-  engine.offline = load_offline_map(map, vocabulary);
+  engine.offline = load_offline_map(map, vocabulary, options.plan);
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
   parts->plan = load_plan_registration(map);
   return Slam(std::move(parts));
