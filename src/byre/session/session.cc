@@ -76,7 +76,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
     report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
   } else {
     lose_pose(input.fault, report);
-    whereabouts_.go_on(rectified.time, rig_, map());
+    whereabouts_.go_on(rectified.time, rig_, map(), ground());
   }
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
@@ -120,6 +120,16 @@ std::optional<PlaceBounds::Way> Session::way_since_trusted() const {
 
 bool Session::is_navigation_error(double seconds_without_pose) const {
   return mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
+}
+
+// That the body is held to; nullptr where the last pose does not lie in the map's frame.
+const DrivenGround* Session::ground() const {
+  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
+  if (!options_.is_planar || !mission_ || !options_.mission.bounds.is_on_ground_of_map || trajectory.empty()) {
+    return nullptr;
+  }
+  const bool is_in_map = mapper_.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
+  return is_in_map ? mission_->mission().offline().ground() : nullptr;
 }
 
 void Session::take_over_results(FrameReport& report) {
@@ -202,7 +212,8 @@ Session::Located Session::locate(const InputFrame& input) {
                              mission_ && mission_->ask_for_focal_length(),
                              hint_.get(),
                              whereabouts_.confirmation().is_proven(),
-                             way_since_trusted()};
+                             way_since_trusted(),
+                             ground()};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;

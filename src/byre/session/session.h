@@ -125,6 +125,7 @@ class Session {
   void note_quality(const FrameReport& report);
   void tell_refusal(FrameReport& report);
   std::optional<PlaceBounds::Way> way_since_trusted() const;
+  const DrivenGround* ground() const;
   bool is_navigation_error(double seconds_without_pose) const;
   bool is_registered() const { return mapper_.submaps().is_registered(); }
 

@@ -179,5 +179,54 @@ TEST(PlaceBounds, DoNotHoldOtherCamerasToTheGround) {
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
+// The worst heights and tilts off the ground of a robot that is blind for 3 s, and told that it climbs and rolls.
+Agreement worst_off_the_ground(bool is_planar) {
+  constexpr std::size_t kDark = 20, kLight = 50;  // numbers of the first frames that show nothing, and something again
+  const Rig rig = simulated_rig(robot_from_camera());
+  const Trajectory way = circling_trajectory(kLapFrames, 10.0, 2.0, 1.0, robot_from_camera());
+  SimulationOptions options;
+  const auto offline = map_of(simulate_mission(rig, way, options));
+  options.noise_seed = 2;
+  const SimulatedMission mission = simulate_mission(rig, way, options);
+  SessionOptions session_options;
+  session_options.is_planar = is_planar;
+  Session session(rig, session_options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
+                  offline);
+  const Pose wrong = exp_pose((Vector6() << 0.0, 0.0, 0.005, 0.003, 0.0, 0.0).finished());
+  Agreement worst;
+  for (std::size_t i = 0; i < kLight; ++i) {
+    std::optional<BodyMotion> told;
+    if (i > 0) told = (inverse(way[i - 1].world_from_body) * way[i].world_from_body) * wrong;
+    const FrameReport report =
+        session.process(i < kDark ? mission.frames[i] : without_features(mission.frames[i]), told);
+    if (i < kDark) continue;
+    const Pose error = inverse(way[i].world_from_body) * report.map_from_body.value();
+    worst.translation = std::max(worst.translation, std::abs(error.translation.z()));
+    worst.rotation = std::max(worst.rotation, std::abs(rotation_log(error.rotation).x()));
+  }
+  return worst;
+}
+
+TEST(PlanarMotion, HoldsABodyToTheGroundWhereNothingIsSeen) {
+  const Agreement free = worst_off_the_ground(false), held = worst_off_the_ground(true);
+  EXPECT_GT(free.translation, 0.1);
+  EXPECT_GT(free.rotation, 0.05);
+  EXPECT_LT(held.translation, 0.02);
+  EXPECT_LT(held.rotation, 0.01);
+}
+
+TEST(PlanarMotion, LeavesWhatIsSeenAsItIs) {
+  const SimulatedMission mission = circling(2);
+  SessionOptions options;
+  options.is_planar = true;
+  Session session(simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()),
+                  simulated_vocabulary(), map_of(circling(1)));
+  const auto reports = reports_of(session, mission.frames);
+  for (std::size_t i = 5; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
+    EXPECT_LT((reports[i].map_from_body->translation - mission.truth[i].world_from_body.translation).norm(), 0.03) << i;
+  }
+}
+
 }  // namespace
 }  // namespace byre

@@ -1,6 +1,7 @@
 #include "byre/session/tracker.h"
 
 #include "byre/localisation/place_search.h"
+#include "byre/slam/planar_prior.h"
 
 #include <utility>
 
@@ -85,7 +86,8 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   const double seconds = to_seconds(frame.time - last.time);
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
   const bool is_limited = scene.mission && scene.is_place_proven;
-  const HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  if (scene.ground != nullptr) limits.prior = planar_prior(*scene.ground, scene.rig, predicted);
   auto best = track_from(frame, scene, predicted, limits);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;

@@ -329,6 +329,12 @@ void add_mission(Table& table) {
       "frames that are refined at the end; 10 kB each"));
 }
 
+void add_motion(Table& table) {
+  table.push_back(flag(
+      "motion.planar", [](auto& o) -> auto& { return o.session.is_planar; },
+      "height, roll and pitch of a mission held to the ground that its map was driven on"));
+}
+
 void add_health(Table& table) {
   table.push_back(number(
       "health.trusted_error_m", "metres", 1e-6, 1e3, [](auto& o) -> auto& { return o.session.health.trusted_error; },
@@ -404,7 +410,7 @@ const std::vector<EngineOption>& option_table() {
   static const Table table = [] {
     Table all;
     for (const auto add : {add_run, add_features, add_calibration, add_start, add_tracking, add_keyframes, add_mapping,
-                           add_localisation, add_loops, add_mission, add_health, add_image}) {
+                           add_localisation, add_loops, add_mission, add_motion, add_health, add_image}) {
       add(all);
     }
     return all;
