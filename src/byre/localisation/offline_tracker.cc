@@ -81,7 +81,8 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
   last_search_ = sought.frame.time;
   const bool is_hint_to_be_checked = whereabouts.confirmation().is_by_hint && mapper.submaps().is_registered();
-  // Where a pose was trusted all the while, a find elsewhere says that it was wrong, so the way from there tells nothing.
+  // Where a pose was trusted all the while, a find elsewhere says that it was wrong, so the way from there tells
+  // nothing.
   const bool is_way_in_doubt = whereabouts.confirmation().is_proven() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
                  way = is_way_in_doubt ? std::nullopt : sought.way, offline = offline_,

@@ -22,8 +22,8 @@ bool PlaceBounds::is_off_the_ground(const PlaceToJudge& place) const {
   const Eigen::Vector3d& up = stand.up_in_body;
   const double height_variance = up.dot(place.covariance.topLeftCorner<3, 3>() * up);
   const double tilt_variance = place.covariance.bottomRightCorner<3, 3>().trace();
-  const double height_bound = options_.plane_margin + kSigmasOfLine * std::hypot(stand.height_sigma,
-                                                                                 std::sqrt(height_variance));
+  const double height_bound =
+      options_.plane_margin + kSigmasOfLine * std::hypot(stand.height_sigma, std::sqrt(height_variance));
   const double tilt_bound =
       options_.plane_margin_tilt + kSigmasOfPlane * std::hypot(stand.tilt_sigma, std::sqrt(tilt_variance));
   return std::abs(stand.height) > height_bound || stand.tilt > tilt_bound;

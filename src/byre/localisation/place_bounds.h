@@ -13,7 +13,7 @@ struct PlaceBoundsOptions {
   bool is_on_ground_of_map = true;
   double plane_margin = 0.3;       // metres of height off the ground that was driven on, beyond its uncertainty
   double plane_margin_tilt = 0.1;  // radians of tilt against it, likewise
-  double wall_margin = 0.5;        // metres by which a wall may lie beside the plan, beyond the registration's uncertainty
+  double wall_margin = 0.5;  // metres by which a wall may lie beside the plan, beyond the registration's uncertainty
 };
 
 // A place where a frame was found.

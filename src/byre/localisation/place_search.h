@@ -19,7 +19,7 @@ struct PlaceSearchOptions {
 struct SoughtFrame {
   const Frame& frame;
   const Rig& rig;
-  std::optional<PoseHint> hint{};  // where alone it is looked for; empty: everywhere
+  std::optional<PoseHint> hint{};         // where alone it is looked for; empty: everywhere
   std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
 };
 
@@ -29,7 +29,8 @@ struct BoundedLocalisation {
   Doubt refused = Doubt::none;  // why it cannot be at a place where the frame was found otherwise
 };
 
-BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options);
+BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
+                                const PlaceSearchOptions& options);
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {

@@ -17,13 +17,13 @@ class DrivenGround {
 
   // How a body stands on the ground nearest to it.
   struct Stand {
-    double height = 0.0;                                   // of its origin above where the path's bodies have theirs
-    double height_sigma = 0.0;                             // what the path leaves open there
+    double height = 0.0;                                    // of its origin above where the path's bodies have theirs
+    double height_sigma = 0.0;                              // what the path leaves open there
     Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // of the ground, unit length
     Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // the same
-    double tilt = 0.0;                                     // radians, against how the path's bodies stand
-    double tilt_sigma = 0.0;                               // radians, of each of two directions
-    double distance = 0.0;                                 // to the nearest place of the path
+    double tilt = 0.0;                                      // radians, against how the path's bodies stand
+    double tilt_sigma = 0.0;                                // radians, of each of two directions
+    double distance = 0.0;                                  // to the nearest place of the path
   };
   Stand stand_of(const Pose& map_from_body) const;
 

@@ -70,7 +70,8 @@ TEST(DrivenGround, LiesNotUnderMapsOfACameraThatWasCarriedOrFlown) {
   EXPECT_FALSE(DrivenGround::under(map_of(shaken(0.02, 0.05)))) << "tilted in the hand";
   EXPECT_FALSE(DrivenGround::under(map_of(shaken(0.1, 0.01)))) << "held up and down";
   std::vector<Pose> flown = driven();
-  for (std::size_t i = 0; i < flown.size(); ++i) flown[i].translation.z() = 0.5 * std::sin(0.7 * static_cast<double>(i));
+  for (std::size_t i = 0; i < flown.size(); ++i)
+    flown[i].translation.z() = 0.5 * std::sin(0.7 * static_cast<double>(i));
   EXPECT_FALSE(DrivenGround::under(map_of(flown)));
 }
 

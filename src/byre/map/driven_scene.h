@@ -52,7 +52,8 @@ inline std::vector<Pose> driven(double slope = 0.0) {
   std::vector<Pose> path;
   for (int i = 0; i < 120; ++i) {
     const bool is_back = i >= 60;
-    path.push_back(on_floor(0.5 * (is_back ? 119 - i : i), is_back ? 2.0 : 0.0, is_back ? std::numbers::pi : 0.0, slope));
+    path.push_back(
+        on_floor(0.5 * (is_back ? 119 - i : i), is_back ? 2.0 : 0.0, is_back ? std::numbers::pi : 0.0, slope));
   }
   return path;
 }

@@ -167,8 +167,8 @@ std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDi
       const Cell to{from.column + right, from.row + down};
       if (!may_step(from, right, down)) continue;
       const float further = so_far + static_cast<float>(cell_ * std::hypot(right, down));
-      const bool is_in_window = to.column >= low.column && to.row >= low.row && to.column <= high.column &&
-                                to.row <= high.row;
+      const bool is_in_window =
+          to.column >= low.column && to.row >= low.row && to.column <= high.column && to.row <= high.row;
       if (!is_in_window || further > longest || further >= length[place(to)]) continue;
       length[place(to)] = further;
       steps.emplace(further, std::pair(to.column, to.row));

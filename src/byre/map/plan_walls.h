@@ -52,7 +52,7 @@ class PlanWalls {
   bool any_in(const PlanDisc& disc, const Accept& accept) const;
   void flood(std::vector<Cell> front);
 
-  double cell_ = 0.1;                                        // metres
+  double cell_ = 0.1;                                         // metres
   Eigen::Vector2d corner_in_plan_ = Eigen::Vector2d::Zero();  // lower left one of the grid
   int columns_ = 0;
   int rows_ = 0;

@@ -81,9 +81,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
   const bool is_believed = whereabouts_.confirmation().is_believed();
-  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,         whereabouts_,
-                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_,
-                             report.refused_place};
+  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,          whereabouts_,
+                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_, report.refused_place};
   state_ = next_state(state_, {whereabouts_.has_pose(), is_believed, seconds_without}, options_.state);
   report = described(std::move(report), summary);
   report.state = state_;

@@ -143,7 +143,7 @@ class Session {
   Shutter shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
-  bool is_error_told_ = false;  // a navigation error
+  bool is_error_told_ = false;                 // a navigation error
   Doubt told_refusal_ = Doubt::none;           // since there was a pose to rely on
   std::optional<PlaceBefore> last_trusted_{};  // in the offline map
   bool is_mapping_paused_ = false;

@@ -11,9 +11,9 @@
 namespace byre {
 namespace {
 
-constexpr int kLapFrames = 120;             // frames, at 10 Hz, of a circle of 2 m radius
+constexpr int kLapFrames = 120;               // frames, at 10 Hz, of a circle of 2 m radius
 constexpr std::size_t kFramesOnOneSide = 15;  // from the start, all at x > 1 m
-constexpr double kWallHalfWidth = 1.05;     // metres about x = 0 that are not mapped
+constexpr double kWallHalfWidth = 1.05;       // metres about x = 0 that are not mapped
 
 SimulatedMission circling(std::uint64_t noise_seed, double height = 0.0) {
   SimulationOptions options;

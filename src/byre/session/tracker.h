@@ -28,10 +28,10 @@ class Tracker {
   struct Scene {
     const Rig& rig;
     const Mapper& mapper;
-    const Mission* mission = nullptr;  // on an offline map
-    bool weigh_focal_lengths = false;  // see FocalCheck
-    std::optional<PoseHint> hint{};    // where alone a frame is looked for in the offline map
-    bool is_place_proven = false;      // so offline points cannot put the camera just anywhere
+    const Mission* mission = nullptr;       // on an offline map
+    bool weigh_focal_lengths = false;       // see FocalCheck
+    std::optional<PoseHint> hint{};         // where alone a frame is looked for in the offline map
+    bool is_place_proven = false;           // so offline points cannot put the camera just anywhere
     std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
     const DrivenGround* ground = nullptr;   // that the body is held to, where it is
   };

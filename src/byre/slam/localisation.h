@@ -48,7 +48,7 @@ struct Localisation {
 
 // What speaks for or against places besides the image. Empty functions: nothing.
 struct PlaceFilter {
-  std::function<bool(KeyframeId)> is_excluded{};              // the keyframe is no place
+  std::function<bool(KeyframeId)> is_excluded{};             // the keyframe is no place
   std::function<bool(const TrackedFrame&)> is_impossible{};  // the camera cannot be where the frame was found
 };
 

@@ -44,13 +44,14 @@ std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& r
 }
 
 OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
-                       std::optional<PlacedWalls> walls)
+                       std::optional<PlacedWalls> walls, const KnownMounting& mounting)
     : map_(std::move(map)),
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
       frame_covariance_(median_covariance(map_)),
       ground_(DrivenGround::under(map_)),
-      walls_(std::move(walls)) {
+      walls_(std::move(walls)),
+      mounting_(mounting) {
   for (const KeyframeId id : map_.keyframe_ids()) {
     const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});

@@ -3,6 +3,7 @@
 #include "byre/map/driven_ground.h"
 #include "byre/map/map_file.h"
 #include "byre/map/plan_walls.h"
+#include "byre/motion/known_mounting.h"
 #include "byre/place/place_index.h"
 
 #include <optional>
@@ -25,12 +26,14 @@ class OfflineMap {
  public:
   // Preconditions: the map is an offline one and holds keyframes; those have words of the vocabulary, see add_words.
   OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
-             std::optional<PlacedWalls> walls = {});
+             std::optional<PlacedWalls> walls = {}, const KnownMounting& mounting = {});
 
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
 
   const std::vector<SourceRecording>& recordings() const { return recordings_; }  // what the map was made from
+
+  const KnownMounting& mounting() const { return mounting_; }  // of what told the motion when it was made
 
   // What it was driven on; nullptr where it was not driven.
   const DrivenGround* ground() const { return ground_ ? &*ground_ : nullptr; }
@@ -58,6 +61,7 @@ class OfflineMap {
   Matrix6 frame_covariance_ = Matrix6::Zero();
   std::optional<DrivenGround> ground_;
   std::optional<PlacedWalls> walls_;
+  KnownMounting mounting_;
 };
 
 }  // namespace byre

@@ -303,8 +303,7 @@ void add_mission(Table& table) {
       "mission.plane_margin_rad", "radians", 0, 4,
       [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin_tilt; }, "tilt against it, likewise"));
   table.push_back(number(
-      "mission.wall_margin_m", "metres", 0, 1e3,
-      [](auto& o) -> auto& { return o.session.mission.bounds.wall_margin; },
+      "mission.wall_margin_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.mission.bounds.wall_margin; },
       "distance behind a wall of the floor plan from which a place found is refused, beyond what is uncertain"));
   table.push_back(number(
       "mission.min_offline_inliers", "points", 1, 1e5,
@@ -333,6 +332,9 @@ void add_motion(Table& table) {
   table.push_back(flag(
       "motion.planar", [](auto& o) -> auto& { return o.session.is_planar; },
       "height, roll and pitch of a mission held to the ground that its map was driven on"));
+  table.push_back(flag(
+      "motion.known_mounting", [](auto& o) -> auto& { return o.use_known_mounting; },
+      "wheels and gyroscope taken to be mounted as when the map was made, until they tell otherwise"));
 }
 
 void add_health(Table& table) {

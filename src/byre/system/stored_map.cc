@@ -51,7 +51,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
   std::optional<PlacedWalls> walls;
   if (plan) walls = walls_of(stored, path, read_floor_plan(*plan));
   return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
-                                            std::move(walls));
+                                            std::move(walls), mounting_in(stored.notes));
 }
 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
