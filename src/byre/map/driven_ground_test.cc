@@ -25,7 +25,7 @@ std::vector<Pose> shaken(double metres, double radians) {
 }
 
 DrivenGround::Stand stand(const DrivenGround& ground, const Pose& level_from_body) {
-  return ground.stand_of(Pose{kMapFromLevel, {}} * level_from_body);
+  return ground.stand_of(kMapFromLevel * level_from_body);
 }
 
 TEST(DrivenGround, TellsHeightAndTiltOnALevelFloor) {

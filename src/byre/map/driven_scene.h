@@ -24,7 +24,7 @@ inline Rig looking_down() {
 }
 
 // The map's frame is turned in all directions against one with z up.
-inline const Eigen::Quaterniond kMapFromLevel = rotation_exp({0.4, -0.7, 1.1});
+inline const Pose kMapFromLevel{rotation_exp({0.4, -0.7, 1.1}), Eigen::Vector3d::Zero()};
 
 inline Map map_of(const std::vector<Pose>& level_from_body) {
   Map map(Origin::offline);
@@ -32,7 +32,7 @@ inline Map map_of(const std::vector<Pose>& level_from_body) {
   for (const Pose& body : level_from_body) {
     Keyframe keyframe;
     keyframe.frame.time = std::chrono::seconds(map.keyframe_count());
-    const Pose map_from_body = Pose{kMapFromLevel, {}} * body;
+    const Pose map_from_body = kMapFromLevel * body;
     keyframe.camera_from_world = inverse(map_from_body * looking_down().body_from_camera);
     map.add_keyframe(keyframe);
   }

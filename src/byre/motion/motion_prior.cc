@@ -20,6 +20,7 @@ constexpr Timestamp kMostKept = 1800s;   // time that samples are kept while it 
 constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
 constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
 constexpr double kUnprovenFactor = 9.0;  // by which the covariance is larger until then
+constexpr int kLooksUntilKept = 8;       // of a mounting, with its covariance
 constexpr int kLooksPerOffset = 8;       // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
@@ -195,7 +196,7 @@ void MotionPrior::drop_known_wheels() {
 
 KnownMounting MotionPrior::to_keep() const {
   KnownMounting keep = known_;
-  const bool is_well_known = looks_ >= kLooksUntilTold || known_.wheels;
+  const bool is_well_known = looks_ >= kLooksUntilKept || known_.wheels;
   if (mounting_ && is_well_known) {
     keep.wheels = mounting_;
     keep.time_offset = time_offset();

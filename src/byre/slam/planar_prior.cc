@@ -10,8 +10,9 @@
 namespace byre {
 namespace {
 
-constexpr double kOpenMetres = 10.0;  // sigma of what the ground does not tell
-constexpr double kOpenRadians = 3.0;  // likewise
+constexpr double kOpenMetres = 10.0;      // sigma of what the ground does not tell
+constexpr double kOpenRadians = 3.0;      // likewise
+constexpr double kLeastVariance = 1e-12;  // square metres and square radians
 
 // One sigma along a direction, another across it.
 Eigen::Matrix3d covariance_about(const Eigen::Vector3d& direction, double along, double across) {
@@ -43,7 +44,6 @@ std::optional<PosePrior> planar_prior(const DrivenGround& ground, const Rig& rig
 }
 
 PosePrior combined(const PosePrior& one, const PosePrior& other) {
-  constexpr double kLeastVariance = 1e-12;  // square metres and square radians
   const auto information = [](const Matrix6& covariance) -> Matrix6 {
     return (covariance + kLeastVariance * Matrix6::Identity()).ldlt().solve(Matrix6::Identity());
   };
