@@ -11,20 +11,20 @@
 namespace byre {
 namespace {
 
-constexpr int kLapFrames = 120;               // frames, at 10 Hz, of a circle of 2 m radius
+constexpr int kFramesOfLap = 120;             // frames, at 10 Hz, of a circle of 2 m radius
 constexpr std::size_t kFramesOnOneSide = 15;  // from the start, all at x > 1 m
 constexpr double kWallHalfWidth = 1.05;       // metres about x = 0 that are not mapped
 
-SimulatedMission circling(std::uint64_t noise_seed, double height = 0.0) {
+SimulatedMission lap_at(std::uint64_t noise_seed, double height = 0.0) {
   SimulationOptions options;
   options.noise_seed = noise_seed;
-  Trajectory way = circling_trajectory(kLapFrames, 10.0, 2.0, 1.0);
+  Trajectory way = circling_trajectory(kFramesOfLap, 10.0, 2.0, 1.0);
   for (StampedPose& pose : way) pose.world_from_body.translation.z() += height;
   return simulate_mission(simulated_rig(), way, options);
 }
 
 // Without what lies about x = 0, so that no way of the map leads from one side to the other.
-SimulatedMission in_two_parts(const SimulatedMission& lap) {
+SimulatedMission parts_beside_the_wall(const SimulatedMission& lap) {
   SimulatedMission parts = lap;
   parts.truth.clear();
   parts.frames.clear();
@@ -63,7 +63,7 @@ PlanWalls wall_across(double door = 0.0) {
   return {plan, image};
 }
 
-std::shared_ptr<const OfflineMap> map_of(const SimulatedMission& visit, std::optional<PlanWalls> walls = {}) {
+std::shared_ptr<const OfflineMap> map_with(const SimulatedMission& visit, std::optional<PlanWalls> walls = {}) {
   Map map = true_map(visit, 3, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
@@ -74,7 +74,7 @@ std::shared_ptr<const OfflineMap> map_of(const SimulatedMission& visit, std::opt
                                             std::move(placed));
 }
 
-Session session_on(std::shared_ptr<const OfflineMap> offline, bool map_online) {
+Session session_within(std::shared_ptr<const OfflineMap> offline, bool map_online) {
   SessionOptions options;
   options.map_online = map_online;
   return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
@@ -87,7 +87,7 @@ std::vector<Frame> as_if_across(const SimulatedMission& lap, std::size_t frames)
   std::vector<Frame> seen;
   for (std::size_t i = 0; i < frames; ++i) {
     const std::size_t step = i % (2 * kToAndFro);
-    const std::size_t across = kLapFrames / 2 + std::min(step, 2 * kToAndFro - step);
+    const std::size_t across = kFramesOfLap / 2 + std::min(step, 2 * kToAndFro - step);
     const std::size_t place = i < kFramesOnOneSide ? i : across;
     seen.push_back({from_seconds(0.1 * static_cast<double>(i)), lap.frames[place].features});
   }
@@ -100,8 +100,8 @@ int count_refusals(const std::vector<FrameReport>& reports) {
 }
 
 TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceBehindAWall) {
-  const SimulatedMission lap = circling(2);
-  Session session = session_on(map_of(in_two_parts(circling(1)), wall_across()), false);
+  const SimulatedMission lap = lap_at(2);
+  Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const auto reports = reports_of(session, as_if_across(lap, 100));
   EXPECT_EQ(reports[kFramesOnOneSide - 1].health.verdict, Verdict::trusted);
   for (std::size_t i = kFramesOnOneSide; i < reports.size(); ++i) {
@@ -112,34 +112,34 @@ TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceBehindAWall) {
 }
 
 TEST(PlaceBounds, LetTheRobotBeFoundThereOnceItMayHaveBeenCarried) {
-  const SimulatedMission lap = circling(2);
-  Session session = session_on(map_of(in_two_parts(circling(1)), wall_across()), false);
+  const SimulatedMission lap = lap_at(2);
+  Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const auto reports = reports_of(session, as_if_across(lap, 150));
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
 TEST(PlaceBounds, LetTheRobotBeFoundWhereSomebodySaysThatItIs) {
-  const SimulatedMission lap = circling(2);
-  Session session = session_on(map_of(in_two_parts(circling(1)), wall_across()), false);
+  const SimulatedMission lap = lap_at(2);
+  Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const std::vector<Frame> frames = as_if_across(lap, 60);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i == 20) session.look_near({.map_from_body = lap.truth[kLapFrames / 2].world_from_body, .radius = 2.0});
+    if (i == 20) session.look_near({.map_from_body = lap.truth[kFramesOfLap / 2].world_from_body, .radius = 2.0});
     const FrameReport report = session.process(frames[i]);
     if (i >= 20) EXPECT_TRUE(report.map_from_body) << i;
   }
 }
 
 TEST(PlaceBounds, LetTheRobotGoWhereADoorLeads) {
-  const SimulatedMission lap = circling(2);
-  Session session = session_on(map_of(in_two_parts(circling(1)), wall_across(1.2)), false);
+  const SimulatedMission lap = lap_at(2);
+  Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across(1.2)), false);
   const auto reports = reports_of(session, as_if_across(lap, 60));
   EXPECT_EQ(count_refusals(reports), 0);
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
 TEST(PlaceBounds, KeepWhatIsMappedBesideOutOfAPlaceBehindAWall) {
-  const SimulatedMission lap = circling(2);
-  Session session = session_on(map_of(in_two_parts(circling(1)), wall_across()), true);
+  const SimulatedMission lap = lap_at(2);
+  Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), true);
   const auto reports = reports_of(session, as_if_across(lap, 100));
   for (std::size_t i = kFramesOnOneSide; i < reports.size(); ++i) EXPECT_FALSE(reports[i].map_from_body) << i;
   EXPECT_EQ(reports.back().health.doubt, Doubt::not_registered);
@@ -148,8 +148,8 @@ TEST(PlaceBounds, KeepWhatIsMappedBesideOutOfAPlaceBehindAWall) {
 }
 
 TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceOffTheGround) {
-  const SimulatedMission lifted = circling(2, 0.6);
-  Session session = session_on(map_of(circling(1)), false);
+  const SimulatedMission lifted = lap_at(2, 0.6);
+  Session session = session_within(map_with(lap_at(1)), false);
   const auto reports = reports_of(session, {lifted.frames.begin(), lifted.frames.begin() + 20});
   for (const FrameReport& report : reports) {
     EXPECT_FALSE(report.map_from_body);
@@ -159,22 +159,22 @@ TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceOffTheGround) {
 }
 
 TEST(PlaceBounds, DoNotHoldACameraToTheGroundWhoseMapWasNotDriven) {
-  const SimulatedMission lifted = circling(2, 0.6);
+  const SimulatedMission lifted = lap_at(2, 0.6);
   SimulationOptions options;
   const SimulatedMission flown =
       simulate_mission(simulated_rig(), figure_eight_trajectory(160, 10.0, 5.0, 1.0), options);
-  Session session = session_on(map_of(flown), false);
+  Session session = session_within(map_with(flown), false);
   const auto reports = reports_of(session, lifted.frames);
   EXPECT_EQ(count_refusals(reports), 0);
   EXPECT_TRUE(std::ranges::any_of(reports, [](const FrameReport& report) { return report.map_from_body.has_value(); }));
 }
 
 TEST(PlaceBounds, DoNotHoldOtherCamerasToTheGround) {
-  const SimulatedMission lifted = circling(2, 0.6);
+  const SimulatedMission lifted = lap_at(2, 0.6);
   SessionOptions options;
   options.mission.bounds.is_on_ground_of_map = false;
   Session session(simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()),
-                  simulated_vocabulary(), map_of(circling(1)));
+                  simulated_vocabulary(), map_with(lap_at(1)));
   const auto reports = reports_of(session, {lifted.frames.begin(), lifted.frames.begin() + 20});
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
@@ -183,9 +183,9 @@ TEST(PlaceBounds, DoNotHoldOtherCamerasToTheGround) {
 Agreement worst_off_the_ground(bool is_planar) {
   constexpr std::size_t kDark = 20, kLight = 50;  // numbers of the first frames that show nothing, and something again
   const Rig rig = simulated_rig(robot_from_camera());
-  const Trajectory way = circling_trajectory(kLapFrames, 10.0, 2.0, 1.0, robot_from_camera());
+  const Trajectory way = circling_trajectory(kFramesOfLap, 10.0, 2.0, 1.0, robot_from_camera());
   SimulationOptions options;
-  const auto offline = map_of(simulate_mission(rig, way, options));
+  const auto offline = map_with(simulate_mission(rig, way, options));
   options.noise_seed = 2;
   const SimulatedMission mission = simulate_mission(rig, way, options);
   SessionOptions session_options;
@@ -216,11 +216,11 @@ TEST(PlanarMotion, HoldsABodyToTheGroundWhereNothingIsSeen) {
 }
 
 TEST(PlanarMotion, LeavesWhatIsSeenAsItIs) {
-  const SimulatedMission mission = circling(2);
+  const SimulatedMission mission = lap_at(2);
   SessionOptions options;
   options.is_planar = true;
   Session session(simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()),
-                  simulated_vocabulary(), map_of(circling(1)));
+                  simulated_vocabulary(), map_with(lap_at(1)));
   const auto reports = reports_of(session, mission.frames);
   for (std::size_t i = 5; i < reports.size(); ++i) {
     EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
