@@ -35,8 +35,8 @@ enum class Doubt : std::uint8_t {
   calibration,         // points of the map fit the images by another focal length
   bridged,             // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
   // There is no pose, for the robot cannot be where it was found:
-  off_the_plane,  // that is too high, too low or too tilted against the ground that the map was driven on
-  in_wall,        // that is inside a wall of the floor plan
+  off_the_plane,  // it would stand too high, too low or too tilted on the ground that the map was driven on
+  in_wall,        // it would be inside a wall of the floor plan
   outside,        // no way leads there from where the map was made
   behind_wall     // there was no time for a way around the walls, from where it was last trusted to be
 };

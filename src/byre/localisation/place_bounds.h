@@ -12,7 +12,7 @@ struct PlaceBoundsOptions {
   // The mission's cameras are those of the map, so that they sit as high; others may sit anywhere.
   bool is_on_ground_of_map = true;
   double plane_margin = 0.3;       // metres of height off the ground that was driven on, beyond its uncertainty
-  double plane_margin_tilt = 0.1;  // radians of tilt against it, likewise
+  double plane_margin_tilt = 0.1;  // radians of tilt against that ground, beyond its uncertainty
   double wall_margin = 0.5;  // metres by which a wall may lie beside the plan, beyond the registration's uncertainty
 };
 
@@ -51,8 +51,8 @@ class PlaceBounds {
   PlanDisc disc_around(const Pose& map_from_body, const Matrix6& covariance) const;
   Doubt wall_against(const PlaceToJudge& place, const std::optional<Way>& way) const;
 
-  const DrivenGround* ground_;  // nullptr where it tells nothing
-  const PlacedWalls* walls_;    // likewise
+  const DrivenGround* ground_;  // nullptr where the ground tells nothing
+  const PlacedWalls* walls_;    // nullptr where no walls are known
   PlaceBoundsOptions options_;
 };
 

@@ -117,7 +117,7 @@ class Whereabouts {
   MotionModel motion_;
   std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
   std::optional<BodyMotion> bridge_;
-  std::optional<Matrix6> bridge_covariance_;  // of the pose in the map, where the ground adds to what is told
+  std::optional<Matrix6> bridge_covariance_;  // covariance in the map, where the ground adds to what is told
   std::size_t bridge_begin_ = 0;              // index of the last pose before the bridge
   // Poses led on by what was told, until the pose that was found after them is believed.
   struct BridgeEnd {

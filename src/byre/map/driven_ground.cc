@@ -17,7 +17,7 @@ double angle_of(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
 }
 
 // The value that so large a share of all stay below.
-double quantile(std::vector<double> values, double share) {
+double value_above(std::vector<double> values, double share) {
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + place);
   return values[static_cast<std::size_t>(place)];
@@ -38,7 +38,7 @@ bool is_of_wheels(const Spread& spread) {
   constexpr double kShare = 0.95;      // share of the path that must lie within both
   constexpr double kMostHeight = 0.1;  // metres
   constexpr double kMostTilt = 0.06;   // radians: who carries a camera tilts it by more
-  return quantile(spread.heights, kShare) <= kMostHeight && quantile(spread.tilts, kShare) <= kMostTilt;
+  return value_above(spread.heights, kShare) <= kMostHeight && value_above(spread.tilts, kShare) <= kMostTilt;
 }
 
 }  // namespace

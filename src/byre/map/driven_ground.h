@@ -17,12 +17,12 @@ class DrivenGround {
 
   // How a body stands on the ground nearest to it.
   struct Stand {
-    double height = 0.0;                                    // of its origin above where the path's bodies have theirs
+    double height = 0.0;                                    // height of its origin above those of the path's bodies
     double height_sigma = 0.0;                              // what the path leaves open there
-    Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // of the ground, unit length
-    Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // the same
+    Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // normal of the ground, unit length
+    Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // normal of the ground, unit length
     double tilt = 0.0;                                      // radians, against how the path's bodies stand
-    double tilt_sigma = 0.0;                                // radians, of each of two directions
+    double tilt_sigma = 0.0;                                // radians, in each of two directions
     double distance = 0.0;                                  // to the nearest place of the path
   };
   Stand stand_of(const Pose& map_from_body) const;
@@ -30,7 +30,7 @@ class DrivenGround {
   // How bodies of the path stand: the direction that is up when the ground is level, as the body has it.
   const Eigen::Vector3d& up_in_body() const { return up_in_body_; }
   double height_spread() const { return height_spread_; }  // root mean square of heights above the ground around
-  double tilt_spread() const { return tilt_spread_; }      // radians, the same of tilts
+  double tilt_spread() const { return tilt_spread_; }      // radians, root mean square of tilts in one direction
 
  private:
   DrivenGround() = default;

@@ -57,7 +57,7 @@ class PlanWalls {
   int columns_ = 0;
   int rows_ = 0;
   std::vector<std::uint8_t> is_wall_;     // one for each cell
-  std::vector<std::uint8_t> is_reached_;  // likewise: can be driven to
+  std::vector<std::uint8_t> is_reached_;  // whether it can be driven to, one for each cell
 };
 
 }  // namespace byre

@@ -152,8 +152,8 @@ KnownMounting scaled(KnownMounting mounting, double factor) {
 
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found) {
   constexpr double kMostTilt = 0.06;         // radians between the axes
-  constexpr double kMostSquaredSigmas = 18;  // of four numbers: one in 800 is beyond
-  constexpr double kNeglected = 9.0;         // by which errors that motions have in common exceed the covariance
+  constexpr double kMostSquaredSigmas = 18;  // sum over four numbers: one in 800 is beyond
+  constexpr double kNeglected = 9.0;         // factor for errors that motions have in common
   const auto up = [](const WheelMounting& mounting) -> Eigen::Vector3d {
     return mounting.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
   };

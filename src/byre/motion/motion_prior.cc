@@ -19,8 +19,8 @@ constexpr Timestamp kSamplesKept = 120s;
 constexpr Timestamp kMostKept = 1800s;   // time that samples are kept while it is not known how wheels are mounted
 constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
 constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
-constexpr double kUnprovenFactor = 9.0;  // by which the covariance is larger until then
-constexpr int kLooksUntilKept = 8;       // of a mounting, with its covariance
+constexpr double kUnprovenFactor = 9.0;  // factor of the covariance until kBorneOut
+constexpr int kLooksUntilKept = 8;       // looks from which a mounting is worth keeping
 constexpr int kLooksPerOffset = 8;       // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.

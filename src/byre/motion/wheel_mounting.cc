@@ -59,7 +59,7 @@ std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions,
 TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up,
                             const std::optional<WheelMounting>& known) {
   const double scale_sigma = known ? 0.005 : 0.03;       // share, from day to day or among wheels
-  const double per_metre_sigma = known ? 0.001 : 0.005;  // radians per metre, likewise
+  const double per_metre_sigma = known ? 0.001 : 0.005;  // radians per metre, from day to day or among wheels
   const TurnErrors before = known ? known->turn_errors : TurnErrors{};
   const Eigen::Matrix2d by_before =
       Eigen::Vector2d(1.0 / (scale_sigma * scale_sigma), 1.0 / (per_metre_sigma * per_metre_sigma)).asDiagonal();

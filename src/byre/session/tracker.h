@@ -33,7 +33,7 @@ class Tracker {
     std::optional<PoseHint> hint{};         // where alone a frame is looked for in the offline map
     bool is_place_proven = false;           // so offline points cannot put the camera just anywhere
     std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
-    const DrivenGround* ground = nullptr;   // that the body is held to, where it is
+    const DrivenGround* ground = nullptr;   // ground that the body is held to; nullptr for none
   };
   // The last frame that had a pose.
   struct LastPose {

@@ -33,7 +33,7 @@ class OfflineMap {
 
   const std::vector<SourceRecording>& recordings() const { return recordings_; }  // what the map was made from
 
-  const KnownMounting& mounting() const { return mounting_; }  // of what told the motion when it was made
+  const KnownMounting& mounting() const { return mounting_; }  // mounting of what told the motion then
 
   // What it was driven on; nullptr where it was not driven.
   const DrivenGround* ground() const { return ground_ ? &*ground_ : nullptr; }

@@ -10,8 +10,8 @@
 namespace byre {
 namespace {
 
-constexpr double kOpenMetres = 10.0;      // sigma of what the ground does not tell
-constexpr double kOpenRadians = 3.0;      // likewise
+constexpr double kOpenMetres = 10.0;      // sigma of a place on the ground
+constexpr double kOpenRadians = 3.0;      // sigma of a heading on the ground
 constexpr double kLeastVariance = 1e-12;  // square metres and square radians
 
 // One sigma along a direction, another across it.
