@@ -73,7 +73,11 @@ void bind_enums_of_reports(py::module_& module) {
                     {"right_camera", Doubt::right_camera},
                     {"cameras_disagree", Doubt::cameras_disagree},
                     {"calibration", Doubt::calibration},
-                    {"bridged", Doubt::bridged}});
+                    {"bridged", Doubt::bridged},
+                    {"off_the_plane", Doubt::off_the_plane},
+                    {"in_wall", Doubt::in_wall},
+                    {"outside", Doubt::outside},
+                    {"behind_wall", Doubt::behind_wall}});
   bind_enum<SessionEvent>(module, "Event", "What happened in a frame.",
                           {{"initialised", SessionEvent::initialised},
                            {"localised", SessionEvent::localised},
@@ -84,6 +88,7 @@ void bind_enums_of_reports(py::module_& module) {
                            {"entered_mapped_area", SessionEvent::entered_mapped_area},
                            {"navigation_error", SessionEvent::navigation_error},
                            {"restarted", SessionEvent::restarted},
+                           {"place_refused", SessionEvent::place_refused},
                            {"place_refuted", SessionEvent::place_refuted},
                            {"online_corrected", SessionEvent::online_corrected},
                            {"loop_found", SessionEvent::loop_found},

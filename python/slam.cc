@@ -191,6 +191,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
       .def_readwrite("vocabulary", &SlamOptions::vocabulary)
+      .def_readwrite("plan", &SlamOptions::plan, "The floor plan that the map of a mission lies on.")
       .def_property("settings", &settings_of, &set_settings, "Options of docs/options.md by name.");
 }
 

@@ -60,6 +60,9 @@ struct FrameReport {
   int matches = 0;
   int inliers = 0;
   bool keyframe_added = false;
+  // Why the robot cannot be where this frame, or one shortly before, was found in the offline map: Health::doubt tells
+  // it as well where there is no other pose.
+  Doubt refused_place = Doubt::none;
   TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
   std::vector<SessionEvent> events;                     // what happened in this frame, in order
   double track_seconds = 0.0;                           // wall time of tracking on the calling thread

@@ -33,7 +33,12 @@ enum class Doubt : std::uint8_t {
   right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
   cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
   calibration,         // points of the map fit the images by another focal length
-  bridged              // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
+  bridged,             // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
+  // There is no pose, for the robot cannot be where it was found:
+  off_the_plane,  // it would stand too high, too low or too tilted on the ground that the map was driven on
+  in_wall,        // it would be inside a wall of the floor plan
+  outside,        // no way leads there from where the map was made
+  behind_wall     // there was no time for a way around the walls, from where it was last trusted to be
 };
 
 std::string_view to_string(Doubt doubt);

@@ -16,6 +16,7 @@ enum class SessionEvent : std::uint8_t {
   entered_mapped_area,  // offline points hold the pose again
   navigation_error,     // not known where the robot is for StateOptions::lost_after; told once each time
   restarted,            // a new submap of the online map was begun, for the way back was not found
+  place_refused,        // found where the robot cannot be, see FrameReport::refused_place; told once each time
   place_refuted,        // it was tracked and trusted at a place that looks alike: poses before are not to be relied on
   online_corrected,     // the online map was moved so that it agrees with the offline one
   loop_found,           // the online map met itself: its ends are fused, or a correction was begun

@@ -41,6 +41,9 @@ struct SlamOptions {
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
   // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};
+  // The floor plan that the map of a mission lies on: where it says what a wall is, the robot is not taken to be behind
+  // one. Empty: walls are not known.
+  std::optional<std::filesystem::path> plan{};
 };
 
 // One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.

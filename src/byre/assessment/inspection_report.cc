@@ -4,6 +4,7 @@
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/report_json.h"
 #include "byre/input/formatted.h"
+#include "byre/motion/known_mounting.h"
 
 #include <algorithm>
 #include <string_view>
@@ -120,7 +121,11 @@ std::string origin_text(const StoredMap& stored, const MapInspection& inspection
     text += wide_row("calibration", describe_calibration(*stored.recordings[i].refined)) +
             calibration_table(*stored.recordings[i].refined);
   }
-  for (const auto& [key, note] : stored.notes) text += wide_row(key, note);
+  const KnownMounting mounting = mounting_in(stored.notes);
+  for (const auto& [key, note] : stored.notes) {
+    const bool is_mounting = (key == "wheels" && mounting.wheels) || (key == "gyroscope" && mounting.gyroscope);
+    text += wide_row(key, is_mounting ? "known how mounted, for missions to begin with" : note);
+  }
   if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
   return text;
 }

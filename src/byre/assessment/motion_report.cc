@@ -17,7 +17,8 @@ std::string describe(const WheelMounting& wheels, const ToldMotion& told, bool i
   text += is_metric
               ? formatted("%.2f %% longer than seen (sigma %.2f %%)", 100.0 * (wheels.metres_per_unit - 1.0), share)
               : formatted("a unit of the map is %.3f m (sigma %.2f %%)", wheels.metres_per_unit, share);
-  return text + formatted("; left out for slip %d times", told.slips);
+  text += formatted("; left out for slip %d times", told.slips);
+  return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
 }
 
 bool is_bridged(const MappedFrame& frame) {
@@ -35,7 +36,9 @@ std::string motion_rows(const MapRun& run, bool is_metric) {
     text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
                                        told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
   }
-  if (!told.wheels && !told.gyroscope) {
+  if (!told.wheels && told.is_mounted_otherwise) {
+    text += row("wheels", "mounted otherwise than when the map was made, and it is not known yet how");
+  } else if (!told.wheels && !told.gyroscope) {
     return row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);

@@ -86,6 +86,19 @@ fs::path read_image_path(const YAML::Node& root, const fs::path& path) {
   return path.parent_path() / image.Scalar();  // an absolute one stays
 }
 
+std::optional<double> read_occupied_threshold(const YAML::Node& root, const fs::path& path) {
+  if (!root["occupied_thresh"]) return std::nullopt;
+  const std::string place = path.string() + ": occupied_thresh";
+  const double threshold = to_number(root["occupied_thresh"], place);
+  if (!(threshold > 0.0 && threshold <= 1.0)) throw InputError(place, "is not between 0 and 1");
+  return threshold;
+}
+
+bool read_is_negated(const YAML::Node& root) {
+  const YAML::Node negate = root["negate"];
+  return negate && negate.IsScalar() && (negate.Scalar() == "1" || negate.Scalar() == "true");
+}
+
 FloorPlan read_map_server_plan(const fs::path& path) {
   const YAML::Node root = load_yaml(path);
   FloorPlan plan;
@@ -93,6 +106,8 @@ FloorPlan read_map_server_plan(const fs::path& path) {
   plan.image = read_image_path(root, path);
   const double resolution = read_resolution(root, path);
   const auto [corner_in_plan, yaw] = read_origin(root, path);
+  plan.occupied_threshold = read_occupied_threshold(root, path);
+  plan.is_negated = read_is_negated(root);
   read_image_size(plan);
   const Eigen::Matrix2d plan_from_corner = Eigen::Rotation2Dd(yaw).toRotationMatrix();
   plan.metres_per_pixel = resolution * plan_from_corner * Eigen::Vector2d(1.0, -1.0).asDiagonal();

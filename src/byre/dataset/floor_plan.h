@@ -19,6 +19,10 @@ struct FloorPlan {
   int height = 0;
   Eigen::Matrix2d metres_per_pixel = Eigen::Matrix2d::Identity();  // columns: a step to the right, a step down
   Eigen::Vector2d top_left_in_plan = Eigen::Vector2d::Zero();      // centre of the top left pixel
+  // Darkness, from 0 to 1, above which a pixel is of a wall or another obstacle. Empty: nobody says what dark pixels
+  // are, which may be letters.
+  std::optional<double> occupied_threshold{};
+  bool is_negated = false;  // light pixels are the dark ones
 
   // Metres on the plan and pixels of its image, which may lie outside of it.
   Eigen::Vector2d point_at(const Eigen::Vector2d& pixel) const { return top_left_in_plan + metres_per_pixel * pixel; }
@@ -29,8 +33,9 @@ struct FloorPlan {
 
 // There are two ways to say where an image lies. NAME.yaml is as ROS' map_server has it: the image's file, metres per
 // pixel (resolution), and the pose [x, y, yaw] of the lower left corner of the lower left pixel (origin);
-// http://wiki.ros.org/map_server. An image file has a world file beside it (.pgw, .tfw, .jgw; .pngw and the like; .wld)
-// of six lines: the step to the right in x and in y, the step down in x and in y, the centre of the top left pixel.
+// http://wiki.ros.org/map_server. It may say from which darkness on a pixel is a wall (occupied_thresh, negate). An
+// image file has a world file beside it (.pgw, .tfw, .jgw; .pngw and the like; .wld) of six lines: the step to the
+// right in x and in y, the step down in x and in y, the centre of the top left pixel.
 // Throws InputError naming file and field when one of the two is missing, cannot be read or makes no sense.
 FloorPlan read_floor_plan(const std::filesystem::path& path);
 

@@ -43,6 +43,16 @@ TEST_F(FloorPlans, LieAsMapServerSaysWithTheOriginAtTheLowerLeftCorner) {
   EXPECT_THAT(plan.pixel_at({-0.975, -1.975}), PointNear(Eigen::Vector2d(0.0, 99.0), kExact));
 }
 
+TEST_F(FloorPlans, HaveWallsWhereTheirYamlSaysHowDarkTheseAre) {
+  const std::string lies = "image: plan.png\nresolution: 0.05\norigin: [0, 0, 0]\n";
+  EXPECT_FALSE(from_yaml(lies).occupied_threshold);
+  EXPECT_EQ(from_yaml(lies + "occupied_thresh: 0.65\n").occupied_threshold, 0.65);
+  EXPECT_FALSE(from_yaml(lies + "negate: 0\n").is_negated);
+  EXPECT_TRUE(from_yaml(lies + "negate: 1\n").is_negated);
+  EXPECT_THAT(fault_in_yaml(lies + "occupied_thresh: 65\n"), HasSubstr("occupied_thresh: is not between 0 and 1"));
+  EXPECT_FALSE(from_world_file("0.05\n0\n0\n-0.05\n0\n0\n").occupied_threshold);
+}
+
 TEST_F(FloorPlans, AreTurnedAboutTheirLowerLeftCorner) {
   const FloorPlan plan = from_yaml("image: plan.png\nresolution: 0.05\norigin: [3, 4, 1.5707963267948966]\n");
   EXPECT_THAT(plan.point_at({-0.5, 99.5}), PointNear(Eigen::Vector2d(3.0, 4.0), kExact));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/localisation/place_bounds.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/moved_points.h"
@@ -21,6 +22,7 @@ struct MissionOptions {
   OfflineViewOptions view;
   MovedPointsOptions moved_points;
   RegistrationOptions registration;
+  PlaceBoundsOptions bounds;
 };
 
 // What a session knows of its way in the offline map: which of its points to look for, how long ago they last held the

@@ -31,9 +31,9 @@ std::optional<MissionCalibrator::Switch> OfflineTracker::collect_camera() {
   return calibrator_ ? calibrator_->collect() : std::nullopt;
 }
 
-std::optional<FoundPlace> OfflineTracker::collect_place() {
+PlaceSearch OfflineTracker::collect_place() {
   const auto finished = search_.collect();
-  return finished ? finished->result : std::nullopt;
+  return finished ? finished->result : PlaceSearch{};
 }
 
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,
@@ -81,11 +81,16 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
   last_search_ = sought.frame.time;
   const bool is_hint_to_be_checked = whereabouts.confirmation().is_by_hint && mapper.submaps().is_registered();
+  // Where a pose was trusted all the while, a find elsewhere says that it was wrong, so the way from there tells
+  // nothing.
+  const bool is_way_in_doubt = whereabouts.confirmation().is_proven() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
-                 offline = offline_, options = options_.relocalise, tracked_share = mission_.seen_share()] {
-    auto found = search_place(*offline, {frame, rig, hint}, options);
-    if (found) found->tracked_share = tracked_share;
-    return found;
+                 way = is_way_in_doubt ? std::nullopt : sought.way, offline = offline_,
+                 options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds},
+                 tracked_share = mission_.seen_share()] {
+    PlaceSearch search = search_place(*offline, {frame, rig, hint, way}, options);
+    if (search.found) search.found->tracked_share = tracked_share;
+    return search;
   });
 }
 

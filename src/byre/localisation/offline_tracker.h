@@ -43,7 +43,7 @@ class OfflineTracker {
 
   // Once for each frame.
   std::optional<MissionCalibrator::Switch> collect_camera();
-  std::optional<FoundPlace> collect_place();
+  PlaceSearch collect_place();
   bool ask_for_focal_length() { return focal_check_.is_due(); }  // whether this frame is to be asked
 
   // A frame tracked while the online map is known to lie in the offline one.
@@ -94,7 +94,7 @@ class OfflineTracker {
   RivalPlace rival_;
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need
-  Worker<std::optional<FoundPlace>> search_;
+  Worker<PlaceSearch> search_;
   std::unique_ptr<Executor> calibration_lane_;  // until calibration begins
   std::optional<MissionCalibrator> calibrator_;
   FocalCheck focal_check_;

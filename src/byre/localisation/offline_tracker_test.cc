@@ -131,7 +131,7 @@ TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
     whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
   }
   tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place();
+  const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found) << "in the whole map, for the hint says that the robot is elsewhere";
   EXPECT_TRUE(tracker_.consider(*found, whereabouts_, mapper_).agrees_with_hint);
 }
@@ -152,7 +152,7 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
 TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) {
   note_found(0, 1);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place();
+  const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found);
   EXPECT_EQ(found->time, mission_.frames[4].time);
   EXPECT_THAT(found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
@@ -164,18 +164,18 @@ TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   track.offline_expected = 1000;
   tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place();
+  const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found);
   EXPECT_EQ(found->tracked_share, 0.07);
   tracker_.search_beside({mission_.frames[5], mission_.rig}, whereabouts_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place());
+  EXPECT_FALSE(tracker_.collect_place().found);
 }
 
 TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
   note_found(0);
   note(4, 100);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place());
+  EXPECT_FALSE(tracker_.collect_place().found);
 }
 
 }  // namespace

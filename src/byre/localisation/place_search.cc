@@ -1,41 +1,66 @@
 #include "byre/localisation/place_search.h"
 
 #include "byre/localisation/standing_hint.h"
+#include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
 
 #include <algorithm>
 
 namespace byre {
+namespace {
 
-Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, const LocaliseOptions& options) {
-  const auto& [frame, rig, hint] = sought;
-  const Map nothing_online(Origin::online);
-  const MapView map(&offline.map(), nothing_online);
-  if (!hint) return localise(frame, rig, map, offline.places(), options);
-  const Pose camera_from_body = inverse(rig.body_from_camera);
-  // What is seen from there may have been mapped from farther back, and at an angle.
-  constexpr double kTurnBetweenViews = 0.5;  // radians
-  PoseHint around = *hint;
-  around.radius *= 2.0;
-  around.turn += kTurnBetweenViews;
-  const auto is_far = [&map, &camera_from_body, &around](KeyframeId id) {
-    return !is_near(around, inverse(map.find_keyframe(id)->camera_from_world) * camera_from_body);
-  };
-  Localisation found = localise(frame, rig, map, offline.places(), options, is_far);
-  if (!found.tracked || is_near(*hint, inverse(found.tracked->camera_from_world) * camera_from_body)) return found;
-  found.tracked.reset();
-  found.failure = LocalisationFailure::geometry_disagrees;
-  return found;
+PlaceToJudge place_of(const TrackedFrame& tracked, const SoughtFrame& sought) {
+  const Rig& rig = sought.rig;
+  return {sought.frame.time, body_pose(rig, tracked.camera_from_world),
+          move_covariance(tracked.match_covariance, rig.body_from_camera)};
 }
 
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought,
-                                       const LocaliseOptions& options) {
-  const Localisation found = localise_in(offline, sought, options);
-  if (!found.tracked) return std::nullopt;
+// What is seen from near a hint may have been mapped from farther back, and at an angle.
+PoseHint surroundings_of(const PoseHint& hint) {
+  constexpr double kTurnBetweenViews = 0.5;  // radians
+  PoseHint around = hint;
+  around.radius *= 2.0;
+  around.turn += kTurnBetweenViews;
+  return around;
+}
+
+}  // namespace
+
+BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
+                                const PlaceSearchOptions& options) {
+  const auto& [frame, rig, hint, way] = sought;
+  const Map nothing_online(Origin::online);
+  const MapView map(&offline.map(), nothing_online);
+  const PlaceBounds bounds(offline, options.bounds);
+  BoundedLocalisation result;
+  PlaceFilter filter;
+  filter.is_impossible = [&](const TrackedFrame& tracked) {
+    const Doubt reason = bounds.reason_against(place_of(tracked, sought), sought.way);
+    if (reason != Doubt::none) result.refused = reason;
+    return reason != Doubt::none;
+  };
+  const Pose camera_from_body = inverse(rig.body_from_camera);
+  if (hint) {
+    filter.is_excluded = [&map, &camera_from_body, around = surroundings_of(*hint)](KeyframeId id) {
+      return !is_near(around, inverse(map.find_keyframe(id)->camera_from_world) * camera_from_body);
+    };
+  }
+  Localisation& found = result.found;
+  found = localise(frame, rig, map, offline.places(), options.localise, filter);
+  if (!hint || !found.tracked) return result;
+  if (is_near(*hint, inverse(found.tracked->camera_from_world) * camera_from_body)) return result;
+  found.tracked.reset();
+  found.failure = LocalisationFailure::geometry_disagrees;
+  return result;
+}
+
+PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options) {
+  const auto [found, refused] = localise_in(offline, sought, options);
+  if (!found.tracked) return {std::nullopt, refused};
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
   const double seen = static_cast<double>(found.tracked->features.size()) / std::max(1, found.tracked->expected);
-  return FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, seen};
+  return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, seen}, Doubt::none};
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/localisation/place_bounds.h"
 #include "byre/pose_hint.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/offline_map.h"
@@ -9,15 +10,27 @@
 
 namespace byre {
 
+struct PlaceSearchOptions {
+  LocaliseOptions localise;
+  PlaceBoundsOptions bounds;
+};
+
 // What is looked for from nothing.
 struct SoughtFrame {
   const Frame& frame;
   const Rig& rig;
-  std::optional<PoseHint> hint{};  // where alone it is looked for; empty: everywhere
+  std::optional<PoseHint> hint{};         // where alone it is looked for; empty: everywhere
+  std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
 };
 
-// The frame in the offline map alone.
-Localisation localise_in(const OfflineMap& offline, const SoughtFrame& sought, const LocaliseOptions& options);
+// The frame in the offline map alone, but not where the robot cannot be.
+struct BoundedLocalisation {
+  Localisation found;
+  Doubt refused = Doubt::none;  // why it cannot be at a place where the frame was found otherwise
+};
+
+BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
+                                const PlaceSearchOptions& options);
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {
@@ -30,8 +43,11 @@ struct FoundPlace {
   std::optional<double> tracked_share{};
 };
 
-// Looks for a frame in the offline map without a guess. Empty when it is not found.
-std::optional<FoundPlace> search_place(const OfflineMap& offline, const SoughtFrame& sought,
-                                       const LocaliseOptions& options);
+// What came of looking for a frame in the offline map without a guess.
+struct PlaceSearch {
+  std::optional<FoundPlace> found;  // empty where it was not found
+  Doubt refused = Doubt::none;      // see BoundedLocalisation
+};
+PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options);
 
 }  // namespace byre

@@ -2,6 +2,7 @@
 
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/planar_prior.h"
 
 #include <cmath>
 
@@ -146,15 +147,29 @@ void Whereabouts::give_up() {
   bridge_.reset();
 }
 
-bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
+// The bridge ends where the ground has the body then.
+Pose Whereabouts::held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map) {
+  const auto prior = planar_prior(ground, rig, camera_from_map);
+  if (!prior) return camera_from_map;
+  const Matrix6 told = move_covariance(covariance_of_bridge(), inverse(rig.body_from_camera));
+  const PosePrior held = combined({camera_from_map, told}, *prior);
+  const Pose before = body_pose(rig, camera_from_map), after = body_pose(rig, held.camera_from_world);
+  bridge_->last_from_body = bridge_->last_from_body * (inverse(before) * after);
+  bridge_covariance_ = move_covariance(held.covariance, rig.body_from_camera);
+  return held.camera_from_world;
+}
+
+bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground) {
   if (has_pose_ || !is_way_known_ || !motion_.told() || trajectory_.empty()) {
     if (!has_pose_) bridge_.reset();
     return false;
   }
   if (!bridge_) bridge_begin_ = trajectory_.size() - 1;
   const AnchoredPose last = trajectory_.back();
-  const Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
+  Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
   bridge_ = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
+  bridge_covariance_.reset();
+  if (ground != nullptr) camera_from_map = held_to(*ground, rig, camera_from_map);
   const Pose camera_from_keyframe = camera_from_map * inverse(byre::camera_from_world(map, last.keyframe));
   trajectory_.add({time, last.keyframe, camera_from_keyframe, last.submap});
   trajectory_.believe_all();
@@ -166,6 +181,7 @@ bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map) {
 
 // Precondition: there is a bridge.
 Matrix6 Whereabouts::covariance_of_bridge() const {
+  if (bridge_covariance_) return *bridge_covariance_;
   return move_covariance(quality_.covariance, inverse(bridge_->last_from_body)) + bridge_->covariance;
 }
 

@@ -4,6 +4,7 @@
 #include "byre/health.h"
 #include "byre/localisation/confirmation.h"
 #include "byre/localisation/odometry.h"
+#include "byre/map/driven_ground.h"
 #include "byre/mapping/anchored_trajectory.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/motion_model.h"
@@ -78,8 +79,9 @@ class Whereabouts {
   void lose();
   // As lose(), and where the robot was believed to be was wrong: it is not led on from there.
   void give_up();
-  // Nothing was seen, and the pose goes on by what is told, where it is: whether it does.
-  bool go_on(Timestamp time, const Rig& rig, const MapView& map);
+  // Nothing was seen, and the pose goes on by what is told, where it is: whether it does. ground: that the body is held
+  // to; nullptr for none.
+  bool go_on(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground = nullptr);
   // Places told of the present submap anew: nothing is left of what a bridge to it left open.
   void forget_carried() { carried_.reset(); }
 
@@ -104,6 +106,7 @@ class Whereabouts {
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_led_well() const;  // by what was told since the last pose that was believed
   void believe();
+  Pose held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map);
   void note_end_of_bridge(const Rig& rig, const MapView& map);
 
   // Constant after construction.
@@ -114,7 +117,8 @@ class Whereabouts {
   MotionModel motion_;
   std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
   std::optional<BodyMotion> bridge_;
-  std::size_t bridge_begin_ = 0;  // index of the last pose before the bridge
+  std::optional<Matrix6> bridge_covariance_;  // covariance in the map, where the ground adds to what is told
+  std::size_t bridge_begin_ = 0;              // index of the last pose before the bridge
   // Poses led on by what was told, until the pose that was found after them is believed.
   struct BridgeEnd {
     std::size_t first = 0;   // index of the last pose before

@@ -1,5 +1,7 @@
 #include "byre/map/map_file.h"
 
+#include <algorithm>
+
 namespace byre {
 namespace {
 
@@ -10,6 +12,11 @@ bool is_of_these_cameras(const Calibration& known, const Calibration& given) {
 }
 
 }  // namespace
+
+bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given) {
+  return std::ranges::any_of(
+      recordings, [&](const SourceRecording& recording) { return is_of_these_cameras(recording.calibration, given); });
+}
 
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
                                                     const Calibration& given) {

@@ -32,6 +32,9 @@ struct SourceRecording {
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
                                                     const Calibration& given);
 
+// Whether one of the recordings was taken by these cameras, as given; the left one may be the only one.
+bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given);
+
 // What the positions of a map are measured in.
 enum class MapScale : std::uint8_t {
   metric,   // metres, from a stereo baseline or a given scale

@@ -1,6 +1,7 @@
 #include "byre/map/scaled_copy.h"
 
 #include "byre/alignment.h"
+#include "byre/motion/known_mounting.h"
 
 #include <cassert>
 #include <cmath>
@@ -51,6 +52,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
     if (!recording.refined) recording.refined = RefinedCalibration{.calibration = recording.calibration};
     recording.refined->calibration = byre::scaled(recording.refined->calibration, factor);
   }
+  note_mounting(byre::scaled(mounting_in(stored.notes), factor), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;
 }

@@ -37,8 +37,11 @@ std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen) {
 }
 
 // Least squares over all pairs (Kabsch 1976).
-Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias) {
+Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias,
+                               const std::optional<GyroscopeMounting>& known) {
+  constexpr double kKnown = 4.0;  // sum of squared turns, about each axis, that what is known counts for
   Eigen::Matrix3d sum = 1e-12 * Eigen::Matrix3d::Identity();
+  if (known) sum = kKnown * known->body_from_gyroscope.toRotationMatrix();
   for (const TurnPair& pair : pairs) sum += pair.seen * (pair.told - bias * pair.seconds).transpose();
   return nearest_rotation(sum);
 }
@@ -57,15 +60,16 @@ Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quatern
 
 }  // namespace
 
-std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen) {
-  constexpr std::size_t kLeastPairs = 8;
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen,
+                                                         const std::optional<GyroscopeMounting>& known) {
+  const std::size_t least_pairs = known ? 4 : 8;
   const std::vector<TurnPair> pairs = pairs_of(seen);
   double turned = 0.0;
   for (const TurnPair& pair : pairs) turned += pair.seen.norm();
-  if (pairs.size() < kLeastPairs || turned < kLeastTurned) return {};
+  if (pairs.size() < least_pairs || (turned < kLeastTurned && !known)) return {};
   GyroscopeMounting mounting;
   for (int round = 0; round < kMountingRounds; ++round) {
-    mounting.body_from_gyroscope = rotation_of(pairs, mounting.bias);
+    mounting.body_from_gyroscope = rotation_of(pairs, mounting.bias, known);
     mounting.bias = bias_of(pairs, mounting.body_from_gyroscope);
   }
   std::vector<double> errors;

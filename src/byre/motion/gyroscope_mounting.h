@@ -17,6 +17,8 @@ struct GyroscopeMounting {
 // By turns that were seen, of some seconds at least; the bias is that of the last half minute. Where all turns are
 // about one axis, how the gyroscope is turned about that one stays open, and matters to no such turn. Empty while too
 // little was turned, or what it tells is not what was seen.
-std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen);
+// known: how it was found to be turned before; then two seconds tell the bias, also of a body that does not turn.
+std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen,
+                                                         const std::optional<GyroscopeMounting>& known = {});
 
 }  // namespace byre

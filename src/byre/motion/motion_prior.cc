@@ -16,9 +16,12 @@ constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies be
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
 constexpr Timestamp kSamplesKept = 120s;
-constexpr Timestamp kMostKept = 1800s;  // time that samples are kept while it is not known how wheels are mounted
-constexpr int kLooksUntilTold = 24;     // the first that know the mounting know delay and bias badly
-constexpr int kLooksPerOffset = 8;      // delays change least, and are dear to find
+constexpr Timestamp kMostKept = 1800s;   // time that samples are kept while it is not known how wheels are mounted
+constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
+constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
+constexpr double kUnprovenFactor = 9.0;  // factor of the covariance until kBorneOut
+constexpr int kLooksUntilKept = 8;       // looks from which a mounting is worth keeping
+constexpr int kLooksPerOffset = 8;       // delays change least, and are dear to find
 
 // How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
 double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
@@ -65,6 +68,12 @@ void forget_way(BodyMotion& motion) {
 }
 
 }  // namespace
+
+void MotionPrior::begin_with(const KnownMounting& known) {
+  known_ = known;
+  mounting_ = known.wheels;
+  if (known.wheels) time_offset_ = known.time_offset;
+}
 
 // However long no frame comes.
 void MotionPrior::add(const StampedPose& wheels) {
@@ -138,16 +147,62 @@ void MotionPrior::look_for_mountings() {
   unlooked_ = 0;
   if (!rates_.empty()) {
     ask_gyroscope();
-    if (const auto found = find_gyroscope_mounting(seen_)) gyroscope_ = found;
+    auto found = find_gyroscope_mounting(seen_, known_.gyroscope);
+    if (!found && known_.gyroscope) found = find_gyroscope_mounting(seen_);
+    if (found) gyroscope_ = found;
   }
   if (wheels_.empty()) return;
-  if (const auto found = find_wheel_mounting(pairs())) mounting_ = found;
+  look_for_wheel_mounting();
   if (!mounting_) return;
   if (looks_++ % kLooksPerOffset == 0) {
     const Eigen::Vector3d up = mounting_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
   }
-  if (looks_ >= kLooksUntilTold) unseen_.take_down(tell_base());
+  if (looks_ >= kLooksUntilTold || known_.wheels) unseen_.take_down(tell_base());
+}
+
+// Motions that tell the mounting by themselves are asked whether it is the known one.
+void MotionPrior::look_for_wheel_mounting() {
+  constexpr int kLooks = 3;  // in a row that contradict it
+  const std::vector<MotionPair> all = pairs();
+  const auto alone = find_wheel_mounting(all);
+  if (known_.wheels && alone) {
+    contradicting_looks_ = is_contradicted(*known_.wheels, *alone) ? contradicting_looks_ + 1 : 0;
+    if (contradicting_looks_ >= kLooks) drop_known_wheels();
+  }
+  const auto found = known_.wheels ? find_wheel_mounting(all, known_.wheels) : alone;
+  if (found) mounting_ = found;
+}
+
+// One that all motions contradict from the start is another mounting. Wheels that slip do not do so for as long.
+void MotionPrior::check_known(double disagreement, const SeenMotion& motion) {
+  constexpr double kTellingWay = 0.1;   // metres
+  constexpr double kTellingTurn = 0.1;  // radians
+  constexpr int kContradicting = 12;    // motions
+  const double way = mounting_->metres_per_unit * motion.body.translation.norm();
+  if (way < kTellingWay && rotation_log(motion.body.rotation).norm() < kTellingTurn) return;
+  ++(disagreement > 1.0 ? contradicting_ : bearing_out_);
+  if (contradicting_ >= kContradicting && contradicting_ > 2 * bearing_out_) drop_known_wheels();
+}
+
+void MotionPrior::drop_known_wheels() {
+  known_.wheels.reset();
+  mounting_.reset();
+  time_offset_.reset();
+  looks_ = 0;
+  is_slipping_ = false;
+  is_mounted_otherwise_ = true;
+}
+
+KnownMounting MotionPrior::to_keep() const {
+  KnownMounting keep = known_;
+  const bool is_well_known = looks_ >= kLooksUntilKept || known_.wheels;
+  if (mounting_ && is_well_known) {
+    keep.wheels = mounting_;
+    keep.time_offset = time_offset();
+  }
+  if (gyroscope_) keep.gyroscope = gyroscope_;
+  return keep;
 }
 
 // Precondition: it is known how wheels are mounted.
@@ -171,7 +226,10 @@ void MotionPrior::watch_for_slip(const SeenMotion& motion) {
   const auto base = base_between(motion.earlier, motion.later);
   if (!base) return;
   const Pose told = body_motion(*mounting_, without_turn_errors(mounting_->turn_errors, *base));
-  if (disagreement(told, motion, mounting_->metres_per_unit) > 1.0) {
+  const double difference = disagreement(told, motion, mounting_->metres_per_unit);
+  if (known_.wheels) check_known(difference, motion);
+  if (!mounting_) return;
+  if (difference > 1.0) {
     if (!is_slipping_) ++slips_;
     is_slipping_ = true;
     agreeing_ = 0;
@@ -210,6 +268,7 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   if (!base) return {};
   const Pose body = body_motion(*mounting_, base->motion);
   BodyMotion motion{body, covariance_of(body, *mounting_)};
+  if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
   return motion;
 }

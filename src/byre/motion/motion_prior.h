@@ -2,6 +2,7 @@
 
 #include "byre/body_motion.h"
 #include "byre/motion/gyroscope_mounting.h"
+#include "byre/motion/known_mounting.h"
 #include "byre/motion/rate_track.h"
 #include "byre/motion/seen_motion.h"
 #include "byre/motion/unseen_way.h"
@@ -20,6 +21,10 @@ namespace byre {
 // wheels do not move as is seen they are left out, until they do again. Call it from one thread.
 class MotionPrior {
  public:
+  // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
+  // it, it is dropped. Call it before anything is told.
+  void begin_with(const KnownMounting& known);
+
   void add(const StampedPose& wheels);
   void add(const AngularRate& rate);
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
@@ -39,11 +44,18 @@ class MotionPrior {
   double time_offset() const { return time_offset_.value_or(0.0); }  // seconds that wheels stamp later than the camera
   bool are_wheels_slipping() const { return is_slipping_; }
   int slips() const { return slips_; }  // times that they began to
+  // Wheels are not mounted as they were before.
+  bool is_mounted_otherwise() const { return is_mounted_otherwise_; }
+  // What the next drive may begin with: what was found out, or known before and not contradicted.
+  KnownMounting to_keep() const;
 
  private:
   void forget_old_samples();
   void look_for_mountings();
+  void look_for_wheel_mounting();
   void watch_for_slip(const SeenMotion& motion);
+  void check_known(double disagreement, const SeenMotion& motion);
+  void drop_known_wheels();
   void ask_gyroscope();
   std::vector<MotionPair> pairs() const;
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
@@ -74,6 +86,11 @@ class MotionPrior {
   bool is_slipping_ = false;
   int agreeing_ = 0;  // motions that wheels told as they were seen, since they slipped
   int slips_ = 0;
+  KnownMounting known_;          // from a drive before, while it is not contradicted
+  int contradicting_ = 0;        // motions that what is known of wheels is not true of
+  int bearing_out_ = 0;          // motions that it is true of
+  int contradicting_looks_ = 0;  // looks in a row by which wheels are mounted otherwise
+  bool is_mounted_otherwise_ = false;
 };
 
 }  // namespace byre

@@ -28,9 +28,10 @@ struct Told {
   double turn_per_metre = 0.0;  // radians that they add
 };
 
-// A prior that has followed a drive: seen until dark, told until the end.
-MotionPrior followed(const Drive& drive, const Told& told, double dark, double end) {
+// A prior that has followed a drive: seen until dark, told until the end. known: from a drive before.
+MotionPrior followed(const Drive& drive, const Told& told, double dark, double end, const KnownMounting& known = {}) {
   MotionPrior prior;
+  prior.begin_with(known);
   std::mt19937 random(5);
   Pose wheels;
   for (int step = 0; step * 0.01 < end; ++step) {
@@ -188,6 +189,63 @@ TEST(MotionPrior, FindsTheDelayThoughAWheelWasLifted) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.03, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.slip_from = 40.0, .slip_to = 43.0, .slip_turn = 0.03}, 60.0, 60.0);
   EXPECT_NEAR(prior.time_offset(), 0.03, 0.01);
+  EXPECT_FALSE(prior.are_wheels_slipping());
+}
+
+TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .wheel_delay = 0.07, .noise = 0.001};
+  const Told told{.wheels = true, .gyroscope = true};
+  const KnownMounting known = followed(drive, told, 60.0, 60.0).to_keep();
+  ASSERT_TRUE(known.wheels && known.gyroscope);
+  EXPECT_FALSE(followed(drive, told, 1.0, 14.0).between(from_seconds(2.0), from_seconds(2.05))) << "without it";
+  for (const double dark : {0.0, 1.0, 4.0}) {
+    const MotionPrior prior = followed(drive, told, dark, 14.0, known);
+    const double from = dark + 0.2;  // wheels have told by then where they were
+    ASSERT_TRUE(prior.between(from_seconds(from), from_seconds(from + 0.05))) << dark;
+    const BodyMotion motion = over(prior, from, from + 8.0);
+    const Vector6 error = log_pose(inverse(motion.last_from_body) * true_motion(drive, from, from + 8.0));
+    EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05) << dark << ": metres, of 4";
+    EXPECT_LT(error.tail<3>().norm(), 0.03) << dark;
+    EXPECT_LT(error.transpose() * motion.covariance.ldlt().solve(error), 12.6) << dark << ": within 95 %";
+    EXPECT_FALSE(prior.is_mounted_otherwise());
+  }
+}
+
+TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();
+  const auto variance = [&](double dark) {
+    return followed(drive, {}, dark, 14.0, known)
+        .between(from_seconds(dark + 0.2), from_seconds(dark + 0.25))
+        .value()
+        .covariance.trace();
+  };
+  EXPECT_GT(variance(0.0), 5.0 * variance(8.0));
+}
+
+TEST(MotionPrior, DropsAMountingThatIsAnotherOneByNow) {
+  const Drive before{.base_from_body = camera_on_base(), .noise = 0.001};
+  const KnownMounting known = followed(before, {}, 60.0, 60.0).to_keep();
+  Drive turned = before;  // so far that hardly a motion is as it was
+  turned.base_from_body.rotation = rotation_exp({0.0, 0.0, 1.5}) * before.base_from_body.rotation;
+  EXPECT_TRUE(followed(turned, {}, 8.0, 8.0, known).is_mounted_otherwise());
+  Drive moved = before;  // so little that no single motion tells
+  moved.base_from_body.translation.x() += 0.15;
+  moved.base_from_body.translation.y() -= 0.1;
+  const MotionPrior prior = followed(moved, {}, 40.0, 52.0, known);
+  EXPECT_TRUE(prior.is_mounted_otherwise());
+  const BodyMotion told = over(prior, 40.0, 50.0);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(moved, 40.0, 50.0));
+  EXPECT_LT(error.head<3>().norm(), 0.06) << "metres, of 5";
+  ASSERT_TRUE(prior.to_keep().wheels);
+  EXPECT_NEAR(prior.to_keep().wheels->base_from_body.translation.x(), 0.55, 0.02);
+}
+
+TEST(MotionPrior, KeepsAMountingThroughWheelsThatSlipAtFirst) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();
+  const MotionPrior prior = followed(drive, {.slip_from = 0.5, .slip_to = 3.5}, 12.0, 12.0, known);
+  EXPECT_FALSE(prior.is_mounted_otherwise());
   EXPECT_FALSE(prior.are_wheels_slipping());
 }
 

@@ -25,11 +25,21 @@ double yaw_of(const Pose& base) {
   return rotation_log(base.rotation).z();
 }
 
+Eigen::Vector3d up_of(const WheelMounting& mounting) {
+  return mounting.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+}
+
 // The axis of the base, upwards, as the body has it; empty where too little was turned, or about no common axis.
-std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions) {
+std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions,
+                                       const std::optional<WheelMounting>& known) {
   constexpr double kSmall = 0.03;  // radians, turns whose axis says little
+  constexpr double kKnown = 4.0;   // sum of squared turns that what is known counts for
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double turned = 0.0;
+  if (known) {
+    sum = kKnown * up_of(*known);
+    turned = kLeastTurn;
+  }
   for (const MotionPair& motion : motions) {
     sum += yaw_of(motion.base) * rotation_log(motion.body.rotation);
     turned += std::abs(yaw_of(motion.base));
@@ -46,16 +56,19 @@ std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions) {
 }
 
 // Least squares with the weights of Geman and McClure, held to what wheels usually are.
-TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up) {
-  constexpr double kScaleSigma = 0.03;      // share, among wheels
-  constexpr double kPerMetreSigma = 0.005;  // radians per metre, among wheels
-  constexpr double kLeastError = 0.001;     // radians: no eyes are better
-  TurnErrors found;
+TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up,
+                            const std::optional<WheelMounting>& known) {
+  const double scale_sigma = known ? 0.005 : 0.03;       // share, from day to day or among wheels
+  const double per_metre_sigma = known ? 0.001 : 0.005;  // radians per metre, from day to day or among wheels
+  const TurnErrors before = known ? known->turn_errors : TurnErrors{};
+  const Eigen::Matrix2d by_before =
+      Eigen::Vector2d(1.0 / (scale_sigma * scale_sigma), 1.0 / (per_metre_sigma * per_metre_sigma)).asDiagonal();
+  constexpr double kLeastError = 0.001;  // radians: no eyes are better
+  TurnErrors found = before;
   double usual = 0.01;  // radians
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix2d normal =
-        Eigen::Vector2d(1.0 / (kScaleSigma * kScaleSigma), 1.0 / (kPerMetreSigma * kPerMetreSigma)).asDiagonal();
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d normal = by_before;
+    Eigen::Vector2d right = by_before * Eigen::Vector2d(before.scale - 1.0, before.per_metre);
     std::vector<double> errors;
     for (const MotionPair& motion : motions) {
       const Eigen::Vector2d factors(yaw_of(motion.base), motion.base.translation.x());
@@ -93,6 +106,19 @@ PlanarMotion planar(const MotionPair& motion, const Eigen::Quaterniond& level_fr
   return result;
 }
 
+// What was known of the unknowns.
+struct KnownUnknowns {
+  Vector4 values = Vector4::Zero();
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  double way_error = 0.0;
+};
+
+KnownUnknowns known_unknowns(const std::optional<WheelMounting>& known, const Eigen::Vector3d& up) {
+  if (!known) return {};
+  const Eigen::Matrix4d covariance = known->covariance + usual_change(*known);
+  return {unknowns_about(*known, up), covariance.ldlt().solve(Eigen::Matrix4d::Identity()), known->way_error};
+}
+
 struct Solution {
   Vector4 unknowns = Vector4::Zero();
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
@@ -105,14 +131,15 @@ double deviation(const PlanarMotion& motion, const Vector4& unknowns) {
 }
 
 // Weighted least squares, again and again with the weights of Geman and McClure.
-std::optional<Solution> solve(const std::vector<PlanarMotion>& motions) {
+std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const KnownUnknowns& known) {
   constexpr double kLeastShare = 0.01;  // share of the way: no wheels are better
   constexpr double kNoise = 0.005;      // metres
   std::vector<double> weights(motions.size(), 1.0);
   Solution solution;
+  double usual = std::max(known.way_error, kLeastShare);
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix4d normal = 1e-9 * Eigen::Matrix4d::Identity();
-    Vector4 right = Vector4::Zero();
+    Eigen::Matrix4d normal = 1e-9 * Eigen::Matrix4d::Identity() + usual * usual * known.information;
+    Vector4 right = usual * usual * known.information * known.values;
     for (std::size_t i = 0; i < motions.size(); ++i) {
       const double weight = weights[i] / std::pow(motions[i].way + kNoise, 2);
       normal += weight * motions[i].factors.transpose() * motions[i].factors;
@@ -123,8 +150,8 @@ std::optional<Solution> solve(const std::vector<PlanarMotion>& motions) {
     solution.unknowns = factored.solve(right);
     std::vector<double> errors;
     for (const PlanarMotion& motion : motions) errors.push_back(deviation(motion, solution.unknowns));
-    solution.way_error = median_or(errors, 1.0);
-    const double usual = std::max(solution.way_error, kLeastShare);
+    solution.way_error = median_or(errors, known.way_error > 0.0 ? known.way_error : 1.0);
+    usual = std::max(solution.way_error, kLeastShare);
     for (std::size_t i = 0; i < motions.size(); ++i) {
       weights[i] = 1.0 / std::pow(1.0 + std::pow(errors[i] / (3.0 * usual), 2), 2);
     }
@@ -145,10 +172,25 @@ double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Ve
 
 }  // namespace
 
-std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& told) {
-  const auto up = find_up(told);
+Eigen::Vector4d unknowns_about(const WheelMounting& mounting, const Eigen::Vector3d& up_in_body) {
+  const Eigen::Quaterniond level_from_body = rotation_between(up_in_body, Eigen::Vector3d::UnitZ());
+  const double angle = rotation_log(mounting.base_from_body.rotation * level_from_body.conjugate()).z();
+  const Eigen::Vector3d& arm = mounting.base_from_body.translation;
+  return {mounting.metres_per_unit * std::cos(angle), mounting.metres_per_unit * std::sin(angle), arm.x(), arm.y()};
+}
+
+Eigen::Matrix4d usual_change(const WheelMounting& mounting) {
+  constexpr double kShare = 0.007;  // share of the scale, and radians
+  constexpr double kArm = 0.01;     // metres
+  const double scale = kShare * mounting.metres_per_unit;
+  return Vector4(scale * scale, scale * scale, kArm * kArm, kArm * kArm).asDiagonal();
+}
+
+std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& told,
+                                                 const std::optional<WheelMounting>& known) {
+  const auto up = find_up(told, known);
   if (!up) return {};
-  const TurnErrors turn_errors = find_turn_errors(told, *up);
+  const TurnErrors turn_errors = find_turn_errors(told, *up, known);
   std::vector<MotionPair> motions = told;
   for (MotionPair& motion : motions) motion.base = without_turn_errors(turn_errors, motion.base);
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
@@ -158,8 +200,8 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
     planar_motions.push_back(planar(motion, level_from_body));
     way += planar_motions.back().way;
   }
-  if (way < kLeastWay) return {};
-  const auto solved = solve(planar_motions);
+  if (way < kLeastWay && !known) return {};
+  const auto solved = solve(planar_motions, known_unknowns(known, *up));
   if (!solved) return {};
   const double scale = solved->unknowns.head<2>().norm();
   if (!(scale > 0.0)) return {};
@@ -178,6 +220,7 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   mounting.way_error = solved->way_error;
   mounting.turn_error = median_turn_error(motions, *up);
   mounting.turn_errors = turn_errors;
+  mounting.covariance = solved->covariance;
   return mounting;
 }
 

@@ -32,13 +32,23 @@ struct WheelMounting {
   double way_error = 0.0;        // median distance between motions by wheels and by sight, as a share of the way
   double turn_error = 0.0;       // median difference of turns, as a share of the turn, without turn_errors
   TurnErrors turn_errors;
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // covariance of unknowns_about
 };
+
+// What motions tell of a mounting about an axis, upwards, as the body has it: metres_per_unit times the cosine and the
+// sine of the angle from the body levelled by that axis to the base, and the lever arm in metres.
+Eigen::Vector4d unknowns_about(const WheelMounting& mounting, const Eigen::Vector3d& up_in_body);
+
+// By how much they are another day: tyres wear and are pumped up, and a bracket gives way a little.
+Eigen::Matrix4d usual_change(const WheelMounting& mounting);
 
 // The mounting by motions in which the base turned both ways or far, and drove: first the axis about which both turn
 // and what is told wrongly of that, then, linear in all that is left, the direction ahead, the lever arm and the scale
 // (Heng, Li and Pollefeys, "CamOdoCal", IROS 2013, sections III.A and III.B). Motions that disagree with most, as where
-// a wheel slips, count for nothing. Empty while the motions leave it open.
-std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions);
+// a wheel slips, count for nothing. Empty while the motions leave it open. known: what was known before; then motions
+// that tell little are enough, and it changes by what they tell.
+std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions,
+                                                 const std::optional<WheelMounting>& known = {});
 
 // The body's motion, in the map's lengths, by that of the base as it was.
 Pose body_motion(const WheelMounting& mounting, const Pose& base);

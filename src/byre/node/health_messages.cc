@@ -23,6 +23,11 @@ std::string advice_for(Doubt doubt) {
       return "calibrate the cameras";
     case Doubt::bridged:
       return "look for covered lenses and darkness; wheels lead the robot on for some metres only";
+    case Doubt::off_the_plane:
+    case Doubt::in_wall:
+    case Doubt::outside:
+    case Doubt::behind_wall:
+      return "tell where the robot is, lead it to a place that looks like no other, or look at the floor plan";
     default:
       return "";
   }

@@ -2,6 +2,7 @@
 
 #include "byre/dataset/settings_file.h"
 #include "byre/input/output_file.h"
+#include "byre/map/map_file.h"
 #include "byre/node/kept_maps.h"
 #include "byre/node/map_messages.h"
 #include "byre/playback/options_file.h"
@@ -31,6 +32,12 @@ SlamOptions slam_options(const NodeConfig& config) {
     if (setting.name != "pace") options.settings.emplace_back(setting.name, setting.text);  // workers tell that here
   }
   return options;
+}
+
+// Whether the map lies on the plan: another one that is loaded need not.
+bool lies_on(const fs::path& map, const fs::path& plan) {
+  const auto registration = load_plan_registration(map);
+  return registration && registration->plan == plan.filename().string();
 }
 
 // A name in the folder of the map that is loaded, and no way out of it: whoever may send commands may not read files.
@@ -64,10 +71,16 @@ void SlamRunner::replace(Slam slam) {
   had_pose_ = false;
 }
 
+SlamOptions SlamRunner::options_for(const fs::path& map) const {
+  SlamOptions options = options_;
+  if (config_.plan && lies_on(map, *config_.plan)) options.plan = config_.plan;
+  return options;
+}
+
 Slam SlamRunner::make(const fs::path* map) const {
   switch (config_.task) {
     case NodeTask::mission:
-      return Slam::on_map(*calibration_, *map, options_);
+      return Slam::on_map(*calibration_, *map, options_for(*map));
     case NodeTask::extend:
       return Slam::extending(*calibration_, *map, options_);
     case NodeTask::map:

@@ -49,6 +49,7 @@ class SlamRunner {
 
  private:
   Slam make(const std::filesystem::path* map) const;
+  SlamOptions options_for(const std::filesystem::path& map) const;
   void replace(Slam slam);
   void require_running() const;
 

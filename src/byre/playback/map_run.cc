@@ -58,7 +58,10 @@ void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
 
 // What was found out of wheels and a gyroscope.
 ToldMotion told_motion(const MotionPrior& prior) {
-  return {!prior.is_empty(), prior.wheels(), prior.gyroscope(), prior.time_offset(), prior.slips(), 0};
+  return {!prior.is_empty(), prior.wheels(),
+          prior.gyroscope(), prior.time_offset(),
+          prior.slips(),     prior.is_mounted_otherwise(),
+          prior.to_keep(),   0};
 }
 
 void take_over_result(const Engine& engine, MapRun& run) {

@@ -26,9 +26,11 @@ struct ToldMotion {
   bool is_told = false;  // by wheels or a gyroscope
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;  // seconds that wheels stamp later than the camera
-  int slips = 0;             // times that wheels were left out
-  int led_afterwards = 0;    // final poses of frames that had none, where wheels led from those that had
+  double time_offset = 0.0;           // seconds that wheels stamp later than the camera
+  int slips = 0;                      // times that wheels were left out
+  bool is_mounted_otherwise = false;  // wheels, than when the map was made
+  KnownMounting to_keep;              // for the next drive
+  int led_afterwards = 0;             // final poses of frames that had none, where wheels led from those that had
 };
 
 struct MapRun {

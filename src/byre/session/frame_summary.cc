@@ -77,6 +77,7 @@ HealthEvidence evidence_of(const FrameSummary& summary) {
   HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
                           confirmation.is_believed() && confirmation.is_proven()};
   if (summary.is_bridged_in_map()) evidence.bridged_from = summary.whereabouts.quality_before().verdict;
+  evidence.refused_place = summary.refused_place;
   evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;
   evidence.image_fault = summary.input.fault;
   evidence.input = summary.input.evidence;

@@ -24,6 +24,7 @@ struct FrameSummary {
   const Mapper& mapper;
   const OfflineTracker* mission = nullptr;  // on an offline map
   Timestamp first_frame{};
+  Doubt refused_place = Doubt::none;  // see FrameReport
 
   bool is_registered() const { return mapper.submaps().is_registered(); }
   // The pose goes on by what is told, from one in the map.

@@ -66,6 +66,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   const Stopwatch mapping_after;
   keyframe_watch_.note_frame(input.frame, rig_);
   report.start_failure = located.start_failure;
+  if (located.refused != Doubt::none) report.refused_place = located.refused;
   report.keyframe_added = located.begins_submap;
   if (located.track) {
     remember(input, located, report);
@@ -75,18 +76,19 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
     report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
   } else {
     lose_pose(input.fault, report);
-    whereabouts_.go_on(rectified.time, rig_, map());
+    whereabouts_.go_on(rectified.time, rig_, map(), ground());
   }
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
   const bool is_believed = whereabouts_.confirmation().is_believed();
-  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,         whereabouts_,
-                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_};
+  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,          whereabouts_,
+                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_, report.refused_place};
   state_ = next_state(state_, {whereabouts_.has_pose(), is_believed, seconds_without}, options_.state);
   report = described(std::move(report), summary);
   report.state = state_;
   report.health = health_of(summary, report.covariance, options_.health);
   note_quality(report);
+  tell_refusal(report);
   const bool was_error_told = std::exchange(is_error_told_, is_navigation_error(seconds_without));
   if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
 
@@ -100,10 +102,33 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
 void Session::note_quality(const FrameReport& report) {
   if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.confirmation().is_believed()) return;
   whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
+  if (mission_ && report.health.verdict == Verdict::trusted) last_trusted_ = {report.time, *report.map_from_body};
+}
+
+void Session::tell_refusal(FrameReport& report) {
+  if (report.health.verdict != Verdict::untrusted) told_refusal_ = Doubt::none;
+  if (report.refused_place == Doubt::none || report.refused_place == told_refusal_) return;
+  told_refusal_ = report.refused_place;
+  report.events.push_back(SessionEvent::place_refused);
+}
+
+std::optional<PlaceBounds::Way> Session::way_since_trusted() const {
+  if (!last_trusted_) return std::nullopt;
+  return PlaceBounds::Way{*last_trusted_, options_.mission.registration.max_speed};
 }
 
 bool Session::is_navigation_error(double seconds_without_pose) const {
   return mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
+}
+
+// That the body is held to; nullptr where the last pose does not lie in the map's frame.
+const DrivenGround* Session::ground() const {
+  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
+  if (!options_.is_planar || !mission_ || !options_.mission.bounds.is_on_ground_of_map || trajectory.empty()) {
+    return nullptr;
+  }
+  const bool is_in_map = mapper_.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
+  return is_in_map ? mission_->mission().offline().ground() : nullptr;
 }
 
 void Session::take_over_results(FrameReport& report) {
@@ -117,20 +142,7 @@ void Session::take_over_results(FrameReport& report) {
     whereabouts_.forget_carried();
     report.events.push_back(SessionEvent::map_corrected);
   }
-  if (const auto found = mission_ ? mission_->collect_place() : std::nullopt) {
-    const OfflineTracker::Consequence consequence = mission_->consider(*found, whereabouts_, mapper_);
-    if (consequence.correction) mapper_.correct_later(*consequence.correction);
-    if (consequence.agrees_with_hint) whereabouts_.note_agreement();
-    if (consequence.refutes_pose) {
-      if (whereabouts_.confirmation().is_by_hint) hint_.withdraw();
-      mapper_.leave_map_frame();
-      lose_pose(ImageFault::none, report);
-    }
-    if (consequence.refutes_way) {
-      whereabouts_.give_up();
-      report.events.push_back(SessionEvent::place_refuted);
-    }
-  }
+  if (mission_) take_over_place(report);
   if (mapper_.correct_online()) {
     whereabouts_.note_online_correction();
     if (!was_registered && is_registered()) whereabouts_.note_registration(hint_.get().has_value());
@@ -139,6 +151,25 @@ void Session::take_over_results(FrameReport& report) {
   const auto correction = whereabouts_.follow_map(rig_, map());
   if (!correction || !was_registered || !is_registered()) return;
   if (log_pose(*correction).norm() > kLeastCorrection) report.correction = correction;
+}
+
+void Session::take_over_place(FrameReport& report) {
+  const auto [found, refused] = mission_->collect_place();
+  report.refused_place = refused;
+  if (!found) return;
+  const OfflineTracker::Consequence consequence = mission_->consider(*found, whereabouts_, mapper_);
+  if (consequence.correction) mapper_.correct_later(*consequence.correction);
+  if (consequence.agrees_with_hint) whereabouts_.note_agreement();
+  if (consequence.refutes_pose) {
+    if (whereabouts_.confirmation().is_by_hint) hint_.withdraw();
+    mapper_.leave_map_frame();
+    lose_pose(ImageFault::none, report);
+  }
+  if (consequence.refutes_way) {
+    whereabouts_.give_up();
+    last_trusted_.reset();
+    report.events.push_back(SessionEvent::place_refuted);
+  }
 }
 
 // A map's own calibration turns its keyframes as well; in a mission frames are of another rig from here on, and
@@ -179,7 +210,9 @@ Session::Located Session::locate(const InputFrame& input) {
                              mission_ ? &mission_->mission() : nullptr,
                              mission_ && mission_->ask_for_focal_length(),
                              hint_.get(),
-                             whereabouts_.confirmation().is_proven()};
+                             whereabouts_.confirmation().is_proven(),
+                             way_since_trusted(),
+                             ground()};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -194,7 +227,9 @@ Session::Located Session::locate(const InputFrame& input) {
   }
   located.from_nothing = located.track && is_led_back;
   if (!located.track && can_search) {
-    located.track = tracker_.find(frame, scene);
+    Tracker::Find find = tracker_.find(frame, scene);
+    located.track = std::move(find.track);
+    located.refused = find.refused;
     located.from_nothing = located.track.has_value();
     located.is_by_hint = located.from_nothing && hint_.get();
     if (located.track) mapper_.begin_where_found(*located.track);
@@ -262,7 +297,7 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
     report.keyframe_added = true;
   }
   if (look_for_loop(input.frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
-  if (mission_) mission_->search_beside({input.frame, rig_, hint_.get()}, whereabouts_, mapper_);
+  if (mission_) mission_->search_beside({input.frame, rig_, hint_.get(), way_since_trusted()}, whereabouts_, mapper_);
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {

@@ -63,7 +63,10 @@ class Session {
   std::optional<RefinedCalibration> self_calibration() const;
 
   // Where the robot is in the offline map, as somebody says: where it is looked for from nothing while the hint counts.
-  void look_near(const PoseHint& hint) { hint_.give(hint); }
+  void look_near(const PoseHint& hint) {
+    hint_.give(hint);
+    last_trusted_.reset();  // it may have been carried there
+  }
 
   // While it is paused frames are tracked on the map as it is, and nothing is added to it.
   void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
@@ -103,9 +106,11 @@ class Session {
     bool is_by_hint = false;     // it was looked for near a hint alone
     bool begins_submap = false;  // a first keyframe was made of it
     TwoViewFailure start_failure = TwoViewFailure::none;
+    Doubt refused = Doubt::none;  // why the robot cannot be where it was found
   };
 
   void take_over_results(FrameReport& report);
+  void take_over_place(FrameReport& report);
   bool take_over_camera();
   void take_turn(const RigTurn& turn);
   InputFrame input_of(const Frame& rectified);
@@ -118,6 +123,9 @@ class Session {
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
+  void tell_refusal(FrameReport& report);
+  std::optional<PlaceBounds::Way> way_since_trusted() const;
+  const DrivenGround* ground() const;
   bool is_navigation_error(double seconds_without_pose) const;
   bool is_registered() const { return mapper_.submaps().is_registered(); }
 
@@ -135,7 +143,9 @@ class Session {
   Shutter shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
-  bool is_error_told_ = false;  // a navigation error
+  bool is_error_told_ = false;                 // a navigation error
+  Doubt told_refusal_ = Doubt::none;           // since there was a pose to rely on
+  std::optional<PlaceBefore> last_trusted_{};  // in the offline map
   bool is_mapping_paused_ = false;
   std::vector<SeenPoint> seen_;  // in the last frame
 };

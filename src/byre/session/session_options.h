@@ -15,8 +15,9 @@ namespace byre {
 
 // Each leaf stands here once, and is handed to every function that needs it.
 struct SessionOptions {
-  int recording = 0;                                            // index that new keyframes get, see Keyframe::recording
-  bool map_online = true;                                       // false: track on the offline map alone
+  int recording = 0;       // index that new keyframes get, see Keyframe::recording
+  bool is_planar = false;  // a mission holds the body to the ground that the map was driven on, see planar_prior
+  bool map_online = true;  // false: track on the offline map alone
   int min_initial_points = MapperOptions{}.min_initial_points;  // see there
   int local_keyframes = 15;     // keyframes of either map whose points are looked for in a frame
   double min_kept_share = 0.5;  // share of the last inliers; with fewer the pose is sought without prediction too

@@ -1,6 +1,7 @@
 #include "byre/session/tracker.h"
 
 #include "byre/localisation/place_search.h"
+#include "byre/slam/planar_prior.h"
 
 #include <utility>
 
@@ -85,7 +86,8 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   const double seconds = to_seconds(frame.time - last.time);
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
   const bool is_limited = scene.mission && scene.is_place_proven;
-  const HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  if (scene.ground != nullptr) limits.prior = planar_prior(*scene.ground, scene.rig, predicted);
   auto best = track_from(frame, scene, predicted, limits);
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
@@ -98,17 +100,19 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   return best;
 }
 
-std::optional<HybridTrack> Tracker::find(const Frame& frame, const Scene& scene) const {
+Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
+  Find result;
   if (scene.mission) {
-    const Localisation found =
-        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint}, options_.relocalise);
-    if (found.tracked) return found_in(Origin::offline, *found.tracked);
+    const auto [found, refused] = localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way},
+                                              {options_.relocalise, options_.mission.bounds});
+    if (found.tracked) return {found_in(Origin::offline, *found.tracked)};
+    result.refused = refused;
   }
   const PlaceIndex* const places = scene.mapper.places();
-  if (!places || scene.mapper.online().keyframe_count() == 0) return std::nullopt;
+  if (!places || scene.mapper.online().keyframe_count() == 0) return result;
   const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options_.relocalise);
-  if (!found.tracked || is_like_another_place(*found.tracked)) return std::nullopt;
-  return found_in(Origin::online, *found.tracked);
+  if (found.tracked && !is_like_another_place(*found.tracked)) result.track = found_in(Origin::online, *found.tracked);
+  return result;
 }
 
 bool Tracker::is_doubtful(const HybridTrack& track, const Scene& scene) const {

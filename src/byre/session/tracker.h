@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/localisation/mission.h"
+#include "byre/localisation/place_bounds.h"
 #include "byre/mapping/mapper.h"
 #include "byre/pose_hint.h"
 #include "byre/session/session_options.h"
@@ -27,10 +28,12 @@ class Tracker {
   struct Scene {
     const Rig& rig;
     const Mapper& mapper;
-    const Mission* mission = nullptr;  // on an offline map
-    bool weigh_focal_lengths = false;  // see FocalCheck
-    std::optional<PoseHint> hint{};    // where alone a frame is looked for in the offline map
-    bool is_place_proven = false;      // so offline points cannot put the camera just anywhere
+    const Mission* mission = nullptr;       // on an offline map
+    bool weigh_focal_lengths = false;       // see FocalCheck
+    std::optional<PoseHint> hint{};         // where alone a frame is looked for in the offline map
+    bool is_place_proven = false;           // so offline points cannot put the camera just anywhere
+    std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
+    const DrivenGround* ground = nullptr;   // ground that the body is held to; nullptr for none
   };
   // The last frame that had a pose.
   struct LastPose {
@@ -42,8 +45,12 @@ class Tracker {
   // From where the motion leads. Precondition: the map has a submap.
   std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
                                    const MotionModel& motion);
-  // Anywhere in the maps, the offline one first. What is found is online or offline by its references.
-  std::optional<HybridTrack> find(const Frame& frame, const Scene& scene) const;
+  struct Find {
+    std::optional<HybridTrack> track;  // online or offline by its references; empty where nothing was found
+    Doubt refused = Doubt::none;       // why the robot cannot be where it was found in the offline map
+  };
+  // Anywhere in the maps, the offline one first.
+  Find find(const Frame& frame, const Scene& scene) const;
   // Whether a tracked pose does not bear out what was found from nothing.
   bool is_doubtful(const HybridTrack& track, const Scene& scene) const;
 

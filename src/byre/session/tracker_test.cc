@@ -62,7 +62,7 @@ TEST_F(TrackerOnAMap, LooksWithoutAPredictionWhereOneLedAstray) {
 }
 
 TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
-  const auto found = tracker_.find(mission_.frames[2], scene());
+  const auto found = tracker_.find(mission_.frames[2], scene()).track;
   ASSERT_TRUE(found);
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
   EXPECT_TRUE(found->online_reference);
@@ -72,7 +72,7 @@ TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
 TEST_F(TrackerOnAMap, FindsNothingInAnEmptyFrame) {
   const Frame blank{mission_.frames[1].time, std::make_shared<const Features>()};
   EXPECT_FALSE(tracker_.track(blank, scene(), last(0), {}));
-  EXPECT_FALSE(tracker_.find(blank, scene()));
+  EXPECT_FALSE(tracker_.find(blank, scene()).track);
 }
 
 TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
@@ -82,7 +82,7 @@ TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
                       {simulated_vocabulary(), offline});
   const Mission way(offline, {});
   const Tracker tracker({});
-  const auto found = tracker.find(mission.frames[6], {mission.rig, mapper, &way});
+  const auto found = tracker.find(mission.frames[6], {mission.rig, mapper, &way}).track;
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->offline_reference);
   EXPECT_FALSE(found->online_reference);

@@ -36,7 +36,8 @@ Doubt reason_against(const Health& health, const HealthEvidence& evidence, const
   if (!evidence.pose_found || !evidence.registered) {
     const Doubt cause = fault_of_input(evidence);
     if (cause != Doubt::none && !(evidence.pose_found && cause == Doubt::blinded)) return cause;
-    return evidence.pose_found ? Doubt::not_registered : Doubt::no_pose;
+    if (evidence.pose_found) return Doubt::not_registered;
+    return evidence.refused_place != Doubt::none ? evidence.refused_place : Doubt::no_pose;
   }
   if (evidence.input.frozen_seconds > options.max_frozen) return Doubt::frozen;
   if (evidence.is_miscalibrated) return Doubt::calibration;
@@ -122,6 +123,14 @@ std::string_view to_string(Doubt doubt) {
       return "calibration does not fit the map";
     case Doubt::bridged:
       return "bridged by wheels or a gyroscope";
+    case Doubt::off_the_plane:
+      return "place found is off the driving plane";
+    case Doubt::in_wall:
+      return "place found is inside a wall";
+    case Doubt::outside:
+      return "place found is outside of the building";
+    case Doubt::behind_wall:
+      return "place found is behind a wall";
   }
   return "";
 }

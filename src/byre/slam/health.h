@@ -35,6 +35,7 @@ struct HealthEvidence {
   bool is_calibration_open = false;
   // Nothing is recognised, and the pose goes on by what is told of the motion: verdict on the last one that was seen.
   std::optional<Verdict> bridged_from{};
+  Doubt refused_place = Doubt::none;  // why the robot cannot be where the frame was found
 };
 
 // By how much the position may be off, metres: sigmas of the pose and drift together.

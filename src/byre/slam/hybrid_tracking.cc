@@ -144,7 +144,7 @@ MeasuredPoints join(const ByMap<MeasuredPoints>& measured, double offline_weight
 // The pose of one kind of points alone; empty when it is not sound.
 std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camera_from_world,
                                            const MeasuredPoints& measured) {
-  auto refined = refine_pose(camera_from_world, query.rig, measured.observations, {});
+  auto refined = refine_pose(camera_from_world, query.rig, measured.observations, {}, query.limits.prior);
   if (refined && !is_sound(*refined, measured.observations.size(), query.options)) refined.reset();
   return refined;
 }
@@ -200,7 +200,7 @@ struct Solution {
 std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world,
                                        const ByMap<MeasuredPoints>& measured) {
   MeasuredPoints both = join(measured, query.options.offline_weight);
-  const auto refined = refine_pose(camera_from_world, query.rig, both.observations, {});
+  const auto refined = refine_pose(camera_from_world, query.rig, both.observations, {}, query.limits.prior);
   if (!refined || !is_sound(*refined, both.observations.size(), query.options)) return std::nullopt;
   return Solution{*refined, std::move(both), {}};
 }

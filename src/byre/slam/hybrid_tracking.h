@@ -48,6 +48,7 @@ struct HybridTrack {
 struct HybridLimits {
   DriftBound drift{kNoLimit, kNoLimit};  // from where online points have it
   double stray = kNoLimit;               // metres from the prediction, where online points do not have it
+  std::optional<PosePrior> prior{};      // what is known of the pose besides; of use to points of both kinds
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 

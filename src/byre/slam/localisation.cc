@@ -33,6 +33,7 @@ struct FrameQuery {
   const Vocabulary& vocabulary;
   std::span<const Word> words;
   const LocaliseOptions& options;
+  const PlaceFilter& filter;
 };
 
 Localisation failed(Failure failure, int matches, std::size_t inliers) {
@@ -83,6 +84,9 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
   const Failure doubt = reason_to_doubt(*tracked, query.rig, query.map, options);
   if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
+  if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
+    return failed(Failure::impossible, match_count, tracked->features.size());
+  }
   return {tracked, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
 }
 
@@ -128,6 +132,8 @@ std::string_view to_string(LocalisationFailure failure) {
       return "inliers are clustered";
     case Failure::uncertain:
       return "pose is uncertain";
+    case Failure::impossible:
+      return "place is impossible";
     case Failure::ambiguous:
       return "two places fit";
   }
@@ -160,17 +166,17 @@ LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig,
 }
 
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
-                      const LocaliseOptions& options, const std::function<bool(KeyframeId)>& is_excluded) {
+                      const LocaliseOptions& options, const PlaceFilter& filter) {
   if (frame.features->size() < kMinFeatures) return failed(Failure::too_few_features, 0, 0);
   const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
-  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlaces, is_excluded);
-  return localise_at(frame, words, rig, map, index.vocabulary(), places, options);
+  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlaces, filter.is_excluded);
+  return localise_at(frame, words, rig, map, index.vocabulary(), places, options, filter);
 }
 
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
                          const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
-                         const LocaliseOptions& options) {
-  const FrameQuery query{frame, rig, map, vocabulary, words, options};
+                         const LocaliseOptions& options, const PlaceFilter& filter) {
+  const FrameQuery query{frame, rig, map, vocabulary, words, options, filter};
   Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
   for (const PlaceCandidate& place : places) {
     best = better_of(best, try_place(place, query), query);

@@ -22,6 +22,7 @@ enum class LocalisationFailure : std::uint8_t {
   too_few_inliers,      // a pose was found, but too few of the points around it are where they should be
   clustered,            // the points that agree lie in a small part of the image
   uncertain,            // the points that agree leave the pose open by more than is useful
+  impossible,           // the camera cannot be at the place that explains the image
   ambiguous             // two places explain the image
 };
 
@@ -45,17 +46,22 @@ struct Localisation {
   int inliers = 0;  // features that agreed with a pose in the last step it came to
 };
 
+// What speaks for or against places besides the image. Empty functions: nothing.
+struct PlaceFilter {
+  std::function<bool(KeyframeId)> is_excluded{};             // the keyframe is no place
+  std::function<bool(const TrackedFrame&)> is_impossible{};  // the camera cannot be where the frame was found
+};
+
 // Finds a frame in the map without any guess of its pose: places that share visual words, matches of their points,
 // a pose from three points at a time, points looked for around it, and refinement on all of them. Accepted only when
 // many points agree, spread over the image, and determine the pose, and no other place does as well.
-// is_excluded: keyframes that are no places; empty for none.
 Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
-                      const LocaliseOptions& options, const std::function<bool(KeyframeId)>& is_excluded = {});
+                      const LocaliseOptions& options, const PlaceFilter& filter = {});
 
 // The same at places that were found already, for a frame whose words are known.
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
                          const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
-                         const LocaliseOptions& options);
+                         const LocaliseOptions& options, const PlaceFilter& filter = {});
 
 // Standard deviation of the pixels along the direction in which they spread least, as a share of the image's diagonal.
 double spread_of(const std::vector<TrackedFeature>& features, const Rig& rig);

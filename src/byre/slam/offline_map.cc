@@ -1,6 +1,7 @@
 #include "byre/slam/offline_map.h"
 
 #include "byre/geometry/median.h"
+#include "byre/map/keyframe_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +25,33 @@ Matrix6 median_covariance(const Map& map) {
 
 }  // namespace
 
-OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings)
+std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls) {
+  constexpr double kMostApart = 2.0;    // metres between keyframes of one way
+  constexpr double kDeep = 0.5;         // metres inside a wall
+  constexpr double kMostInWalls = 0.1;  // share of the path
+  std::vector<std::vector<Eigen::Vector2d>> ways;
+  int places = 0, in_walls = 0;
+  for (const StampedPose& body : keyframe_path(map)) {
+    const Eigen::Vector2d place = (registration.plan_from_map * body.world_from_body.translation).head<2>();
+    if (ways.empty() || (ways.back().back() - place).norm() > kMostApart) ways.emplace_back();
+    ways.back().push_back(place);
+    ++places;
+    if (!walls.has_free_place({place, kDeep})) ++in_walls;
+  }
+  if (in_walls > kMostInWalls * places) return std::nullopt;
+  walls.open_along(ways);
+  return PlacedWalls{registration, std::move(walls)};
+}
+
+OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
+                       std::optional<PlacedWalls> walls, const KnownMounting& mounting)
     : map_(std::move(map)),
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
-      frame_covariance_(median_covariance(map_)) {
+      frame_covariance_(median_covariance(map_)),
+      ground_(DrivenGround::under(map_)),
+      walls_(std::move(walls)),
+      mounting_(mounting) {
   for (const KeyframeId id : map_.keyframe_ids()) {
     const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});

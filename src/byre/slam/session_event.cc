@@ -22,6 +22,8 @@ std::string_view to_string(SessionEvent event) {
       return "navigation error";
     case SessionEvent::restarted:
       return "restarted";
+    case SessionEvent::place_refused:
+      return "place refused";
     case SessionEvent::place_refuted:
       return "place refuted";
     case SessionEvent::online_corrected:

@@ -38,6 +38,9 @@ struct EngineOptions {
   std::optional<RefinedCalibration> known;
   SelfCalibrationOptions self_calibration;
   std::optional<Vocabulary> vocabulary;  // to recognise places with; without it no loop is closed, nor the map finished
+  // How wheels and a gyroscope were mounted when the map was made that is gone on with; a mission asks its offline map.
+  KnownMounting mounting;
+  bool use_known_mounting = true;
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
 

@@ -296,6 +296,16 @@ void add_mission(Table& table) {
       [](auto& o) -> auto& { return o.session.mission.registration.proving_share; },
       "points seen before a pose found from nothing is trusted"));
   table.push_back(number(
+      "mission.plane_margin_m", "metres", 0, 1e3,
+      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin; },
+      "height off the driving plane of the map from which a place found is refused, beyond what is uncertain"));
+  table.push_back(number(
+      "mission.plane_margin_rad", "radians", 0, 4,
+      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin_tilt; }, "tilt against it, likewise"));
+  table.push_back(number(
+      "mission.wall_margin_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.mission.bounds.wall_margin; },
+      "distance behind a wall of the floor plan from which a place found is refused, beyond what is uncertain"));
+  table.push_back(number(
       "mission.min_offline_inliers", "points", 1, 1e5,
       [](auto& o) -> auto& { return o.session.mission.view.min_inliers; }, "offline points that hold a pose"));
   table.push_back(number(
@@ -316,6 +326,15 @@ void add_mission(Table& table) {
   table.push_back(number(
       "mission.hindsight_frames", "frames", 0, kMany, [](auto& o) -> auto& { return o.session.hindsight.frames; },
       "frames that are refined at the end; 10 kB each"));
+}
+
+void add_motion(Table& table) {
+  table.push_back(flag(
+      "motion.planar", [](auto& o) -> auto& { return o.session.is_planar; },
+      "height, roll and pitch of a mission held to the ground that its map was driven on"));
+  table.push_back(flag(
+      "motion.known_mounting", [](auto& o) -> auto& { return o.use_known_mounting; },
+      "wheels and gyroscope taken to be mounted as when the map was made, until they tell otherwise"));
 }
 
 void add_health(Table& table) {
@@ -393,7 +412,7 @@ const std::vector<EngineOption>& option_table() {
   static const Table table = [] {
     Table all;
     for (const auto add : {add_run, add_features, add_calibration, add_start, add_tracking, add_keyframes, add_mapping,
-                           add_localisation, add_loops, add_mission, add_health, add_image}) {
+                           add_localisation, add_loops, add_mission, add_motion, add_health, add_image}) {
       add(all);
     }
     return all;

@@ -49,15 +49,16 @@ std::vector<std::string> values(const EngineOptions& options) {
 
 TEST(OptionTable, ListsEveryLeaf) {
   const EngineOptions options;
-  [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, known, self_calibration, vocabulary, offline] =
-      options;
-  const std::size_t in_engine = 2;                                         // pace, self_calibrate
+  [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, known, self_calibration, vocabulary, mounting,
+                                use_known_mounting, offline] = options;
+  const std::size_t in_engine = 3;                                         // pace, self_calibrate, use_known_mounting
   const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording, and groups
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
                  HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>();
-  const std::size_t in_mission =
-      member_count<MissionOptions>() - 3 + members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>();
+  const std::size_t in_mission = member_count<MissionOptions>() - 4 +
+                                 members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
+                                 member_count<PlaceBoundsOptions>() - 1;  // without what other cameras set
   const std::size_t in_extract = member_count<ExtractOptions>() - 1 + member_count<DepthOptions>();
   EXPECT_EQ(option_table().size(),
             in_engine + in_session + in_groups + in_mission + in_extract + member_count<SelfCalibrationOptions>());

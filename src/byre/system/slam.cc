@@ -159,6 +159,7 @@ StoredMap Slam::Parts::kept() const {
   stored.map = engine.kept_map();
   stored.recordings.push_back(
       {options.recording, given, first_time.value_or(Timestamp{}), last_time, engine.calibration()});
+  note_mounting(engine.prior().to_keep(), stored.notes);
   return stored;
 }
 
@@ -189,6 +190,7 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
   const auto plan = about.plan;
   EngineOptions engine = engine_options(options, vocabulary);
   engine.known = known_calibration(about.recordings, calibration);
+  if (is_by_cameras_of(about.recordings, calibration)) engine.mounting = mounting_in(about.notes);
   engine.session.recording = static_cast<int>(about.recordings.size());
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before));
   parts->plan = plan;
@@ -199,7 +201,7 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   EngineOptions engine = engine_options(options, vocabulary);
-  engine.offline = load_offline_map(map, vocabulary);
+  engine.offline = load_offline_map(map, vocabulary, options.plan);
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
   parts->plan = load_plan_registration(map);
   return Slam(std::move(parts));

@@ -1,5 +1,7 @@
 #include "byre/system/stored_map.h"
 
+#include "byre/dataset/floor_plan.h"
+#include "byre/dataset/image_file.h"
 #include "byre/input_error.h"
 #include "byre/place/map_words.h"
 
@@ -8,6 +10,25 @@
 namespace byre {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Empty where the plan does not say what a wall is.
+std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const FloorPlan& plan) {
+  if (!stored.plan) {
+    throw InputError(map.string(), "lies on no floor plan, and one is named",
+                     "find it on the plan with byre register or byre view");
+  }
+  if (stored.plan->plan != plan.name) {
+    throw InputError(plan.name, "is not the floor plan that the map lies on, " + stored.plan->plan,
+                     "name that one, or register the map on this one");
+  }
+  const std::optional<Image> image = plan.occupied_threshold ? read_image(plan.image) : std::nullopt;
+  if (!image) return std::nullopt;
+  return place_walls(stored.map, *stored.plan, PlanWalls(plan, *image));
+}
+
+}  // namespace
 
 Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
   return Vocabulary::load(path ? *path : default_vocabulary_path());
@@ -24,9 +45,13 @@ StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
   return stored;
 }
 
-std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary) {
+std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary,
+                                                   const std::optional<fs::path>& plan) {
   StoredMap stored = load_for_mapping(path, vocabulary);
-  return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings));
+  std::optional<PlacedWalls> walls;
+  if (plan) walls = walls_of(stored, path, read_floor_plan(*plan));
+  return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
+                                            std::move(walls), mounting_in(stored.notes));
 }
 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {

@@ -19,8 +19,10 @@ Vocabulary open_vocabulary(const std::optional<std::filesystem::path>& path);
 // cannot be loaded, or has no metric scale, without which stereo and loops cannot be compared with it.
 StoredMap load_for_mapping(const std::filesystem::path& path, const Vocabulary& vocabulary);
 
-// The same as the offline map of missions.
-std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& path, const Vocabulary& vocabulary);
+// The same as the offline map of missions. plan: the floor plan that it lies on, whose walls then bound where the robot
+// can be; empty for none. Throws InputError also where the map does not lie on that plan.
+std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& path, const Vocabulary& vocabulary,
+                                                   const std::optional<std::filesystem::path>& plan = {});
 
 // How many keyframes are of each of so many recordings.
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);

@@ -33,8 +33,15 @@ struct MapRecord {
   fs::path path;
 };
 
-void save(Map offline, const std::optional<RefinedCalibration>& calibration, const MapRecord& record) {
+struct KeptOfRun {
+  std::optional<RefinedCalibration> calibration;
+  KnownMounting mounting{};
+};
+
+void save(Map offline, const KeptOfRun& kept, const MapRecord& record) {
+  const auto& [calibration, mounting] = kept;
   StoredMap stored = record.about;
+  note_mounting(mounting, stored.notes);
   if (calibration) stored.recordings.back().refined = calibration;
   stored.map = std::move(offline);
   save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
@@ -45,7 +52,7 @@ MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const
                         const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0),
                     [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {
-                      save(offline_copy(online), calibration, record);
+                      save(offline_copy(online), {calibration}, record);
                     });
   MapRunHooks hooks;
   if (messages.is_wanted()) hooks.look = [&messages](const RunView& view) { messages.note(view); };
@@ -101,6 +108,10 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   input.describe(protocol);
   protocol.options = options.engine_options();
   protocol.options.known = record.about.recordings.back().refined;
+  const std::vector<SourceRecording>& all = record.about.recordings;
+  if (is_by_cameras_of({all.begin(), all.end() - 1}, all.back().calibration)) {
+    protocol.options.mounting = mounting_in(record.about.notes);
+  }
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
   if (options.extended) protocol.extended = options.extended->string();
@@ -135,7 +146,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   if (run.causal.empty()) options.map.reset();  // there is nothing to keep
   OutputWriter outputs;
   outputs.attempt([&] {
-    if (options.map) save(run.map, run.calibration, record);
+    if (options.map) save(run.map, {run.calibration, run.told.to_keep}, record);
   });
   write_results(options, run, protocol, resources, outputs);
   outputs.require_written();

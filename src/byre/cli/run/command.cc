@@ -59,7 +59,7 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   if (options.frame == PoseFrame::plan) {
     protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
   }
-  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary);
+  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, options.view.plan);
   return protocol;
 }
 

@@ -43,8 +43,9 @@ void declare_watching(CLI::App& command, ViewOptions& options) {
       ->check(between(0.0, 1e9))
       ->needs(view);
   declare_address(command, options)->needs(view);
-  declare_plan(command, options, "Floor plan to show under the map, which \"byre register\" has found on it")
-      ->needs(view);
+  declare_plan(command, options,
+               "Floor plan that \"byre register\" has found the map on: the robot is not taken to be behind its walls, "
+               "and --view shows it under the map");
 }
 
 void declare_viewing(CLI::App& command, ViewOptions& options) {

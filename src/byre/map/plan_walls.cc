@@ -1,0 +1,180 @@
+#include "byre/map/plan_walls.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kLeastCell = 0.1;  // metres
+
+struct PlanBox {
+  Eigen::Vector2d low;
+  Eigen::Vector2d high;
+};
+
+PlanBox box_of_image(const FloorPlan& plan) {
+  constexpr double kHalf = 0.5;
+  PlanBox box{plan.point_at({-kHalf, -kHalf}), plan.point_at({-kHalf, -kHalf})};
+  for (const double column : {-kHalf, plan.width - kHalf}) {
+    for (const double row : {-kHalf, plan.height - kHalf}) {
+      box.low = box.low.cwiseMin(plan.point_at({column, row}));
+      box.high = box.high.cwiseMax(plan.point_at({column, row}));
+    }
+  }
+  return box;
+}
+
+constexpr std::array<std::pair<int, int>, 8> kSteps = {
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+
+}  // namespace
+
+PlanWalls::PlanWalls(const FloorPlan& plan, const Image& image) {
+  assert(plan.occupied_threshold && image.width == plan.width && image.height == plan.height);
+  // Pixels of a line lie a diagonal apart at most, so that no cell between two of them stays open.
+  cell_ = std::max(kLeastCell, plan.metres_per_pixel.colwise().norm().maxCoeff() * std::numbers::sqrt2);
+  const PlanBox box = box_of_image(plan);
+  corner_in_plan_ = box.low.array() - cell_;  // a ring of open cells lies around the image
+  const Eigen::Vector2d size = (box.high - box.low) / cell_;
+  columns_ = static_cast<int>(std::ceil(size.x())) + 2;
+  rows_ = static_cast<int>(std::ceil(size.y())) + 2;
+  is_wall_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
+  is_reached_.assign(is_wall_.size(), 0);
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const int grey = image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                                    static_cast<std::size_t>(column)];
+      const double darkness = (plan.is_negated ? grey : 255 - grey) / 255.0;
+      if (darkness > *plan.occupied_threshold) is_wall_[index(cell_at(plan.point_at({column, row})))] = 1;
+    }
+  }
+}
+
+PlanWalls::Cell PlanWalls::cell_at(const Eigen::Vector2d& point_in_plan) const {
+  const Eigen::Vector2d place = (point_in_plan - corner_in_plan_) / cell_;
+  return {static_cast<int>(std::clamp(std::floor(place.x()), 0.0, columns_ - 1.0)),
+          static_cast<int>(std::clamp(std::floor(place.y()), 0.0, rows_ - 1.0))};
+}
+
+bool PlanWalls::is_inside(Cell cell) const {
+  return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
+}
+
+// A step across a corner needs both cells beside it.
+bool PlanWalls::may_step(Cell from, int right, int down) const {
+  const Cell to{from.column + right, from.row + down};
+  if (!is_inside(to) || is_wall(to)) return false;
+  if (right == 0 || down == 0) return true;
+  return !is_wall({to.column, from.row}) && !is_wall({from.column, to.row});
+}
+
+template <typename Accept>
+bool PlanWalls::any_in(const PlanDisc& disc, const Accept& accept) const {
+  const Cell middle = cell_at(disc.centre);
+  const int reach = static_cast<int>(disc.radius / cell_);
+  for (int down = -reach; down <= reach; ++down) {
+    for (int right = -reach; right <= reach; ++right) {
+      if (right * right + down * down > reach * reach) continue;
+      const Cell cell{middle.column + right, middle.row + down};
+      if (is_inside(cell) && accept(cell)) return true;
+    }
+  }
+  return false;
+}
+
+bool PlanWalls::has_free_place(const PlanDisc& disc) const {
+  return any_in(disc, [this](Cell cell) { return !is_wall(cell); });
+}
+
+bool PlanWalls::has_place_to_drive_to(const PlanDisc& disc) const {
+  return any_in(disc, [this](Cell cell) { return is_reached_[index(cell)] != 0; });
+}
+
+void PlanWalls::open_along(std::span<const std::vector<Eigen::Vector2d>> ways_in_plan) {
+  std::vector<Cell> driven;
+  for (const std::vector<Eigen::Vector2d>& way : ways_in_plan) {
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      const Eigen::Vector2d& from = way[i > 0 ? i - 1 : 0];
+      const int pieces = 1 + static_cast<int>(2.0 * (way[i] - from).norm() / cell_);
+      for (int piece = 0; piece <= pieces; ++piece) {
+        const double share = static_cast<double>(piece) / pieces;
+        driven.push_back(cell_at((1.0 - share) * from + share * way[i]));
+      }
+    }
+  }
+  for (const Cell cell : driven) {
+    for (int down = -1; down <= 1; ++down) {
+      for (int right = -1; right <= 1; ++right) {
+        const Cell beside{cell.column + right, cell.row + down};
+        if (is_inside(beside)) is_wall_[index(beside)] = 0;
+      }
+    }
+  }
+  flood(std::move(driven));
+}
+
+void PlanWalls::flood(std::vector<Cell> front) {
+  for (const Cell cell : front) is_reached_[index(cell)] = 1;
+  while (!front.empty()) {
+    const Cell from = front.back();
+    front.pop_back();
+    for (const auto& [right, down] : kSteps) {
+      const Cell to{from.column + right, from.row + down};
+      if (!may_step(from, right, down) || is_reached_[index(to)] != 0) continue;
+      is_reached_[index(to)] = 1;
+      front.push_back(to);
+    }
+  }
+}
+
+// Dijkstra's algorithm from all free cells of the one disc at once, over the window of the grid that ways of that
+// length stay in.
+std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDisc& end, double longest) const {
+  const double reach = start.radius + longest + 2.0 * cell_;
+  const Cell low = cell_at(start.centre.array() - reach), high = cell_at(start.centre.array() + reach);
+  const int width = high.column - low.column + 1;
+  const auto place = [&](Cell cell) {
+    return static_cast<std::size_t>(cell.row - low.row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(cell.column - low.column);
+  };
+  std::vector<float> length(place(high) + 1, std::numeric_limits<float>::infinity());
+  using Step = std::pair<float, std::pair<int, int>>;  // metres so far, to column and row
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> steps;
+  any_in(start, [&](Cell cell) {
+    if (!is_wall(cell)) {
+      length[place(cell)] = 0.0f;
+      steps.emplace(0.0f, std::pair(cell.column, cell.row));
+    }
+    return false;
+  });
+  const Cell goal = cell_at(end.centre);
+  const int goal_reach = static_cast<int>(end.radius / cell_);
+  while (!steps.empty()) {
+    const auto [so_far, at] = steps.top();
+    steps.pop();
+    const Cell from{at.first, at.second};
+    if (so_far > length[place(from)]) continue;
+    const int right_of = from.column - goal.column, below = from.row - goal.row;
+    if (right_of * right_of + below * below <= goal_reach * goal_reach) return so_far;
+    for (const auto& [right, down] : kSteps) {
+      const Cell to{from.column + right, from.row + down};
+      if (!may_step(from, right, down)) continue;
+      const float further = so_far + static_cast<float>(cell_ * std::hypot(right, down));
+      const bool is_in_window =
+          to.column >= low.column && to.row >= low.row && to.column <= high.column && to.row <= high.row;
+      if (!is_in_window || further > longest || further >= length[place(to)]) continue;
+      length[place(to)] = further;
+      steps.emplace(further, std::pair(to.column, to.row));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace byre

@@ -1,0 +1,122 @@
+#include "byre/map/plan_walls.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr double kPixel = 0.05;  // metres
+
+// A plan of 10 x 6 m whose lower left corner is the origin.
+class PlanOfRooms {
+ public:
+  PlanOfRooms() {
+    plan_.width = 200;
+    plan_.height = 120;
+    plan_.metres_per_pixel = kPixel * Eigen::Vector2d(1.0, -1.0).asDiagonal();
+    plan_.top_left_in_plan = {0.5 * kPixel, 6.0 - 0.5 * kPixel};
+    plan_.occupied_threshold = 0.65;
+    image_ = {200, 120, std::vector<std::uint8_t>(200 * 120, 254)};
+  }
+
+  void draw(double x0, double y0, double x1, double y1, std::uint8_t grey = 0) {
+    for (int row = 0; row < 120; ++row) {
+      for (int column = 0; column < 200; ++column) {
+        const Eigen::Vector2d point = plan_.point_at({column, row});
+        if (point.x() < x0 || point.x() > x1 || point.y() < y0 || point.y() > y1) continue;
+        image_.pixels[static_cast<std::size_t>(row * 200 + column)] = grey;
+      }
+    }
+  }
+  // Walls 0.2 m thick around two rooms side by side, from 1 to 9 m and 1 to 5 m.
+  void draw_two_rooms() {
+    draw(1.0, 1.0, 9.0, 1.2);
+    draw(1.0, 4.8, 9.0, 5.0);
+    for (const double x : {1.0, 4.9, 8.8}) draw(x, 1.0, x + 0.2, 5.0);
+  }
+  void draw_door(double low = 1.2) { draw(4.8, low, 5.2, low + 0.9, 254); }
+
+  PlanWalls walls() const { return {plan_, image_}; }
+
+ private:
+  FloorPlan plan_;
+  Image image_;
+};
+
+const Eigen::Vector2d kWest(3.0, 3.0), kEast(7.0, 3.0);
+
+TEST(PlanWalls, LeaveAStraightWayWhereNoneIsBetween) {
+  PlanOfRooms rooms;
+  const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 4.0, 0.2);
+}
+
+TEST(PlanWalls, LeaveNoWayIntoAClosedRoom) {
+  PlanOfRooms rooms;
+  rooms.draw_two_rooms();
+  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.5}, {kEast, 0.5}, 30.0));
+  EXPECT_TRUE(rooms.walls().way_between({kWest, 2.3}, {kEast, 2.3}, 30.0)) << "when either place may be behind it";
+}
+
+TEST(PlanWalls, LeaveAWayThroughADoorThatIsAsLongAsItIs) {
+  PlanOfRooms rooms;
+  rooms.draw_two_rooms();
+  rooms.draw_door();
+  const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 2.0 * std::hypot(2.0, 0.9), 0.4);
+  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 4.1)) << "there is no time for it";
+}
+
+TEST(PlanWalls, DoNotLeakWhereTheyAreThinAndSlanting) {
+  PlanOfRooms rooms;
+  for (double y = 0.0; y < 6.0; y += 0.5 * kPixel) {
+    const double x = 3.0 + 0.7 * y;
+    rooms.draw(x - 0.6 * kPixel, y - 0.6 * kPixel, x + 0.6 * kPixel, y + 0.6 * kPixel);
+  }
+  const PlanWalls walls = rooms.walls();
+  EXPECT_FALSE(walls.way_between({{2.0, 3.0}, 0.0}, {{8.0, 3.0}, 0.0}, 6.2));
+}
+
+TEST(PlanWalls, TellWhatIsDeepInThem) {
+  PlanOfRooms rooms;
+  rooms.draw(2.0, 2.0, 6.0, 5.0);
+  const PlanWalls walls = rooms.walls();
+  EXPECT_FALSE(walls.has_free_place({{4.0, 3.5}, 0.5}));
+  EXPECT_TRUE(walls.has_free_place({{2.3, 3.5}, 0.5}));
+  EXPECT_TRUE(walls.has_free_place({{40.0, -30.0}, 0.1})) << "off the plan";
+}
+
+TEST(PlanWalls, TellWhatCannotBeDrivenToFromAWay) {
+  PlanOfRooms rooms;
+  rooms.draw_two_rooms();
+  PlanWalls walls = rooms.walls();
+  const std::vector<std::vector<Eigen::Vector2d>> ways = {{{2.0, 2.0}, {4.0, 2.0}, {4.0, 4.0}}};
+  walls.open_along(ways);
+  EXPECT_TRUE(walls.has_place_to_drive_to({{2.0, 4.0}, 0.3}));
+  EXPECT_FALSE(walls.has_place_to_drive_to({kEast, 0.5}));
+  EXPECT_FALSE(walls.has_place_to_drive_to({{0.4, 3.0}, 0.3})) << "out of the building";
+  EXPECT_FALSE(walls.has_place_to_drive_to({{-20.0, 3.0}, 0.3})) << "off the plan";
+}
+
+TEST(PlanWalls, OpenWhereSomebodyDroveThrough) {
+  PlanOfRooms rooms;
+  rooms.draw_two_rooms();
+  PlanWalls walls = rooms.walls();
+  const std::vector<std::vector<Eigen::Vector2d>> ways = {{kWest, {4.0, 3.0}, {6.0, 3.1}}};
+  walls.open_along(ways);
+  EXPECT_TRUE(walls.has_place_to_drive_to({kEast, 0.1}));
+  const auto way = walls.way_between({kWest, 0.0}, {kEast, 0.0}, 5.0);
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 4.0, 0.3);
+}
+
+TEST(PlanWalls, AreDarkerThanThePlanSaysAWallIs) {
+  PlanOfRooms rooms;
+  rooms.draw(4.9, 0.0, 5.1, 6.0, 205);  // what map_server leaves unknown
+  EXPECT_TRUE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 5.0));
+}
+
+}  // namespace
+}  // namespace byre

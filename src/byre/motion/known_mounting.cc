@@ -1,0 +1,166 @@
+#include "byre/motion/known_mounting.h"
+
+#include "byre/input/text_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+namespace {
+
+constexpr const char* kWheels = "wheels";
+constexpr const char* kGyroscope = "gyroscope";
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+// "name number number, name number ..."
+class NumbersByName {
+ public:
+  NumbersByName() = default;
+  explicit NumbersByName(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.find(';');
+      take(text.substr(0, end));
+      if (end == std::string_view::npos) break;
+      text.remove_prefix(end + 1);
+    }
+  }
+
+  void add(const std::string& name, std::span<const double> values) {
+    text_ += (text_.empty() ? "" : "; ") + name;
+    for (const double value : values) text_ += " " + text_of(value);
+  }
+  void add(const std::string& name, double value) { add(name, std::span(&value, 1)); }
+  const std::string& text() const { return text_; }
+
+  // Into the values; false unless there are as many.
+  bool get(const std::string& name, std::span<double> values) const {
+    const auto found = numbers_.find(name);
+    if (found == numbers_.end() || found->second.size() != values.size()) return false;
+    std::ranges::copy(found->second, values.begin());
+    return true;
+  }
+  bool get(const std::string& name, double& value) const { return get(name, std::span(&value, 1)); }
+
+ private:
+  void take(std::string_view part) {
+    const std::vector<std::string_view> fields = split_fields(part);
+    if (fields.empty()) return;
+    std::vector<double>& numbers = numbers_[std::string(fields.front())];
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      if (const auto number = parse_number(fields[i])) numbers.push_back(*number);
+    }
+  }
+
+  std::string text_;
+  std::map<std::string, std::vector<double>> numbers_;
+};
+
+void add_rotation(NumbersByName& numbers, const std::string& name, const Eigen::Quaterniond& rotation) {
+  numbers.add(name, std::array{rotation.w(), rotation.x(), rotation.y(), rotation.z()});
+}
+
+bool get_rotation(const NumbersByName& numbers, const std::string& name, Eigen::Quaterniond& rotation) {
+  constexpr double kUnit = 1e-3;
+  std::array<double, 4> values{};
+  if (!numbers.get(name, values)) return false;
+  const Eigen::Quaterniond read(values[0], values[1], values[2], values[3]);
+  if (!(std::abs(read.norm() - 1.0) < kUnit)) return false;
+  rotation = read.normalized();
+  return true;
+}
+
+std::string note_of(const WheelMounting& wheels, double time_offset) {
+  NumbersByName numbers;
+  add_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation);
+  numbers.add("arm_m", std::array{wheels.base_from_body.translation.x(), wheels.base_from_body.translation.y()});
+  numbers.add("metres_per_unit", wheels.metres_per_unit);
+  numbers.add("scale_sigma", wheels.scale_sigma);
+  numbers.add("way_error", wheels.way_error);
+  numbers.add("turn_error", wheels.turn_error);
+  numbers.add("turn_scale", wheels.turn_errors.scale);
+  numbers.add("turn_per_metre", wheels.turn_errors.per_metre);
+  numbers.add("covariance", std::span(wheels.covariance.data(), 16));
+  numbers.add("delay_s", time_offset);
+  return numbers.text();
+}
+
+bool read_note(const NumbersByName& numbers, WheelMounting& wheels, double& time_offset) {
+  std::array<double, 2> arm{};
+  const bool is_whole =
+      get_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation) && numbers.get("arm_m", arm) &&
+      numbers.get("metres_per_unit", wheels.metres_per_unit) && numbers.get("scale_sigma", wheels.scale_sigma) &&
+      numbers.get("way_error", wheels.way_error) && numbers.get("turn_error", wheels.turn_error) &&
+      numbers.get("turn_scale", wheels.turn_errors.scale) &&
+      numbers.get("turn_per_metre", wheels.turn_errors.per_metre) &&
+      numbers.get("covariance", std::span(wheels.covariance.data(), 16)) && numbers.get("delay_s", time_offset);
+  wheels.base_from_body.translation = {arm[0], arm[1], 0.0};
+  const bool is_sound = wheels.metres_per_unit > 0.0 && wheels.scale_sigma >= 0.0 &&
+                        wheels.covariance.ldlt().isPositive() &&
+                        wheels.covariance.isApprox(wheels.covariance.transpose());
+  return is_whole && is_sound;
+}
+
+}  // namespace
+
+void note_mounting(const KnownMounting& mounting, std::map<std::string, std::string>& notes) {
+  if (mounting.wheels) notes[kWheels] = note_of(*mounting.wheels, mounting.time_offset);
+  if (!mounting.gyroscope) return;
+  NumbersByName numbers;
+  add_rotation(numbers, "body_from_gyroscope_wxyz", mounting.gyroscope->body_from_gyroscope);
+  numbers.add("error_rad_per_s", mounting.gyroscope->error);
+  notes[kGyroscope] = numbers.text();
+}
+
+KnownMounting mounting_in(const std::map<std::string, std::string>& notes) {
+  KnownMounting mounting;
+  if (const auto note = notes.find(kWheels); note != notes.end()) {
+    WheelMounting wheels;
+    double time_offset = 0.0;
+    if (read_note(NumbersByName(note->second), wheels, time_offset)) {
+      mounting.wheels = wheels;
+      mounting.time_offset = time_offset;
+    }
+  }
+  if (const auto note = notes.find(kGyroscope); note != notes.end()) {
+    GyroscopeMounting gyroscope;
+    const NumbersByName numbers(note->second);
+    if (get_rotation(numbers, "body_from_gyroscope_wxyz", gyroscope.body_from_gyroscope) &&
+        numbers.get("error_rad_per_s", gyroscope.error)) {
+      mounting.gyroscope = gyroscope;
+    }
+  }
+  return mounting;
+}
+
+KnownMounting scaled(KnownMounting mounting, double factor) {
+  if (!mounting.wheels) return mounting;
+  mounting.wheels->metres_per_unit /= factor;
+  mounting.wheels->covariance.topRows<2>() /= factor;
+  mounting.wheels->covariance.leftCols<2>() /= factor;
+  return mounting;
+}
+
+bool is_contradicted(const WheelMounting& known, const WheelMounting& found) {
+  constexpr double kMostTilt = 0.06;         // radians between the axes
+  constexpr double kMostSquaredSigmas = 18;  // sum over four numbers: one in 800 is beyond
+  constexpr double kNeglected = 9.0;         // factor for errors that motions have in common
+  const auto up = [](const WheelMounting& mounting) -> Eigen::Vector3d {
+    return mounting.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  };
+  if (std::acos(std::clamp(up(known).dot(up(found)), -1.0, 1.0)) > kMostTilt) return true;
+  const Eigen::Vector4d apart = unknowns_about(found, up(known)) - unknowns_about(known, up(known));
+  const Eigen::Matrix4d covariance = kNeglected * (known.covariance + found.covariance) + usual_change(known);
+  return apart.dot(covariance.ldlt().solve(apart)) > kMostSquaredSigmas;
+}
+
+}  // namespace byre

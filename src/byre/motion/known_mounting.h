@@ -1,0 +1,36 @@
+#pragma once
+
+#include "byre/motion/gyroscope_mounting.h"
+#include "byre/motion/wheel_mounting.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// How wheels and a gyroscope are mounted, as it is kept from one drive to the next. The gyroscope's bias is not: it is
+// another one each day.
+struct KnownMounting {
+  std::optional<WheelMounting> wheels;
+  std::optional<GyroscopeMounting> gyroscope;
+  double time_offset = 0.0;  // seconds that wheels stamp later than the camera
+
+  bool is_empty() const { return !wheels && !gyroscope; }
+};
+
+// As notes of a map, by the keys "wheels" and "gyroscope": numbers with their names, for people and for mounting_in.
+// What is not known has no note.
+void note_mounting(const KnownMounting& mounting, std::map<std::string, std::string>& notes);
+
+// What is noted; a note that somebody else wrote tells nothing.
+KnownMounting mounting_in(const std::map<std::string, std::string>& notes);
+
+// The same for a map whose lengths are so many times as long.
+KnownMounting scaled(KnownMounting mounting, double factor);
+
+// Whether motions tell a mounting that is not the one that was known: they differ by more than both leave open, and
+// than a drive changes.
+bool is_contradicted(const WheelMounting& known, const WheelMounting& found);
+
+}  // namespace byre

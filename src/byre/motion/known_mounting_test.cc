@@ -1,0 +1,109 @@
+#include "byre/motion/known_mounting.h"
+
+#include "byre/geometry/degrees.h"
+#include "byre/motion/drive_scene.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+std::vector<MotionPair> motions_of(const Drive& drive, double from, double to) {
+  std::mt19937 random(3);
+  std::vector<MotionPair> motions;
+  for (double t = from; t < to; t += 0.5) {
+    motions.push_back({inverse(Drive::world_from_base(t)) * Drive::world_from_base(t + 0.5),
+                       inverse(drive.seen(t, random)) * drive.seen(t + 0.5, random)});
+  }
+  return motions;
+}
+
+KnownMounting known_from_a_drive(const Drive& drive) {
+  KnownMounting known;
+  known.wheels = find_wheel_mounting(motions_of(drive, 0.0, 60.0));
+  known.gyroscope = GyroscopeMounting{rotation_exp({0.3, 1.2, -0.4}), {0.01, 0.02, 0.03}, 0.004};
+  known.time_offset = 0.031;
+  return known;
+}
+
+double lever_error(const WheelMounting& found, const Drive& drive) {
+  return (found.base_from_body.translation - drive.base_from_body.translation).head<2>().norm();
+}
+
+TEST(KnownMounting, IsReadFromNotesAsItWasNoted) {
+  const KnownMounting known = known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001});
+  ASSERT_TRUE(known.wheels);
+  std::map<std::string, std::string> notes = {{"site", "barn 3"}};
+  note_mounting(known, notes);
+  const KnownMounting read = mounting_in(notes);
+  ASSERT_TRUE(read.wheels && read.gyroscope);
+  EXPECT_EQ(notes.at("site"), "barn 3");
+  EXPECT_LT(angle_between(read.wheels->base_from_body.rotation, known.wheels->base_from_body.rotation), 1e-9);
+  EXPECT_EQ(read.wheels->base_from_body.translation, known.wheels->base_from_body.translation);
+  EXPECT_EQ(read.wheels->covariance, known.wheels->covariance);
+  EXPECT_EQ(read.wheels->turn_errors.per_metre, known.wheels->turn_errors.per_metre);
+  EXPECT_EQ(read.time_offset, 0.031);
+  EXPECT_EQ(read.gyroscope->error, 0.004);
+  EXPECT_EQ(read.gyroscope->bias, Eigen::Vector3d::Zero()) << "it is another one each day";
+}
+
+TEST(KnownMounting, IsNotReadFromNotesOfSomebodyElse) {
+  EXPECT_TRUE(mounting_in({}).is_empty());
+  EXPECT_TRUE(mounting_in({{"wheels", "four, of rubber"}, {"gyroscope", "none"}}).is_empty());
+  std::map<std::string, std::string> notes;
+  note_mounting(known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001}), notes);
+  notes["wheels"].resize(notes["wheels"].size() / 2);
+  EXPECT_FALSE(mounting_in(notes).wheels);
+}
+
+TEST(KnownMounting, FollowsALongerUnitOfTheMap) {
+  const KnownMounting known = known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001});
+  const KnownMounting longer = scaled(known, 2.0);
+  EXPECT_NEAR(longer.wheels->metres_per_unit, 0.5 * known.wheels->metres_per_unit, 1e-12);
+  EXPECT_NEAR(longer.wheels->covariance(0, 0), 0.25 * known.wheels->covariance(0, 0), 1e-15);
+  EXPECT_NEAR(longer.wheels->covariance(2, 2), known.wheels->covariance(2, 2), 1e-15);
+}
+
+TEST(KnownMounting, IsKeptThroughMotionsThatTellLittle) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.98, .noise = 0.001};
+  const KnownMounting known = known_from_a_drive(drive);
+  const auto motions = motions_of(drive, 100.0, 101.5);
+  EXPECT_FALSE(find_wheel_mounting(motions));
+  const auto found = find_wheel_mounting(motions, known.wheels);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->metres_per_unit, 0.98, 0.004);
+  EXPECT_LT(lever_error(*found, drive), 0.01);
+}
+
+TEST(KnownMounting, BecomesWhatALongDriveTells) {
+  Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 1.0, .noise = 0.001};
+  const KnownMounting known = known_from_a_drive(drive);
+  drive.metres_per_unit = 1.01;  // tyres that were pumped up
+  const auto found = find_wheel_mounting(motions_of(drive, 60.0, 160.0), known.wheels);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->metres_per_unit, 1.01, 0.004);
+}
+
+TEST(KnownMounting, IsContradictedByAnotherOneOnly) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const WheelMounting known = *known_from_a_drive(drive).wheels;
+  const auto found_on = [](const Drive& other) { return find_wheel_mounting(motions_of(other, 60.0, 100.0)).value(); };
+  EXPECT_FALSE(is_contradicted(known, found_on(drive)));
+  Drive pumped_up = drive;
+  pumped_up.metres_per_unit = 1.01;
+  EXPECT_FALSE(is_contradicted(known, found_on(pumped_up)));
+  Drive moved = drive;
+  moved.base_from_body.translation.x() += 0.15;
+  EXPECT_TRUE(is_contradicted(known, found_on(moved)));
+  Drive turned = drive;
+  turned.base_from_body.rotation = rotation_exp({0.0, 0.0, 6.0 * kDegree}) * drive.base_from_body.rotation;
+  EXPECT_TRUE(is_contradicted(known, found_on(turned)));
+  Drive tilted = drive;
+  tilted.base_from_body.rotation = rotation_exp({0.0, 6.0 * kDegree, 0.0}) * drive.base_from_body.rotation;
+  EXPECT_TRUE(is_contradicted(known, found_on(tilted)));
+}
+
+}  // namespace
+}  // namespace byre
