@@ -65,6 +65,9 @@ void bind_reports(py::module_& module) {
       .def_readonly("matches", &FrameReport::matches)
       .def_readonly("inliers", &FrameReport::inliers)
       .def_readonly("keyframe_added", &FrameReport::keyframe_added)
+      .def_readonly(
+          "refused_place", &FrameReport::refused_place,
+          "Why the robot cannot be where it was found in the offline map; Doubt.none where it was not refused.")
       .def("__repr__", [](const FrameReport& report) {
         return "<FrameReport " + std::to_string(to_seconds(report.time)) + " s, " +
                std::string(to_string(report.state)) + ", " + std::string(to_string(report.health.verdict)) + ">";

@@ -27,6 +27,13 @@ void OfflineTracker::refine_calibration(const Calibration& given, double prior_s
   calibrator_.emplace(given, prior_sigmas, std::move(calibration_lane_));
 }
 
+const DrivenGround* OfflineTracker::ground_under(const Whereabouts& whereabouts, const Mapper& mapper) const {
+  const AnchoredTrajectory& trajectory = whereabouts.trajectory();
+  if (!options_.is_planar || !options_.mission.bounds.is_on_ground_of_map || trajectory.empty()) return nullptr;
+  const bool is_in_map = mapper.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
+  return is_in_map ? offline_->ground() : nullptr;
+}
+
 std::optional<MissionCalibrator::Switch> OfflineTracker::collect_camera() {
   return calibrator_ ? calibrator_->collect() : std::nullopt;
 }

@@ -20,6 +20,7 @@ struct OfflineTrackerOptions {
   MissionOptions mission;
   TrackOptions track;
   LocaliseOptions relocalise;  // where places are looked for beside tracking
+  bool is_planar = false;      // the body is held to the ground that the map was driven on
 };
 
 // What a mission on an offline map adds to a session: the way in that map, places looked for in it beside tracking,
@@ -37,6 +38,8 @@ class OfflineTracker {
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
   bool is_focal_length_off() const { return focal_check_.is_off(); }
+  // What the body is held to; nullptr where nothing is known of it, or the last pose does not lie in the map's frame.
+  const DrivenGround* ground_under(const Whereabouts& whereabouts, const Mapper& mapper) const;
 
   // Before the first frame.
   void refine_calibration(const Calibration& given, double prior_sigmas);

@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace byre {
+namespace {
+
+// Whether poses lie in the offline map, where there is one.
+bool is_registered(const Mapper& mapper) {
+  return mapper.submaps().is_registered();
+}
+
+}  // namespace
 
 Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary,
                  std::shared_ptr<const OfflineMap> offline)
@@ -16,9 +24,11 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       tracker_(options),
       whereabouts_(options.mission.registration, options.hindsight, options.trajectory, offline != nullptr),
       input_watch_(options.image),
-      shutter_(rig.readout_time) {
+      shutter_(rig.readout_time),
+      trusted_place_(options.mission.registration.max_speed) {
   if (offline) {
-    mission_.emplace(std::move(offline), OfflineTrackerOptions{options.mission, options.track, options.relocalise},
+    mission_.emplace(std::move(offline),
+                     OfflineTrackerOptions{options.mission, options.track, options.relocalise, options.is_planar},
                      OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
   } else {
     options_.map_online = true;  // there is nothing else to track
@@ -76,7 +86,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
     report.events.push_back(is_first ? SessionEvent::initialised : SessionEvent::restarted);
   } else {
     lose_pose(input.fault, report);
-    whereabouts_.go_on(rectified.time, rig_, map(), ground());
+    whereabouts_.go_on(rectified.time, rig_, map(), mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr);
   }
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
@@ -88,7 +98,9 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   report.state = state_;
   report.health = health_of(summary, report.covariance, options_.health);
   note_quality(report);
-  tell_refusal(report);
+  if (trusted_place_.is_news(report.refused_place, report.health.verdict)) {
+    report.events.push_back(SessionEvent::place_refused);
+  }
   const bool was_error_told = std::exchange(is_error_told_, is_navigation_error(seconds_without));
   if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
 
@@ -102,38 +114,16 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
 void Session::note_quality(const FrameReport& report) {
   if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.confirmation().is_believed()) return;
   whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
-  if (mission_ && report.health.verdict == Verdict::trusted) last_trusted_ = {report.time, *report.map_from_body};
-}
-
-void Session::tell_refusal(FrameReport& report) {
-  if (report.health.verdict != Verdict::untrusted) told_refusal_ = Doubt::none;
-  if (report.refused_place == Doubt::none || report.refused_place == told_refusal_) return;
-  told_refusal_ = report.refused_place;
-  report.events.push_back(SessionEvent::place_refused);
-}
-
-std::optional<PlaceBounds::Way> Session::way_since_trusted() const {
-  if (!last_trusted_) return std::nullopt;
-  return PlaceBounds::Way{*last_trusted_, options_.mission.registration.max_speed};
+  if (mission_ && report.health.verdict == Verdict::trusted) trusted_place_.note({report.time, *report.map_from_body});
 }
 
 bool Session::is_navigation_error(double seconds_without_pose) const {
   return mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
 }
 
-// That the body is held to; nullptr where the last pose does not lie in the map's frame.
-const DrivenGround* Session::ground() const {
-  const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  if (!options_.is_planar || !mission_ || !options_.mission.bounds.is_on_ground_of_map || trajectory.empty()) {
-    return nullptr;
-  }
-  const bool is_in_map = mapper_.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
-  return is_in_map ? mission_->mission().offline().ground() : nullptr;
-}
-
 void Session::take_over_results(FrameReport& report) {
   constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
-  const bool was_registered = is_registered();
+  const bool was_registered = is_registered(mapper_);
   report.job_seconds = mapper_.collect();
   const bool is_shutter_better = mapper_.take_over_readout(shutter_, rig_);
   if (take_over_camera() || is_shutter_better) report.events.push_back(SessionEvent::recalibrated);
@@ -145,11 +135,11 @@ void Session::take_over_results(FrameReport& report) {
   if (mission_) take_over_place(report);
   if (mapper_.correct_online()) {
     whereabouts_.note_online_correction();
-    if (!was_registered && is_registered()) whereabouts_.note_registration(hint_.get().has_value());
+    if (!was_registered && is_registered(mapper_)) whereabouts_.note_registration(hint_.get().has_value());
     report.events.push_back(SessionEvent::online_corrected);
   }
   const auto correction = whereabouts_.follow_map(rig_, map());
-  if (!correction || !was_registered || !is_registered()) return;
+  if (!correction || !was_registered || !is_registered(mapper_)) return;
   if (log_pose(*correction).norm() > kLeastCorrection) report.correction = correction;
 }
 
@@ -167,7 +157,7 @@ void Session::take_over_place(FrameReport& report) {
   }
   if (consequence.refutes_way) {
     whereabouts_.give_up();
-    last_trusted_.reset();
+    trusted_place_.forget();
     report.events.push_back(SessionEvent::place_refuted);
   }
 }
@@ -211,8 +201,8 @@ Session::Located Session::locate(const InputFrame& input) {
                              mission_ && mission_->ask_for_focal_length(),
                              hint_.get(),
                              whereabouts_.confirmation().is_proven(),
-                             way_since_trusted(),
-                             ground()};
+                             trusted_place_.way_from_there(),
+                             mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -263,22 +253,23 @@ Session::Located Session::begin_submap(const Frame& frame) {
 
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
   const HybridTrack& track = *located.track;
-  const Whereabouts::Progress progress = whereabouts_.note(
-      {input.frame, track, located.from_nothing, is_registered(), mapper_.submaps().present(), located.is_by_hint},
-      rig_, map());
+  const Whereabouts::Progress progress =
+      whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
+                         located.is_by_hint},
+                        rig_, map());
   tracker_.note(track);
   keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
   if (progress.was_proven && !located.from_nothing) {
     shutter_.note(input.frame, rig_, track.tracked, map(), whereabouts_.motion().velocity());
   }
-  if (mission_ && is_registered()) {
+  if (mission_ && is_registered(mapper_)) {
     const OfflineTracker::Consequence consequence = mission_->note(
         {input.frame, track, rig_, progress.step, input.fault != ImageFault::none, tracker_.offline_points()},
         whereabouts_, mapper_);
     report.events.insert(report.events.end(), consequence.events.begin(), consequence.events.end());
     if (consequence.correction) mapper_.correct_later(*consequence.correction);
   }
-  if (!whereabouts_.confirmation().is_believed() || !is_registered()) return;
+  if (!whereabouts_.confirmation().is_believed() || !is_registered(mapper_)) return;
   if (mission_ && !progress.was_ever_believed) {
     report.events.push_back(SessionEvent::localised);
   } else if (has_lost_its_way(state_)) {
@@ -297,7 +288,8 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
     report.keyframe_added = true;
   }
   if (look_for_loop(input.frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
-  if (mission_) mission_->search_beside({input.frame, rig_, hint_.get(), way_since_trusted()}, whereabouts_, mapper_);
+  if (mission_)
+    mission_->search_beside({input.frame, rig_, hint_.get(), trusted_place_.way_from_there()}, whereabouts_, mapper_);
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {
@@ -309,7 +301,7 @@ bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track
 // While offline points hold the pose there is no drift that a loop could tell of.
 bool Session::look_for_loop(const Frame& frame, bool keyframe_added) {
   const auto newest = mapper_.newest_keyframe();
-  if (!newest || (mission_ && is_registered() && mission_->mission().view() == OfflineView::held)) return false;
+  if (!newest || (mission_ && is_registered(mapper_) && mission_->mission().view() == OfflineView::held)) return false;
   const Pose camera_from_map = camera_from_world(map(), whereabouts_.trajectory().back());
   return mapper_.look_for_loop({frame, camera_from_map, rig_, *newest, keyframe_added});
 }

@@ -3,6 +3,7 @@
 #include "byre/frame_report.h"
 #include "byre/localisation/offline_tracker.h"
 #include "byre/localisation/standing_hint.h"
+#include "byre/localisation/trusted_place.h"
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/keyframe_watch.h"
 #include "byre/mapping/mapper.h"
@@ -65,7 +66,7 @@ class Session {
   // Where the robot is in the offline map, as somebody says: where it is looked for from nothing while the hint counts.
   void look_near(const PoseHint& hint) {
     hint_.give(hint);
-    last_trusted_.reset();  // it may have been carried there
+    trusted_place_.forget();
   }
 
   // While it is paused frames are tracked on the map as it is, and nothing is added to it.
@@ -123,11 +124,7 @@ class Session {
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
-  void tell_refusal(FrameReport& report);
-  std::optional<PlaceBounds::Way> way_since_trusted() const;
-  const DrivenGround* ground() const;
   bool is_navigation_error(double seconds_without_pose) const;
-  bool is_registered() const { return mapper_.submaps().is_registered(); }
 
   SessionOptions options_;  // constant after construction
 
@@ -143,9 +140,8 @@ class Session {
   Shutter shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
-  bool is_error_told_ = false;                 // a navigation error
-  Doubt told_refusal_ = Doubt::none;           // since there was a pose to rely on
-  std::optional<PlaceBefore> last_trusted_{};  // in the offline map
+  TrustedPlace trusted_place_;
+  bool is_error_told_ = false;  // a navigation error
   bool is_mapping_paused_ = false;
   std::vector<SeenPoint> seen_;  // in the last frame
 };

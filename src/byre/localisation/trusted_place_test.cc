@@ -1,0 +1,30 @@
+#include "byre/localisation/trusted_place.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+TEST(TrustedPlace, LeadsFromWhereTheRobotWasUntilThatIsForgotten) {
+  TrustedPlace place(2.0);
+  EXPECT_FALSE(place.way_from_there());
+  place.note({from_seconds(3.0), Pose{}});
+  ASSERT_TRUE(place.way_from_there());
+  EXPECT_EQ(place.way_from_there()->before.time, from_seconds(3.0));
+  EXPECT_EQ(place.way_from_there()->max_speed, 2.0);
+  place.forget();
+  EXPECT_FALSE(place.way_from_there());
+}
+
+TEST(TrustedPlace, TellsEachReasonOnceUntilAPoseIsOfUse) {
+  TrustedPlace place(2.0);
+  EXPECT_FALSE(place.is_news(Doubt::none, Verdict::untrusted));
+  EXPECT_TRUE(place.is_news(Doubt::in_wall, Verdict::untrusted));
+  EXPECT_FALSE(place.is_news(Doubt::in_wall, Verdict::untrusted));
+  EXPECT_TRUE(place.is_news(Doubt::outside, Verdict::untrusted));
+  EXPECT_FALSE(place.is_news(Doubt::none, Verdict::trusted));
+  EXPECT_TRUE(place.is_news(Doubt::outside, Verdict::untrusted));
+}
+
+}  // namespace
+}  // namespace byre
