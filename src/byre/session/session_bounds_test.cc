@@ -125,7 +125,9 @@ TEST(PlaceBounds, LetTheRobotBeFoundWhereSomebodySaysThatItIs) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (i == 20) session.look_near({.map_from_body = lap.truth[kFramesOfLap / 2].world_from_body, .radius = 2.0});
     const FrameReport report = session.process(frames[i]);
-    if (i >= 20) EXPECT_TRUE(report.map_from_body) << i;
+    if (i >= 20) {
+      EXPECT_TRUE(report.map_from_body) << i;
+    }
   }
 }
 
