@@ -122,7 +122,7 @@ function(byre_add_component component)
 endfunction()
 
 # libbyre.so, byre::shared: the objects of the component core and those that read calibrations, so that it needs neither
-# image files nor videos. Programs see what the public headers declare, but for recordings.
+# image files nor videos. Programs see what the public headers declare, but for recordings and floor plans.
 function(byre_add_shared_library)
   add_library(byre_shared SHARED)
   target_sources(byre_shared PRIVATE
@@ -140,7 +140,7 @@ function(byre_add_shared_library)
   set(script ${CMAKE_CURRENT_SOURCE_DIR}/cmake/make_exports.py)
   set(exports ${CMAKE_CURRENT_BINARY_DIR}/byre_exports.map)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
-  list(FILTER headers EXCLUDE REGEX "/recording\\.h$")
+  list(FILTER headers EXCLUDE REGEX "/(floor_plan|recording)\\.h$")
   # Before 1.0 a minor version may break the interface, so both numbers are in every program that is linked.
   add_custom_command(OUTPUT ${exports} DEPENDS ${script} ${headers} VERBATIM
     COMMAND Python3::Interpreter ${script} ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${exports} ${headers})

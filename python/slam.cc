@@ -194,7 +194,15 @@ void bind_options(py::module_& module) {
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
       .def_readwrite("vocabulary", &SlamOptions::vocabulary)
-      .def_readwrite("plan", &SlamOptions::plan, "The floor plan that the map of a mission lies on.")
+      .def_property(
+          "plan",
+          [](const SlamOptions& options) {
+            return options.plan ? std::optional(options.plan->plan.name) : std::nullopt;
+          },
+          [](SlamOptions& options, const std::optional<std::filesystem::path>& file) {
+            options.plan = file ? std::optional(read_drawn_floor_plan(*file)) : std::nullopt;
+          },
+          "The floor plan that the map of a mission lies on: its file is given, and the name of that is told.")
       .def_property("settings", &settings_of, &set_settings, "Options of docs/options.md by name.");
 }
 

@@ -45,7 +45,7 @@ PUBLIC = {
     "body_motion.h": "motion",
     "features.h": "features", "image.h": "features", "image_condition.h": "features",
     "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
-    "calibration_file.h": "dataset", "recording.h": "dataset",
+    "calibration_file.h": "dataset", "floor_plan.h": "dataset", "recording.h": "dataset",
     "health.h": "slam", "session_event.h": "slam", "state.h": "slam",
     "frame_report.h": "session",
     "byre.h": "system", "slam.h": "system",

@@ -7,6 +7,7 @@
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
 #include "byre/features.h"
+#include "byre/floor_plan.h"
 #include "byre/frame_report.h"
 #include "byre/health.h"
 #include "byre/image.h"

@@ -3,6 +3,7 @@
 #include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/features.h"
+#include "byre/floor_plan.h"
 #include "byre/frame_report.h"
 #include "byre/image.h"
 #include "byre/input_error.h"
@@ -41,9 +42,9 @@ struct SlamOptions {
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
   // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};
-  // The floor plan that the map of a mission lies on: where it says what a wall is, the robot is not taken to be behind
-  // one. Empty: walls are not known.
-  std::optional<std::filesystem::path> plan{};
+  // The floor plan that the map of a mission lies on (read_drawn_floor_plan): where it says what a wall is, the robot
+  // is not taken to be behind one. Empty: walls are not known.
+  std::optional<DrawnFloorPlan> plan{};
 };
 
 // One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.

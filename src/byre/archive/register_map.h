@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/archive/register_picks.h"
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/map/map_file.h"
 #include "byre/map/plan_scale.h"
 

@@ -1,7 +1,7 @@
 #include "byre/dataset/files_read.h"
 
 #include "byre/bag/bag.h"
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/dataset/image_names.h"
 #include "byre/input/text_file.h"
 #include "byre/recording.h"

@@ -1,4 +1,4 @@
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_size.h"
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -156,6 +157,13 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
 }
 
 }  // namespace
+
+DrawnFloorPlan read_drawn_floor_plan(const fs::path& path) {
+  FloorPlan plan = read_floor_plan(path);
+  ImageReading<Image> reading = try_image(plan.image);
+  if (!reading.image) throw InputError(plan.image.string(), reading.failure, "draw the floor plan anew");
+  return {std::move(plan), std::move(*reading.image)};
+}
 
 std::optional<fs::path> find_world_file(const fs::path& image) {
   const std::string extension = image.extension().string();

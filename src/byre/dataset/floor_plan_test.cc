@@ -1,4 +1,4 @@
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 
 #include "byre/dataset/test_folder.h"
 #include "byre/geometry/geometry_matchers.h"

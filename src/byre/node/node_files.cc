@@ -1,5 +1,5 @@
 #include "byre/calibration_file.h"
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/map/map_file.h"
 #include "byre/node/map_messages.h"
 #include "byre/node/node_config.h"

@@ -1,6 +1,7 @@
 #include "byre/node/slam_runner.h"
 
 #include "byre/dataset/settings_file.h"
+#include "byre/floor_plan.h"
 #include "byre/input/output_file.h"
 #include "byre/map/map_file.h"
 #include "byre/node/kept_maps.h"
@@ -73,7 +74,7 @@ void SlamRunner::replace(Slam slam) {
 
 SlamOptions SlamRunner::options_for(const fs::path& map) const {
   SlamOptions options = options_;
-  if (config_.plan && lies_on(map, *config_.plan)) options.plan = config_.plan;
+  if (config_.plan && lies_on(map, *config_.plan)) options.plan = read_drawn_floor_plan(*config_.plan);
   return options;
 }
 

@@ -1,7 +1,5 @@
 #include "byre/system/stored_map.h"
 
-#include "byre/dataset/floor_plan.h"
-#include "byre/dataset/image_file.h"
 #include "byre/input_error.h"
 #include "byre/place/map_words.h"
 
@@ -14,7 +12,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // Empty where the plan does not say what a wall is.
-std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const FloorPlan& plan) {
+std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const DrawnFloorPlan& drawn) {
+  const FloorPlan& plan = drawn.plan;
   if (!stored.plan) {
     throw InputError(map.string(), "lies on no floor plan, and one is named",
                      "find it on the plan with byre register or byre view");
@@ -23,9 +22,8 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
     throw InputError(plan.name, "is not the floor plan that the map lies on, " + stored.plan->plan,
                      "name that one, or register the map on this one");
   }
-  const std::optional<Image> image = plan.occupied_threshold ? read_image(plan.image) : std::nullopt;
-  if (!image) return std::nullopt;
-  return place_walls(stored.map, *stored.plan, PlanWalls(plan, *image));
+  if (!plan.occupied_threshold) return std::nullopt;
+  return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.image));
 }
 
 }  // namespace
@@ -46,10 +44,10 @@ StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
 }
 
 std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary,
-                                                   const std::optional<fs::path>& plan) {
+                                                   const std::optional<DrawnFloorPlan>& plan) {
   StoredMap stored = load_for_mapping(path, vocabulary);
   std::optional<PlacedWalls> walls;
-  if (plan) walls = walls_of(stored, path, read_floor_plan(*plan));
+  if (plan) walls = walls_of(stored, path, *plan);
   return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
                                             std::move(walls), mounting_in(stored.notes));
 }

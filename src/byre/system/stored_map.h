@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/floor_plan.h"
 #include "byre/map/map_file.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/offline_map.h"
@@ -22,7 +23,7 @@ StoredMap load_for_mapping(const std::filesystem::path& path, const Vocabulary& 
 // The same as the offline map of missions. plan: the floor plan that it lies on, whose walls then bound where the robot
 // can be; empty for none. Throws InputError also where the map does not lie on that plan.
 std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& path, const Vocabulary& vocabulary,
-                                                   const std::optional<std::filesystem::path>& plan = {});
+                                                   const std::optional<DrawnFloorPlan>& plan = {});
 
 // How many keyframes are of each of so many recordings.
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 
 #include <string>
 

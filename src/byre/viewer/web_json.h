@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/map/plan_registration.h"
 #include "byre/viewer/run_mailbox.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/map/floor_plan.h"
 #include "byre/map/map_file.h"
 #include "byre/viewer/web_server.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/calibration.h"
-#include "byre/dataset/floor_plan.h"
+#include "byre/floor_plan.h"
 #include "byre/map/plan_registration.h"
 #include "byre/viewer/run_mailbox.h"
 #include "byre/viewer/web_server.h"

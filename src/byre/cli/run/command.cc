@@ -11,6 +11,7 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
+#include "byre/floor_plan.h"
 #include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
@@ -59,7 +60,9 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   if (options.frame == PoseFrame::plan) {
     protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
   }
-  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, options.view.plan);
+  std::optional<DrawnFloorPlan> plan;
+  if (options.view.plan) plan = read_drawn_floor_plan(*options.view.plan);
+  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, plan);
   return protocol;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/image.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -38,6 +40,15 @@ struct FloorPlan {
 // right in x and in y, the step down in x and in y, the centre of the top left pixel.
 // Throws InputError naming file and field when one of the two is missing, cannot be read or makes no sense.
 FloorPlan read_floor_plan(const std::filesystem::path& path);
+
+// A plan with the pixels of its image.
+struct DrawnFloorPlan {
+  FloorPlan plan;
+  Image image;
+};
+
+// As read_floor_plan. Throws InputError also when the image is not a whole one.
+DrawnFloorPlan read_drawn_floor_plan(const std::filesystem::path& path);
 
 // The one beside an image, where there is one.
 std::optional<std::filesystem::path> find_world_file(const std::filesystem::path& image);
