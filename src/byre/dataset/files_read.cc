@@ -1,8 +1,8 @@
 #include "byre/dataset/files_read.h"
 
 #include "byre/bag/bag.h"
-#include "byre/floor_plan.h"
 #include "byre/dataset/image_names.h"
+#include "byre/floor_plan.h"
 #include "byre/input/text_file.h"
 #include "byre/recording.h"
 

@@ -2,8 +2,8 @@
 
 #include "byre/assessment/pose_messages.h"
 #include "byre/assessment/report_json.h"
-#include "byre/floor_plan.h"
 #include "byre/dds/type_hashes.h"
+#include "byre/floor_plan.h"
 #include "byre/node/health_messages.h"
 #include "byre/node/map_messages.h"
 
