@@ -172,7 +172,7 @@ TEST_F(InterruptedSave, LeavesAMapWhenItsProcessIsKilled) {
   std::mt19937_64 random(1);
   int inside = 0;
   int while_writing = 0;
-  for (int attempt = 0; attempt < 20 * kKills && inside < kKills && !HasFailure(); ++attempt) {
+  for (int attempt = 0; attempt < 20 * kKills && (inside < kKills || while_writing == 0) && !HasFailure(); ++attempt) {
     *is_saving = false;
     const pid_t process = fork();
     if (process == 0) save_forever(new_map_, old_map_, file_, *is_saving);
@@ -185,7 +185,7 @@ TEST_F(InterruptedSave, LeavesAMapWhenItsProcessIsKilled) {
     fs::remove(unfinished_);
   }
   std::printf("%d kills inside a save, %d of them between the first byte and the rename\n", inside, while_writing);
-  EXPECT_EQ(inside, kKills);
+  EXPECT_GE(inside, kKills);
   EXPECT_GT(while_writing, 0);
   save_map(new_map_, file_);  // whatever the kills have left
   EXPECT_EQ(read_file(file_), new_bytes_);
