@@ -66,7 +66,7 @@ class ByteReader {
     if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   }
   std::span<const std::byte> take(std::size_t size);
-  std::string read_text();  // text as ByteWriter::write_text wrote it
+  std::string read_text();                          // text as ByteWriter::write_text wrote it
   std::uint64_t read_low_bytes(std::size_t count);  // precondition: 1 to 8
   std::uint32_t read_varint();                      // refuses what takes more bytes than it needs
 

@@ -10,11 +10,12 @@
 
 namespace byre {
 
-// What values of a map are rounded to in its file, far below their noise (docs/map_format.md, "Quanta"). Each has a code
-// of few bytes, and a value that was read has the code it was read from: what is read is written again byte by byte.
+// What values of a map are rounded to in its file, far below their noise (docs/map_format.md, "Quanta"). Each has a
+// code of few bytes, and a value that was read has the code it was read from: what is read is written again byte by
+// byte.
 
-// A coordinate of a pixel in an image so many pixels wide or high, in 64ths of a pixel from the image's edge on. Rounded
-// down to the middle of its quantum, so that a keypoint stays in the cell of its grid.
+// A coordinate of a pixel in an image so many pixels wide or high, in 64ths of a pixel from the image's edge on.
+// Rounded down to the middle of its quantum, so that a keypoint stays in the cell of its grid.
 std::uint32_t pixel_code(float coordinate, int size);
 float coordinate_of(std::uint32_t code);
 constexpr std::uint32_t pixel_codes(int size) {  // codes are smaller than this
