@@ -1,5 +1,7 @@
 #include "byre/map/map_quanta.h"
 
+#include "byre/map/map_values.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,22 +16,26 @@ constexpr int kSigmaCodes = 16;         // an octave
 constexpr int kCodeOfOnePixel = 128;
 constexpr float kDirectionCodes = 32767.0f;
 constexpr float kCentreCodes = 4096.0f;  // an octave pixel
+constexpr float kLargestCentre = kCentreCodes * (Patch::kSize - 1);
+constexpr long kNoCentre = 0xffff;
 
 std::array<float, 256> sigmas_of_codes() {
   std::array<float, 256> sigmas;
-  for (int code = 0; code < 256; ++code) {
+  sigmas[0] = 0.0f;
+  for (int code = 1; code < 256; ++code) {
     sigmas[static_cast<std::size_t>(code)] =
         static_cast<float>(std::exp2(static_cast<double>(code - kCodeOfOnePixel) / kSigmaCodes));
   }
   return sigmas;
 }
 
-// The number without its lowest bits, rounded to the nearest that is finite. Precondition: finite.
+// The number without its lowest bits, rounded to the nearest. What is finite remains so, and what is not does not.
 std::uint32_t rounded_float(float value, int dropped_bits) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const std::uint32_t half = 1u << (dropped_bits - 1);
   const std::uint32_t rounded = (bits + half) >> dropped_bits;
-  return std::isfinite(std::bit_cast<float>(rounded << dropped_bits)) ? rounded : bits >> dropped_bits;
+  const bool stays_finite = std::isfinite(value) && std::isfinite(std::bit_cast<float>(rounded << dropped_bits));
+  return stays_finite ? rounded : bits >> dropped_bits;
 }
 
 constexpr int kFactorBits = 15;  // of the greatest entry of a factor
@@ -84,8 +90,9 @@ int step_of_grey(int grey, int darkest, int range) {
 
 // In double, where nothing is rounded beyond an edge between two quanta.
 std::uint32_t pixel_code(float coordinate, int size) {
-  const double code = std::floor((static_cast<double>(coordinate) + 0.5) * kPixelCodes);
-  return static_cast<std::uint32_t>(std::clamp(code, 0.0, static_cast<double>(pixel_codes(size) - 1)));
+  const double from_edge = static_cast<double>(coordinate) + 0.5;
+  if (!(from_edge >= 0.0 && from_edge <= size)) return pixel_codes(size);
+  return std::min(static_cast<std::uint32_t>(from_edge * kPixelCodes), pixel_codes(size) - 1);
 }
 
 float coordinate_of(std::uint32_t code) {
@@ -94,6 +101,7 @@ float coordinate_of(std::uint32_t code) {
 
 std::uint32_t offset_code(float offset) {
   constexpr float kLargest = static_cast<float>(kLargestOffsetCode / 2);
+  if (!std::isfinite(offset)) return kLargestOffsetCode + 1;
   const long steps = std::lround(std::clamp(offset * kOffsetCodes, -kLargest, kLargest));
   return static_cast<std::uint32_t>(steps > 0 ? 2 * steps - 1 : -2 * steps);
 }
@@ -104,8 +112,9 @@ float offset_of(std::uint32_t code) {
 }
 
 std::uint8_t sigma_code(float sigma) {
+  if (!(sigma > 0.0f && std::isfinite(sigma))) return 0;
   const long code = std::lround(std::log2(static_cast<double>(sigma)) * kSigmaCodes) + kCodeOfOnePixel;
-  return static_cast<std::uint8_t>(std::clamp(code, 0L, 255L));
+  return static_cast<std::uint8_t>(std::clamp(code, 1L, 255L));
 }
 
 float sigma_of(std::uint8_t code) {
@@ -136,6 +145,7 @@ double double_of_48(std::uint64_t code) {
 
 // What is far from unit length, as far as that goes, is given it. What was read is not, and keeps its code.
 DirectionCode direction_code(const Eigen::Vector3f& direction) {
+  if (!is_unit(direction)) return {};
   constexpr float kTolerance = 5e-4f;
   const float norm = direction.norm();
   const float scale = std::abs(norm - 1.0f) < kTolerance ? kDirectionCodes : kDirectionCodes / norm;
@@ -154,6 +164,7 @@ Eigen::Vector3f direction_of(const DirectionCode& code) {
 // The entries are whole numbers of 15 bits, whose products and their sums are exact in double, and so are the roots and
 // quotients that lead back to them.
 CovarianceCode covariance_code(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite()) return {{-1}};
   const std::array<double, 6> factor = factor_of(covariance);
   double greatest = 0.0;
   for (const double entry : factor) greatest = std::max(greatest, std::abs(entry));
@@ -187,8 +198,10 @@ PatchCode patch_code(const Patch& patch) {
     code.steps[i] = static_cast<std::uint8_t>(low | high << 4);
   }
   for (int axis = 0; axis < 2; ++axis) {
+    const float place = patch.centre[axis] * kCentreCodes;
+    const bool is_inside = place >= 0.0f && place <= kLargestCentre;
     code.centre[static_cast<std::size_t>(axis)] =
-        static_cast<std::uint16_t>(std::lround(patch.centre[axis] * kCentreCodes));
+        static_cast<std::uint16_t>(is_inside ? std::lround(place) : kNoCentre);
   }
   return code;
 }

@@ -18,16 +18,16 @@ namespace byre {
 // Rounded down to the middle of its quantum, so that a keypoint stays in the cell of its grid.
 std::uint32_t pixel_code(float coordinate, int size);
 float coordinate_of(std::uint32_t code);
-constexpr std::uint32_t pixel_codes(int size) {  // codes are smaller than this
+constexpr std::uint32_t pixel_codes(int size) {  // codes are smaller than this, which stands for none
   return static_cast<std::uint32_t>(size) * 64;
 }
 
 // How far a measurement lies from its keypoint, along an axis: 128ths of a pixel, odd numbers for what lies above.
 std::uint32_t offset_code(float offset);
 float offset_of(std::uint32_t code);
-inline constexpr std::uint32_t kLargestOffsetCode = 1u << 22;
+inline constexpr std::uint32_t kLargestOffsetCode = 1u << 22;  // greater ones stand for none
 
-// A standard deviation in pixels, 2^-8 to 2^8, in steps of 4.4 %.
+// A standard deviation in pixels, 2^-8 to 2^8, in steps of 4.4 %; zero for what is none.
 std::uint8_t sigma_code(float sigma);
 float sigma_of(std::uint8_t code);
 
@@ -39,7 +39,7 @@ float float_of_16(std::uint16_t code);
 std::uint64_t double48_code(double value);
 double double_of_48(std::uint64_t code);
 
-// The coordinates of a direction of unit length, 32767ths.
+// The coordinates of a direction of unit length, 32767ths; zeros for what is none.
 using DirectionCode = std::array<std::int16_t, 3>;
 DirectionCode direction_code(const Eigen::Vector3f& direction);
 Eigen::Vector3f direction_of(const DirectionCode& code);

@@ -6,6 +6,7 @@
 #include "byre/map/map_values.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace byre {
 namespace {
@@ -23,7 +24,8 @@ void write_point(const MapPoint& point, std::uint32_t reference, ByteWriter& wri
   writer.write(covariance.exponent);
   writer.write_all<std::int16_t>(direction_code(point.mean_viewing_direction));
   writer.write_all<std::uint64_t>(point.descriptor);
-  writer.write(float16_code(point.min_distance));
+  const bool is_range = point.min_distance <= point.max_distance;  // rounded, it might become one
+  writer.write(float16_code(is_range ? point.min_distance : std::numeric_limits<float>::quiet_NaN()));
   writer.write(float16_code(point.max_distance));
   writer.write_varint(reference);
 }

@@ -19,6 +19,7 @@ constexpr std::uint8_t kOctaveBits = 7;
 constexpr std::uint8_t kHasDisparity = 8;
 constexpr std::uint8_t kHasPatch = 16;
 constexpr std::uint8_t kSeesPoint = 32;
+constexpr std::uint8_t kNoOctave = 64;  // of a keypoint that no sound map has
 constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSeesPoint;
 
 constexpr std::size_t kLeastKeypointBytes = 1 + 2;
@@ -29,26 +30,31 @@ std::size_t bytes_for(std::uint64_t count) {
   return count <= 1 ? 1 : (static_cast<std::size_t>(std::bit_width(count - 1)) + 7) / 8;
 }
 
+std::size_t bytes_for_pixels(int size) {
+  return bytes_for(std::uint64_t{pixel_codes(size)} + 1);
+}
+
 std::uint32_t disparity_code(const Keypoint& keypoint) {
   return keypoint.has_disparity() ? float24_code(keypoint.disparity) : 0;
 }
 
 std::uint8_t bits_of(const Keypoint& keypoint, bool has_patch, bool sees_point) {
-  return static_cast<std::uint8_t>(keypoint.octave | (disparity_code(keypoint) != 0 ? kHasDisparity : 0) |
-                                   (has_patch ? kHasPatch : 0) | (sees_point ? kSeesPoint : 0));
+  return static_cast<std::uint8_t>((keypoint.octave < kOctaves ? keypoint.octave : kNoOctave) |
+                                   (disparity_code(keypoint) != 0 ? kHasDisparity : 0) | (has_patch ? kHasPatch : 0) |
+                                   (sees_point ? kSeesPoint : 0));
 }
 
 void write_keypoint(const Keypoint& keypoint, std::uint8_t bits, const Rig& rig, ByteWriter& writer) {
   writer.write(bits);
-  writer.write_low_bytes(pixel_code(keypoint.pixel.x(), rig.width), bytes_for(pixel_codes(rig.width)));
-  writer.write_low_bytes(pixel_code(keypoint.pixel.y(), rig.height), bytes_for(pixel_codes(rig.height)));
+  writer.write_low_bytes(pixel_code(keypoint.pixel.x(), rig.width), bytes_for_pixels(rig.width));
+  writer.write_low_bytes(pixel_code(keypoint.pixel.y(), rig.height), bytes_for_pixels(rig.height));
   if ((bits & kHasDisparity) == 0) return;
   writer.write_low_bytes(disparity_code(keypoint), kDisparityBytes);
   writer.write(sigma_code(keypoint.disparity_sigma));
 }
 
 float read_coordinate(ByteReader& reader, int size) {
-  const auto code = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for(pixel_codes(size))));
+  const auto code = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for_pixels(size)));
   if (code >= pixel_codes(size)) reader.fail("has a keypoint outside its image");
   return coordinate_of(code);
 }
@@ -118,8 +124,10 @@ Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32
   observers.add(reader, point, keyframe);
   const float u = read_offset(reader);
   const float v = read_offset(reader);
-  return {PointId{Origin::offline, point}, keypoint.pixel + Eigen::Vector2f(u, v),
-          sigma_of(reader.read<std::uint8_t>())};
+  const float sigma = sigma_of(reader.read<std::uint8_t>());
+  const Sighting sighting{PointId{Origin::offline, point}, keypoint.pixel + Eigen::Vector2f(u, v), sigma};
+  require_no_fault(reader, fault_in(sighting), "keyframe", keyframe);
+  return sighting;
 }
 
 std::vector<Sighting> read_sightings(ByteReader& reader, const ReadKeypoints& of, std::uint32_t keyframe,
