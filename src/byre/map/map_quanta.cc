@@ -38,6 +38,15 @@ std::uint32_t rounded_float(float value, int dropped_bits) {
   return stays_finite ? rounded : bits >> dropped_bits;
 }
 
+DirectionCode rounded_direction(const Eigen::Vector3f& direction) {
+  DirectionCode code;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float rounded = std::clamp(std::round(direction[axis] * kDirectionCodes), -kDirectionCodes, kDirectionCodes);
+    code[static_cast<std::size_t>(axis)] = static_cast<std::int16_t>(rounded);
+  }
+  return code;
+}
+
 constexpr int kFactorBits = 15;  // of the greatest entry of a factor
 
 // Cholesky's factor. A direction without variance, or with a negative one, has none in the factor.
@@ -145,16 +154,11 @@ double double_of_48(std::uint64_t code) {
 
 // What is far from unit length, as far as that goes, is given it. What was read is not, and keeps its code.
 DirectionCode direction_code(const Eigen::Vector3f& direction) {
-  if (!is_unit(direction)) return {};
   constexpr float kTolerance = 5e-4f;
-  const float norm = direction.norm();
-  const float scale = std::abs(norm - 1.0f) < kTolerance ? kDirectionCodes : kDirectionCodes / norm;
-  DirectionCode code;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float rounded = std::clamp(std::round(direction[axis] * scale), -kDirectionCodes, kDirectionCodes);
-    code[static_cast<std::size_t>(axis)] = static_cast<std::int16_t>(rounded);
-  }
-  return code;
+  if (!is_unit(direction)) return {};
+  const DirectionCode as_it_is = rounded_direction(direction);
+  const bool is_near_enough = std::abs(direction_of(as_it_is).norm() - 1.0f) < kTolerance;
+  return is_near_enough ? as_it_is : rounded_direction(direction.normalized());
 }
 
 Eigen::Vector3f direction_of(const DirectionCode& code) {
