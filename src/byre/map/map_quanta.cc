@@ -47,7 +47,7 @@ DirectionCode rounded_direction(const Eigen::Vector3f& direction) {
   return code;
 }
 
-constexpr int kFactorBits = 15;  // of the greatest entry of a factor
+constexpr int kFactorBits = 15;  // the greatest entry of a factor has so many
 
 // Cholesky's factor. A direction without variance, or with a negative one, has none in the factor.
 std::array<double, 6> factor_of(const Eigen::Matrix3d& c) {
@@ -126,7 +126,7 @@ std::uint8_t sigma_code(float sigma) {
   return static_cast<std::uint8_t>(std::clamp(code, 1L, 255L));
 }
 
-float sigma_of(std::uint8_t code) {
+float sigma_of_code(std::uint8_t code) {
   static const std::array<float, 256> kSigmas = sigmas_of_codes();
   return kSigmas[code];
 }

@@ -29,7 +29,7 @@ inline constexpr std::uint32_t kLargestOffsetCode = 1u << 22;  // greater ones s
 
 // A standard deviation in pixels, 2^-8 to 2^8, in steps of 4.4 %; zero for what is none.
 std::uint8_t sigma_code(float sigma);
-float sigma_of(std::uint8_t code);
+float sigma_of_code(std::uint8_t code);
 
 // Numbers with fewer digits, in the highest bytes of theirs: 16 binary digits, 8 of them, and 37.
 std::uint32_t float24_code(float value);

@@ -57,11 +57,11 @@ TEST(MapQuanta, KeepOffsetsToATwoHundredAndFiftySixth) {
 
 TEST(MapQuanta, GiveEverySigmaItsCodeAgain) {
   for (int code = 1; code < 256; ++code) {
-    EXPECT_EQ(sigma_code(sigma_of(static_cast<std::uint8_t>(code))), code);
+    EXPECT_EQ(sigma_code(sigma_of_code(static_cast<std::uint8_t>(code))), code);
   }
-  EXPECT_NEAR(sigma_of(sigma_code(0.15f)), 0.15, 0.15 * 0.022);
-  EXPECT_NEAR(sigma_of(sigma_code(1e-30f)), 1.0 / 256.0, 2e-4);
-  EXPECT_GT(sigma_of(sigma_code(1e30f)), 200.0f);
+  EXPECT_NEAR(sigma_of_code(sigma_code(0.15f)), 0.15, 0.15 * 0.022);
+  EXPECT_NEAR(sigma_of_code(sigma_code(1e-30f)), 1.0 / 256.0, 2e-4);
+  EXPECT_GT(sigma_of_code(sigma_code(1e30f)), 200.0f);
 }
 
 TEST(MapQuanta, KeepNumbersWithFewerDigits) {
@@ -151,7 +151,7 @@ TEST(MapQuanta, HaveCodesOfTheirOwnForWhatNoMapHolds) {
     EXPECT_EQ(pixel_code(outside, 640), pixel_codes(640));
   EXPECT_GT(offset_code(kNan), kLargestOffsetCode);
   for (const float sigma : {kNan, 0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
-    EXPECT_EQ(sigma_of(sigma_code(sigma)), 0.0f);
+    EXPECT_EQ(sigma_of_code(sigma_code(sigma)), 0.0f);
   }
   EXPECT_FALSE(std::isfinite(float_of_24(float24_code(kNan))));
   EXPECT_FALSE(std::isfinite(float_of_16(float16_code(kNan))));

@@ -14,12 +14,12 @@
 namespace byre {
 namespace {
 
-// Of a keypoint's first byte; the lowest bits are its octave.
+// What a keypoint's first byte tells; its lowest bits are the octave.
 constexpr std::uint8_t kOctaveBits = 7;
 constexpr std::uint8_t kHasDisparity = 8;
 constexpr std::uint8_t kHasPatch = 16;
 constexpr std::uint8_t kSeesPoint = 32;
-constexpr std::uint8_t kNoOctave = 64;  // of a keypoint that no sound map has
+constexpr std::uint8_t kNoOctave = 64;  // no sound map has a keypoint with this bit
 constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSeesPoint;
 
 constexpr std::size_t kLeastKeypointBytes = 1 + 2;
@@ -61,7 +61,7 @@ float read_coordinate(ByteReader& reader, int size) {
 
 void read_disparity(ByteReader& reader, Keypoint& keypoint) {
   keypoint.disparity = float_of_24(static_cast<std::uint32_t>(reader.read_low_bytes(kDisparityBytes)));
-  keypoint.disparity_sigma = sigma_of(reader.read<std::uint8_t>());
+  keypoint.disparity_sigma = sigma_of_code(reader.read<std::uint8_t>());
   if (!(keypoint.disparity > 0.0f)) reader.fail("has a disparity that is none");
 }
 
@@ -124,7 +124,7 @@ Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32
   observers.add(reader, point, keyframe);
   const float u = read_offset(reader);
   const float v = read_offset(reader);
-  const float sigma = sigma_of(reader.read<std::uint8_t>());
+  const float sigma = sigma_of_code(reader.read<std::uint8_t>());
   const Sighting sighting{PointId{Origin::offline, point}, keypoint.pixel + Eigen::Vector2f(u, v), sigma};
   require_no_fault(reader, fault_in(sighting), "keyframe", keyframe);
   return sighting;
@@ -173,14 +173,16 @@ Patch read_patch(ByteReader& reader, std::size_t keyframe) {
   return *patch;
 }
 
-struct KeptPatches {
+struct RoundedPatches {
   std::vector<Patch> patches;
   std::vector<int> patch_of_keypoint;  // -1: none
 };
 
-KeptPatches read_kept_patches(ByteReader& reader, const std::vector<std::uint8_t>& bits, std::size_t keyframe) {
-  KeptPatches kept;
+RoundedPatches read_rounded_patches(ByteReader& reader, const std::vector<std::uint8_t>& bits, std::size_t keyframe) {
+  RoundedPatches kept;
   kept.patch_of_keypoint.assign(bits.size(), -1);
+  kept.patches.reserve(
+      static_cast<std::size_t>(std::ranges::count_if(bits, [](std::uint8_t each) { return (each & kHasPatch) != 0; })));
   for (std::size_t i = 0; i < bits.size(); ++i) {
     if ((bits[i] & kHasPatch) == 0) continue;
     kept.patch_of_keypoint[i] = static_cast<int>(kept.patches.size());
@@ -199,7 +201,7 @@ class ViewReader {
     const ReadKeypoints read = read_keypoints(sections_.features, rig, number);
     keyframe.sightings = read_sightings(sections_.observations, read, number, observers_);
     std::vector<Descriptor> descriptors = read_descriptors(sections_.descriptors, keyframe.sightings, points_);
-    KeptPatches kept = read_kept_patches(sections_.patches, read.bits, number);
+    RoundedPatches kept = read_rounded_patches(sections_.patches, read.bits, number);
     auto features = std::make_shared<const Features>(rig.width, rig.height, read.keypoints, std::move(descriptors),
                                                      std::move(kept.patches), std::move(kept.patch_of_keypoint));
     if (!std::ranges::equal(features->keypoints(), read.keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
