@@ -2,9 +2,18 @@
 
 #include "byre/input_error.h"
 
+#include <cassert>
+#include <limits>
+
 #include <xxhash.h>
 
 namespace byre {
+namespace {
+
+constexpr int kVarintBits = 7;
+constexpr std::uint8_t kVarintContinues = 1u << kVarintBits;
+
+}  // namespace
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
@@ -22,6 +31,18 @@ void ByteWriter::write_text(std::string_view text) {
   write_all(std::span(text));
 }
 
+void ByteWriter::write_low_bytes(std::uint64_t value, std::size_t count) {
+  assert(count >= 1 && count <= sizeof(value) && (count == sizeof(value) || value >> (8 * count) == 0));
+  write_bytes(std::as_bytes(std::span(&value, 1)).first(count));
+}
+
+void ByteWriter::write_varint(std::uint32_t value) {
+  for (; value >= kVarintContinues; value >>= kVarintBits) {
+    write(static_cast<std::uint8_t>(value | kVarintContinues));
+  }
+  write(static_cast<std::uint8_t>(value));
+}
+
 std::span<const std::byte> ByteReader::take(std::size_t size) {
   if (size > remaining()) {
     fail("ends too early: " + std::to_string(size) + " more bytes are needed, " + std::to_string(remaining()) +
@@ -35,6 +56,26 @@ std::string ByteReader::read_text() {
   std::string text(read_count(1), '\0');
   read_all(std::span(text));
   return text;
+}
+
+std::uint64_t ByteReader::read_low_bytes(std::size_t count) {
+  assert(count >= 1 && count <= sizeof(std::uint64_t));
+  std::uint64_t value = 0;
+  std::memcpy(&value, take(count).data(), count);
+  return value;
+}
+
+std::uint32_t ByteReader::read_varint() {
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 32; shift += kVarintBits) {
+    const auto byte = read<std::uint8_t>();
+    value |= static_cast<std::uint64_t>(byte & (kVarintContinues - 1)) << shift;
+    if ((byte & kVarintContinues) != 0) continue;
+    const bool is_shortest = byte != 0 || shift == 0;
+    if (!is_shortest || value > std::numeric_limits<std::uint32_t>::max()) break;
+    return static_cast<std::uint32_t>(value);
+  }
+  fail("has a number that is not written as numbers are");
 }
 
 std::uint32_t ByteReader::read_count(std::size_t bytes_each) {

@@ -34,6 +34,10 @@ class ByteWriter {
   }
   void write_bytes(std::span<const std::byte> bytes);
   void write_text(std::string_view text);  // length of the text (u32), then its bytes
+  // The lowest bytes of a number. Precondition: 1 to 8 bytes, and nothing in the others.
+  void write_low_bytes(std::uint64_t value, std::size_t count);
+  // Seven bits a byte, the lowest first; all bytes but the last have their highest bit set.
+  void write_varint(std::uint32_t value);
 
   std::size_t size() const { return bytes_.size(); }
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -62,7 +66,9 @@ class ByteReader {
     if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   }
   std::span<const std::byte> take(std::size_t size);
-  std::string read_text();  // text as ByteWriter::write_text wrote it
+  std::string read_text();                          // text as ByteWriter::write_text wrote it
+  std::uint64_t read_low_bytes(std::size_t count);  // precondition: 1 to 8
+  std::uint32_t read_varint();                      // refuses what takes more bytes than it needs
 
   // A number (u32) of things that take at least bytes_each each: refuses more than the remaining bytes can hold, so
   // that nothing is reserved that the file does not justify. Precondition: bytes_each > 0.

@@ -36,6 +36,30 @@ TEST(ByteStream, LiesInAFileWithTheLowestByteFirst) {
   EXPECT_THAT(writer.bytes(), testing::ElementsAre(std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}));
 }
 
+TEST(ByteStream, ReadsBackNumbersOfFewBytes) {
+  for (const std::uint32_t number : {0u, 1u, 127u, 128u, 16383u, 16384u, 0xffffffffu}) {
+    ByteWriter writer;
+    writer.write_varint(number);
+    EXPECT_EQ(writer.size(), number < 128 ? 1u : number < 16384 ? 2u : number < 1u << 21 ? 3u : 5u);
+    EXPECT_EQ(reader_of(writer).read_varint(), number);
+  }
+  ByteWriter writer;
+  writer.write_low_bytes(0x010203, 3);
+  EXPECT_THAT(writer.bytes(), testing::ElementsAre(std::byte{3}, std::byte{2}, std::byte{1}));
+  EXPECT_EQ(reader_of(writer).read_low_bytes(3), 0x010203u);
+}
+
+TEST(ByteStream, RefusesANumberThatTakesMoreBytesThanItNeeds) {
+  const auto refuses = [](std::initializer_list<std::uint8_t> bytes) {
+    ByteWriter writer;
+    writer.write_all(std::span<const std::uint8_t>(bytes));
+    EXPECT_THROW(reader_of(writer).read_varint(), InputError);
+  };
+  refuses({0x80, 0x00});
+  refuses({0xff, 0xff, 0xff, 0xff, 0x1f});
+  refuses({0x80, 0x80, 0x80, 0x80, 0x80, 0x01});
+}
+
 TEST(ByteStream, NamesThePlaceWhereItEndsTooEarly) {
   ByteWriter writer;
   writer.write(std::uint32_t{1});

@@ -14,11 +14,9 @@ namespace {
 
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-// Written is the oldest that holds what a map has, so that older programs read as many as can be.
-constexpr std::uint32_t kFormat = 4;                 // the newest that is read, and written for rolling shutters
-constexpr std::uint32_t kFormatWithCalibration = 3;  // written for refined calibrations
-constexpr std::uint32_t kFormatWithPlan = 2;         // written for a map with a plan
-constexpr std::uint32_t kFormatWithoutPlan = 1;      // written for all others
+constexpr std::uint32_t kFormat = 5;              // the newest that is read, and the one that is written
+constexpr std::uint32_t kFirstFormat = 1;         // the oldest that is read
+constexpr std::uint32_t kFirstRoundedFormat = 5;  // from here on, what keyframes see and points are rounded to quanta
 
 enum Section : std::size_t {
   kSummary,
@@ -34,11 +32,12 @@ enum Section : std::size_t {
   kPlan,                 // from format 2 on; later formats have it empty without a plan
   kRefinedCalibrations,  // from format 3 on; later formats have it empty where nothing was refined
   kReadoutTimes,         // from format 4 on
+  kDescriptors,          // from format 5 on
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
     "summary", "notes",        "provenance", "rigs", "keyframes",    "features", "patches",
-    "points",  "observations", "words",      "plan", "calibrations", "shutters"};
+    "points",  "observations", "words",      "plan", "calibrations", "shutters", "descriptors"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
@@ -46,15 +45,9 @@ constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
 // Each format has a section more than the one before.
 constexpr std::size_t section_count(std::uint32_t format) {
-  return kPlan + format - kFormatWithoutPlan;
+  return kPlan + format - kFirstFormat;
 }
-static_assert(section_count(kFormatWithPlan) == kPlan + 1);
-static_assert(section_count(kFormatWithCalibration) == kRefinedCalibrations + 1);
 static_assert(section_count(kFormat) == kSectionCount);
-
-constexpr std::uint32_t format_of(std::size_t sections) {
-  return static_cast<std::uint32_t>(sections - kPlan) + kFormatWithoutPlan;
-}
 
 // With its own checksum.
 constexpr std::size_t header_bytes(std::size_t sections) {
@@ -71,16 +64,6 @@ bool is_refined(const StoredMap& stored) {
                              [](const SourceRecording& recording) { return recording.refined.has_value(); });
 }
 
-// The oldest format that holds what the map has.
-std::uint32_t format_for(const StoredMap& stored) {
-  const bool is_rolling = std::ranges::any_of(stored.recordings, [](const SourceRecording& recording) {
-    return recording.calibration.readout_time != 0.0 || recording.present_calibration().readout_time != 0.0;
-  });
-  if (is_rolling) return kFormat;
-  if (is_refined(stored)) return kFormatWithCalibration;
-  return stored.plan ? kFormatWithPlan : kFormatWithoutPlan;
-}
-
 void write_section(std::size_t section, const StoredMap& stored, const Keyframes& all, ByteWriter& writer) {
   switch (section) {
     case kSummary:
@@ -93,16 +76,10 @@ void write_section(std::size_t section, const StoredMap& stored, const Keyframes
       return write_rigs(stored.map.rigs(), writer);
     case kKeyframes:
       return write_keyframes(all, writer);
-    case kFeatures:
-      return write_features(all, writer);
-    case kPatches:
-      return write_patches(all, writer);
     case kPoints:
-      return write_points(stored.map, writer);
-    case kObservations:
-      return write_observations(all, writer);
+      return write_rounded_points(stored.map, writer);
     case kWords:
-      return write_words(all, stored.vocabulary_checksum, writer);
+      return write_narrow_words(all, stored.vocabulary_checksum, writer);
     case kPlan:
       if (stored.plan) write_plan(*stored.plan, writer);
       return;
@@ -116,14 +93,36 @@ void write_section(std::size_t section, const StoredMap& stored, const Keyframes
   }
 }
 
-// Behind what is in the file already. One section after the other, so that no more than one is held twice.
-SectionEnds write_sections(const StoredMap& stored, std::size_t count, std::vector<std::byte>& file) {
+// What keyframes see is written to several sections at once.
+ByteWriter* view_section(std::size_t section, ViewWriters& views) {
+  switch (section) {
+    case kFeatures:
+      return &views.features;
+    case kPatches:
+      return &views.patches;
+    case kObservations:
+      return &views.observations;
+    case kDescriptors:
+      return &views.descriptors;
+    default:
+      return nullptr;
+  }
+}
+
+// Behind what is in the file already.
+SectionEnds write_sections(const StoredMap& stored, std::vector<std::byte>& file) {
   const Keyframes all = keyframes_of(stored.map);
+  ViewWriters views;
+  write_views(stored.map, all, views);
   const std::size_t begin = file.size();
   SectionEnds ends;
-  for (std::size_t section = 0; section < count; ++section) {
+  for (std::size_t section = 0; section < kSectionCount; ++section) {
     ByteWriter writer;
-    write_section(section, stored, all, writer);
+    if (ByteWriter* const view = view_section(section, views)) {
+      std::swap(writer, *view);
+    } else {
+      write_section(section, stored, all, writer);
+    }
     file.insert(file.end(), writer.bytes().begin(), writer.bytes().end());
     ends.push_back(file.size() - begin);
   }
@@ -139,7 +138,7 @@ void write_name(std::string_view name, ByteWriter& writer) {
 void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
   const std::size_t header_size = header_bytes(ends.size());
-  writer.write(format_of(ends.size()));
+  writer.write(kFormat);
   writer.write(static_cast<std::uint32_t>(ends.size()));
   writer.write(std::uint64_t{header_size + content.size()});
   std::size_t begin = 0;
@@ -221,6 +220,7 @@ class SectionOpener {
  public:
   SectionOpener(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name), table_(read_table(bytes, name)) {}
 
+  bool is_rounded() const { return table_.size() >= section_count(kFirstRoundedFormat); }
   bool has(Section section) const { return section < table_.size() && !is_left_empty(section); }
 
   ByteReader operator()(Section section) const {
@@ -243,12 +243,24 @@ class SectionOpener {
   SectionTable table_;
 };
 
+// Points, and what keyframes see of them. Precondition: the keyframes are there without it.
+void read_exact_parts(const SectionOpener& open, MapParts& parts) {
+  read_features(open(kFeatures), open(kPatches), parts.rigs, parts.keyframes);
+  parts.points = read_points(open(kPoints));
+  read_observations(open(kObservations), parts.points, parts.keyframes);
+}
+void read_rounded_parts(const SectionOpener& open, MapParts& parts) {
+  RoundedPoints points = read_rounded_points(open(kPoints));
+  read_views({open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors)}, points, parts.rigs,
+             parts.keyframes);
+  parts.points = std::move(points.points);
+}
+
 }  // namespace
 
 std::vector<std::byte> write_map(const StoredMap& stored) {
-  const std::size_t sections = section_count(format_for(stored));
-  std::vector<std::byte> file(header_bytes(sections));
-  const SectionEnds ends = write_sections(stored, sections, file);
+  std::vector<std::byte> file(header_bytes(kSectionCount));
+  const SectionEnds ends = write_sections(stored, file);
   ByteWriter header;
   write_header(Bytes(file).subspan(file.size() - ends.back()), ends, header);
   std::ranges::copy(header.bytes(), file.begin());
@@ -267,10 +279,13 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   MapParts parts;
   parts.rigs = read_rigs(open(kRigs));
   parts.keyframes = read_keyframes(open(kKeyframes), parts.rigs.size(), stored.recordings.size());
-  read_features(open(kFeatures), open(kPatches), parts.rigs, parts.keyframes);
-  parts.points = read_points(open(kPoints));
-  read_observations(open(kObservations), parts.points, parts.keyframes);
-  stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
+  if (open.is_rounded()) {
+    read_rounded_parts(open, parts);
+    stored.vocabulary_checksum = read_narrow_words(open(kWords), parts.keyframes);
+  } else {
+    read_exact_parts(open, parts);
+    stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
+  }
   stored.map = Map(Origin::offline, std::move(parts));
   if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
   if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);

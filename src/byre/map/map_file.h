@@ -60,8 +60,8 @@ struct StoredMap {
 };
 
 // A copy of a session's map for keeping: ids become offline and lose their gaps, removed keyframes and sightings of
-// another map's points are forgotten, and of the patches those stay that define a point in the image; all features
-// stay. Precondition: a map without faults, whose features were made for an image of their rig's size.
+// another map's points are forgotten, and so are features that see no point, and patches that define none.
+// Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
 
 // A copy with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
@@ -78,7 +78,8 @@ struct SectionSize {
   std::size_t bytes = 0;
 };
 
-// The layout is described in docs/map_format.md. Equal maps give equal bytes. Precondition: ids without gaps.
+// The layout is described in docs/map_format.md. Equal maps give equal bytes. Values are rounded, far below their
+// noise; a map that was read from its bytes is written as them again. Precondition: ids without gaps.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
 // All or nothing: throws InputError naming section and byte for any damage, any broken invariant, and a format that is

@@ -22,6 +22,16 @@ MapBytes scene_bytes() {
   return write_map(StoredMapScene().stored());
 }
 
+float largest_of(const Eigen::Vector2f& difference) {
+  return difference.cwiseAbs().maxCoeff();
+}
+
+int largest_difference(const Patch& a, const Patch& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
+  return largest;
+}
+
 TEST(MapFile, GivesBackWhatTheSceneHolds) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
@@ -40,7 +50,7 @@ TEST(MapFile, GivesBackWhatTheSceneHolds) {
   EXPECT_EQ(read.recordings.at(1).calibration.left.distortion[1], -0.002);
 }
 
-TEST(MapFile, GivesBackEveryKeyframeExactly) {
+TEST(MapFile, GivesBackEveryKeyframeWithItsSightingsRounded) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   ASSERT_EQ(read.map.keyframe_ids(), scene.stored().map.keyframe_ids());
@@ -58,13 +68,13 @@ TEST(MapFile, GivesBackEveryKeyframeExactly) {
     ASSERT_EQ(keyframe.sightings.size(), expected.sightings.size());
     for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
       EXPECT_EQ(keyframe.sightings[i].point, expected.sightings[i].point);
-      EXPECT_EQ(keyframe.sightings[i].pixel, expected.sightings[i].pixel);
-      EXPECT_EQ(keyframe.sightings[i].pixel_sigma, expected.sightings[i].pixel_sigma);
+      EXPECT_LE(largest_of(keyframe.sightings[i].pixel - expected.sightings[i].pixel), 1.0f / 256.0f + 1e-5f);
+      EXPECT_NEAR(keyframe.sightings[i].pixel_sigma, expected.sightings[i].pixel_sigma, 0.022f);
     }
   }
 }
 
-TEST(MapFile, GivesBackEveryFeatureExactly) {
+TEST(MapFile, GivesBackEveryFeatureRoundedButItsDescriptor) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   for (const KeyframeId id : read.map.keyframe_ids()) {
@@ -72,36 +82,44 @@ TEST(MapFile, GivesBackEveryFeatureExactly) {
     const Features& features = *read.map.find_keyframe(id)->frame.features;
     EXPECT_EQ(features.descriptors(), expected.descriptors());
     for (int i = 0; i < features.size(); ++i) {
-      EXPECT_EQ(features.keypoint(i).pixel, expected.keypoint(i).pixel);
-      EXPECT_EQ(features.keypoint(i).disparity, expected.keypoint(i).disparity);
-      EXPECT_EQ(features.keypoint(i).disparity_sigma, expected.keypoint(i).disparity_sigma);
-      EXPECT_EQ(features.keypoint(i).angle, expected.keypoint(i).angle);
-      EXPECT_EQ(features.keypoint(i).response, expected.keypoint(i).response);
-      EXPECT_EQ(features.keypoint(i).octave, expected.keypoint(i).octave);
+      const Keypoint& keypoint = features.keypoint(i);
+      EXPECT_LE(largest_of(keypoint.pixel - expected.keypoint(i).pixel), 1.0f / 128.0f + 1e-4f);
+      EXPECT_NEAR(keypoint.disparity, expected.keypoint(i).disparity, 1e-3f);
+      EXPECT_NEAR(keypoint.disparity_sigma, expected.keypoint(i).disparity_sigma, 0.01f);
+      EXPECT_EQ(keypoint.octave, expected.keypoint(i).octave);
       ASSERT_EQ(features.find_patch(i) == nullptr, expected.find_patch(i) == nullptr);
       if (!features.find_patch(i)) continue;
-      EXPECT_EQ(features.find_patch(i)->pixels, expected.find_patch(i)->pixels);
+      EXPECT_LE(largest_difference(*features.find_patch(i), *expected.find_patch(i)), 255 / 30 + 1);
       EXPECT_EQ(features.find_patch(i)->centre, expected.find_patch(i)->centre);
     }
   }
 }
 
-TEST(MapFile, GivesBackEveryPointExactly) {
+TEST(MapFile, GivesBackEveryPointRounded) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   ASSERT_EQ(read.map.point_ids(), scene.stored().map.point_ids());
   for (const PointId id : read.map.point_ids()) {
     const MapPoint& expected = *scene.stored().map.find_point(id);
     const MapPoint& point = *read.map.find_point(id);
-    EXPECT_EQ(point.position_in_world, expected.position_in_world);
-    EXPECT_EQ(point.covariance, expected.covariance);
-    EXPECT_EQ(point.mean_viewing_direction, expected.mean_viewing_direction);
+    EXPECT_LT((point.position_in_world - expected.position_in_world).norm(), 1e-9);
+    EXPECT_LT((point.covariance - expected.covariance).norm(), 1e-4 * expected.covariance.norm());
+    EXPECT_LT((point.mean_viewing_direction - expected.mean_viewing_direction).norm(), 1e-4f);
     EXPECT_EQ(point.descriptor, expected.descriptor);
-    EXPECT_EQ(point.min_distance, expected.min_distance);
-    EXPECT_EQ(point.max_distance, expected.max_distance);
+    EXPECT_NEAR(point.min_distance, expected.min_distance, expected.min_distance / 256.0f);
+    EXPECT_NEAR(point.max_distance, expected.max_distance, expected.max_distance / 256.0f);
     EXPECT_EQ(point.reference, expected.reference);
     EXPECT_EQ(read.map.observations(id), scene.stored().map.observations(id));
   }
+}
+
+TEST(MapFile, TakesAFewBytesForWhatIsSeenOfAPoint) {
+  const StoredMapScene scene(12, 400, 1);  // each point is seen by three keyframes
+  const MapBytes bytes = write_map(scene.stored());
+  const auto observations = static_cast<std::size_t>(12 * 399);
+  EXPECT_LE(section_of(bytes, "observations").size, 9 * observations);
+  EXPECT_LE(section_of(bytes, "points").size, 78 * observations / 3 + 4);
+  EXPECT_LE(section_of(bytes, "patches").size, 134u * 12 * 200);
 }
 
 TEST(MapFile, IsTheSameAfterASecondSave) {
@@ -126,9 +144,9 @@ TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
   EXPECT_EQ(write_map(read), bytes);
 }
 
-TEST(MapFile, IsOfTheFirstFormatWithoutAPlanSoThatOlderProgramsReadIt) {
-  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 1u);
-  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 2u);
+TEST(MapFile, IsOfTheNewestFormatWithAPlanAndWithout) {
+  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 5u);
+  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 5u);
   EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
 }
 
@@ -150,7 +168,6 @@ TEST(MapFile, KeepsRefinedCalibrationsWithAndWithoutAPlan) {
     const StoredMapScene scene;
     const StoredMap stored = with_refined_calibration(has_plan ? scene.stored_with_plan() : scene.stored());
     const MapBytes bytes = write_map(stored);
-    EXPECT_EQ(value_at<std::uint32_t>(bytes, kFormatAt), 3u);
     const StoredMap read = read_map(bytes, "file");
     EXPECT_EQ(read.plan.has_value(), has_plan);
     ASSERT_TRUE(read.recordings.front().refined);
@@ -172,13 +189,19 @@ TEST(MapFile, KeepsTheReadoutTimesOfRollingShutters) {
       stored.recordings.front().refined->calibration.readout_time = 0.021;
     }
     const MapBytes bytes = write_map(stored);
-    EXPECT_EQ(value_at<std::uint32_t>(bytes, kFormatAt), 4u);
     const SourceRecording read = read_map(bytes, "file").recordings.front();
     EXPECT_EQ(read.calibration.readout_time, 0.015);
     EXPECT_EQ(read.refined.has_value(), is_refined);
     EXPECT_EQ(read.present_calibration().readout_time, is_refined ? 0.021 : 0.015);
     EXPECT_EQ(write_map(read_map(bytes, "file")), bytes);
   }
+}
+
+TEST(MapFile, RefusesAReadoutTimeThatIsToldTwice) {
+  MapBytes bytes = scene_bytes();
+  put_at(bytes, section_of(bytes, "shutters").offset + 8, 0.01);
+  refresh_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has another readout time than the calibration that was given"));
 }
 
 TEST(MapFile, RefusesAReadoutTimeThatIsNone) {
@@ -226,7 +249,7 @@ TEST(MapFile, TellsTheSizesOfItsSections) {
   }
   EXPECT_EQ(sum, bytes.size());
   EXPECT_THAT(names, ElementsAre("header", "summary", "notes", "provenance", "rigs", "keyframes", "features", "patches",
-                                 "points", "observations", "words"));
+                                 "points", "observations", "words", "plan", "calibrations", "shutters", "descriptors"));
 }
 
 TEST(MapFile, RefusesWhatIsNoMap) {
@@ -237,10 +260,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{5});
+  put_at(bytes, kFormatAt, std::uint32_t{6});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 5, this program knows formats up to 4 "
+            "barn.byre: header: has format 6, this program knows formats up to 5 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 
@@ -274,6 +297,7 @@ TEST(MapFile, NamesTheSectionWhoseChecksumIsWrong) {
   for (std::size_t i = 0; i < section_count(sound); ++i) {
     MapBytes bytes = sound;
     const TableEntry section = table_entry(bytes, i);
+    if (section.size == 0) continue;
     bytes[section.offset + section.size / 2] ^= std::byte{1};
     EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: section " + section.name + " at byte " +
                                               std::to_string(section.offset) + ": has a wrong checksum"));
@@ -296,7 +320,7 @@ TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
   EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("places the section summary wrong"));
   MapBytes bytes = sound;
   bytes[header_checksum_at(bytes)] ^= std::byte{1};
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 432: has a wrong checksum"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 592: has a wrong checksum"));
 }
 
 TEST(MapFile, RefusesBytesThatBelongToNoSection) {

@@ -1,4 +1,4 @@
-// Keypoints and descriptors of all keyframes, and the patches that are kept of them.
+// Keypoints and descriptors of all keyframes, and the patches that are kept of them, as formats 1 to 4 have them.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"
@@ -13,14 +13,6 @@ namespace {
 constexpr std::size_t kKeypointBytes = 6 * sizeof(float) + 1;
 constexpr std::size_t kDescriptorBytes = sizeof(Descriptor);
 constexpr std::size_t kPatchBytes = sizeof(std::uint32_t) + Patch::kSize * Patch::kSize + 2 * sizeof(float);
-
-void write_keypoint(const Keypoint& keypoint, ByteWriter& writer) {
-  write_vector(keypoint.pixel, writer);
-  for (const float value : {keypoint.disparity, keypoint.disparity_sigma, keypoint.angle, keypoint.response}) {
-    writer.write(value);
-  }
-  writer.write(keypoint.octave);
-}
 
 Keypoint read_keypoint(ByteReader& reader) {
   std::array<float, 6> values;
@@ -90,42 +82,11 @@ std::shared_ptr<const Features> read_features_of(std::size_t keyframe, ByteReade
   return features;
 }
 
-std::vector<int> features_with_patch(const Features& features) {
-  std::vector<int> with_patch;
-  for (int i = 0; i < features.size(); ++i) {
-    if (features.find_patch(i)) with_patch.push_back(i);
-  }
-  return with_patch;
-}
-
 }  // namespace
 
 const Features& features_of(const Keyframe& keyframe) {
   static const Features kNone;
   return keyframe.frame.features ? *keyframe.frame.features : kNone;
-}
-
-void write_features(const Keyframes& keyframes, ByteWriter& writer) {
-  for (const Keyframe* const keyframe : keyframes) {
-    const Features& features = features_of(*keyframe);
-    writer.write(static_cast<std::uint32_t>(features.size()));
-    for (const Keypoint& keypoint : features.keypoints()) write_keypoint(keypoint, writer);
-    writer.write_bytes(std::as_bytes(std::span(features.descriptors())));
-  }
-}
-
-void write_patches(const Keyframes& keyframes, ByteWriter& writer) {
-  for (const Keyframe* const keyframe : keyframes) {
-    const Features& features = features_of(*keyframe);
-    const std::vector<int> with_patch = features_with_patch(features);
-    writer.write(static_cast<std::uint32_t>(with_patch.size()));
-    for (const int feature : with_patch) {
-      const Patch& patch = *features.find_patch(feature);
-      writer.write(static_cast<std::uint32_t>(feature));
-      writer.write_all<std::uint8_t>(patch.pixels);
-      write_vector(patch.centre, writer);
-    }
-  }
 }
 
 void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,

@@ -4,6 +4,8 @@
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace byre {
@@ -44,6 +46,16 @@ Keyframe read_keyframe(ByteReader& reader, std::uint32_t number, std::size_t rig
   return keyframe;
 }
 
+void require_that_words_may_follow(const ByteReader& reader, const Keyframe& keyframe,
+                                   std::uint64_t vocabulary_checksum) {
+  if (keyframe.sightings.empty()) reader.fail("has words of a keyframe without features");
+  if (vocabulary_checksum == 0) reader.fail("has words of no vocabulary");
+}
+
+std::size_t bytes_for_word(Word greatest) {
+  return greatest < 256 ? 1 : (static_cast<std::size_t>(std::bit_width(greatest)) + 7) / 8;
+}
+
 }  // namespace
 
 void write_keyframes(const Keyframes& keyframes, ByteWriter& writer) {
@@ -62,20 +74,45 @@ std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, s
   return keyframes;
 }
 
-void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer) {
+void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer) {
+  Word greatest = 0;
+  for (const Keyframe* const keyframe : keyframes) {
+    for (const Word word : keyframe->words) greatest = std::max(greatest, word);
+  }
+  const std::size_t bytes_each = bytes_for_word(greatest);
   writer.write(vocabulary_checksum);
+  writer.write(static_cast<std::uint8_t>(bytes_each));
   for (const Keyframe* const keyframe : keyframes) {
     writer.write(!keyframe->words.empty());
-    writer.write_all<Word>(keyframe->words);
+    for (const Word word : keyframe->words) writer.write_low_bytes(word, bytes_each);
   }
+}
+
+std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
+  const auto vocabulary_checksum = reader.read<std::uint64_t>();
+  const std::size_t bytes_each = reader.read<std::uint8_t>();
+  if (bytes_each < 1 || bytes_each > sizeof(Word)) reader.fail("has words of " + std::to_string(bytes_each) + " bytes");
+  Word greatest = 0;
+  for (Keyframe& keyframe : keyframes) {
+    if (!read_bool(reader)) continue;
+    require_that_words_may_follow(reader, keyframe, vocabulary_checksum);
+    ByteReader words(reader.take(keyframe.sightings.size() * bytes_each), "", 0);
+    keyframe.words.reserve(keyframe.sightings.size());
+    for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
+      keyframe.words.push_back(static_cast<Word>(words.read_low_bytes(bytes_each)));
+      greatest = std::max(greatest, keyframe.words.back());
+    }
+  }
+  if (bytes_for_word(greatest) != bytes_each) reader.fail("has words of more bytes than they need");
+  reader.require_end();
+  return vocabulary_checksum;
 }
 
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
   const auto vocabulary_checksum = reader.read<std::uint64_t>();
   for (Keyframe& keyframe : keyframes) {
     if (!read_bool(reader)) continue;
-    if (keyframe.sightings.empty()) reader.fail("has words of a keyframe without features");
-    if (vocabulary_checksum == 0) reader.fail("has words of no vocabulary");
+    require_that_words_may_follow(reader, keyframe, vocabulary_checksum);
     const std::span<const std::byte> bytes = reader.take(keyframe.sightings.size() * sizeof(Word));
     keyframe.words.resize(keyframe.sightings.size());
     std::memcpy(keyframe.words.data(), bytes.data(), bytes.size());

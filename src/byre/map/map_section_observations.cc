@@ -1,6 +1,7 @@
-// What the keyframes see of the points.
+// What the keyframes see of the points, as formats 1 to 4 have it.
 
 #include "byre/map/map_numbers.h"
+#include "byre/map/map_observers.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
 
@@ -13,49 +14,24 @@ namespace {
 
 constexpr std::size_t kSightingBytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(float);
 
-std::uint32_t count_observations(const Keyframe& keyframe) {
-  std::uint32_t count = 0;
-  for (const Sighting& sighting : keyframe.sightings) count += sighting.point ? 1 : 0;
-  return count;
+Sighting read_sighting(ByteReader& reader, std::uint32_t keyframe, PointObservers& observers) {
+  const std::uint32_t point = read_index(reader, observers.point_count(), "point");
+  observers.add(reader, point, keyframe);
+  Sighting sighting{PointId{Origin::offline, point}, read_vector<Eigen::Vector2f>(reader), reader.read<float>()};
+  require_no_fault(reader, fault_in(sighting), "keyframe", keyframe);
+  return sighting;
 }
 
-// Reads the sightings of one keyframe after the other, and remembers who saw each point last.
-class SightingReader {
- public:
-  SightingReader(ByteReader& reader, std::size_t point_count) : reader_(reader), last_observer_(point_count, kNobody) {}
-
-  void read(std::uint32_t number, Keyframe& keyframe) {
-    const std::uint32_t count = reader_.read_count(kSightingBytes);
-    std::size_t first_free_feature = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::size_t feature = read_index(reader_, keyframe.sightings.size(), "feature");
-      if (feature < first_free_feature) reader_.fail("has features out of order");
-      first_free_feature = feature + 1;
-      keyframe.sightings[feature] = read_sighting(number);
-    }
+void read_sightings(ByteReader& reader, std::uint32_t number, PointObservers& observers, Keyframe& keyframe) {
+  const std::uint32_t count = reader.read_count(kSightingBytes);
+  std::size_t first_free_feature = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t feature = read_index(reader, keyframe.sightings.size(), "feature");
+    if (feature < first_free_feature) reader.fail("has features out of order");
+    first_free_feature = feature + 1;
+    keyframe.sightings[feature] = read_sighting(reader, number, observers);
   }
-
-  void require_that_all_points_are_seen() const {
-    for (std::size_t point = 0; point < last_observer_.size(); ++point) {
-      if (last_observer_[point] == kNobody) require_no_fault(reader_, "is seen by no keyframe", "point", point);
-    }
-  }
-
- private:
-  static constexpr auto kNobody = std::numeric_limits<std::uint32_t>::max();
-
-  Sighting read_sighting(std::uint32_t keyframe) {
-    const std::uint32_t point = read_index(reader_, last_observer_.size(), "point");
-    if (last_observer_[point] == keyframe) require_no_fault(reader_, "is seen twice by a keyframe", "point", point);
-    last_observer_[point] = keyframe;
-    Sighting sighting{PointId{Origin::offline, point}, read_vector<Eigen::Vector2f>(reader_), reader_.read<float>()};
-    require_no_fault(reader_, fault_in(sighting), "keyframe", keyframe);
-    return sighting;
-  }
-
-  ByteReader& reader_;
-  std::vector<std::uint32_t> last_observer_;  // number of the last keyframe that observes each point
-};
+}
 
 bool observes(const std::vector<Keyframe>& keyframes, const Observation& observation, std::uint32_t point) {
   if (observation.keyframe.number >= keyframes.size()) return false;
@@ -89,6 +65,8 @@ std::size_t count_covisible_keyframes(const Keyframe& keyframe, std::uint32_t nu
   return count;
 }
 
+}  // namespace
+
 // A small file may describe keyframes that all see the same point: the map then keeps the square of their number.
 bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, std::size_t point_count,
                                       std::size_t section_bytes) {
@@ -104,28 +82,12 @@ bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, st
   return count > allowed;
 }
 
-}  // namespace
-
-void write_observations(const Keyframes& keyframes, ByteWriter& writer) {
-  for (const Keyframe* const keyframe : keyframes) {
-    writer.write(count_observations(*keyframe));
-    for (std::uint32_t i = 0; i < keyframe->sightings.size(); ++i) {
-      const Sighting& sighting = keyframe->sightings[i];
-      if (!sighting.point) continue;
-      writer.write(i);
-      writer.write(sighting.point->number);
-      write_vector(sighting.pixel, writer);
-      writer.write(sighting.pixel_sigma);
-    }
-  }
-}
-
 void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes) {
   const std::size_t section_bytes = reader.remaining();
-  SightingReader sightings(reader, points.size());
-  for (std::uint32_t i = 0; i < keyframes.size(); ++i) sightings.read(i, keyframes[i]);
+  PointObservers observers(points.size());
+  for (std::uint32_t i = 0; i < keyframes.size(); ++i) read_sightings(reader, i, observers, keyframes[i]);
   reader.require_end();
-  sightings.require_that_all_points_are_seen();
+  observers.require_that_all_are_seen(reader);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (observes(keyframes, points[i].reference, i)) continue;
     require_no_fault(reader, "has a reference that does not see it", "point", i);

@@ -5,6 +5,7 @@
 #include "byre/map/map_values.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace byre {
 namespace {
@@ -207,7 +208,12 @@ void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordi
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     recordings[i].calibration.readout_time = reader.read<double>();
     const auto refined = reader.read<double>();
-    if (recordings[i].refined) recordings[i].refined->calibration.readout_time = refined;
+    if (recordings[i].refined) {
+      recordings[i].refined->calibration.readout_time = refined;
+    } else if (std::bit_cast<std::uint64_t>(refined) !=
+               std::bit_cast<std::uint64_t>(recordings[i].calibration.readout_time)) {
+      reader.fail("has another readout time than the calibration that was given");
+    }
     require_no_fault(reader, fault_in(recordings[i]), "recording", i);
   }
   reader.require_end();

@@ -1,3 +1,5 @@
+// As formats 1 to 4 have them.
+
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
@@ -9,17 +11,6 @@ namespace {
 
 constexpr std::size_t kPointBytes = 3 * sizeof(double) + kSymmetricBytes<3> + 3 * sizeof(float) + sizeof(Descriptor) +
                                     2 * sizeof(float) + 2 * sizeof(std::uint32_t);
-
-void write_point(const MapPoint& point, ByteWriter& writer) {
-  write_vector(point.position_in_world, writer);
-  write_symmetric(point.covariance, writer);
-  write_vector(point.mean_viewing_direction, writer);
-  writer.write_all<std::uint64_t>(point.descriptor);
-  writer.write(point.min_distance);
-  writer.write(point.max_distance);
-  writer.write(point.reference.keyframe.number);
-  writer.write(static_cast<std::uint32_t>(point.reference.feature));
-}
 
 MapPoint read_point(ByteReader& reader) {
   MapPoint point;
@@ -35,11 +26,6 @@ MapPoint read_point(ByteReader& reader) {
 }
 
 }  // namespace
-
-void write_points(const Map& map, ByteWriter& writer) {
-  writer.write(static_cast<std::uint32_t>(map.point_count()));
-  for (const PointId id : map.point_ids()) write_point(*map.find_point(id), writer);
-}
 
 std::vector<MapPoint> read_points(ByteReader reader) {
   const std::uint32_t count = reader.read_count(kPointBytes);

@@ -50,24 +50,43 @@ std::vector<Rig> read_rigs(ByteReader reader);
 void write_keyframes(const Keyframes& keyframes, ByteWriter& writer);
 std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count);
 
-// Keypoints and descriptors.
-void write_features(const Keyframes& keyframes, ByteWriter& writer);
-// Patches of some of them, in a section of their own.
-void write_patches(const Keyframes& keyframes, ByteWriter& writer);
+// As formats 1 to 4 have them: keypoints and descriptors, and patches of some of them in a section of their own.
 // Fills in the features of the keyframes.
 void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
                    std::vector<Keyframe>& keyframes);
-
-void write_points(const Map& map, ByteWriter& writer);
 std::vector<MapPoint> read_points(ByteReader reader);
-
-void write_observations(const Keyframes& keyframes, ByteWriter& writer);
 // Fills in the sightings of the keyframes. Every point's reference must be one of them.
 void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes);
-
-void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer);
 // Fills in the words of the keyframes and gives the checksum of their vocabulary.
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
+
+// As format 5 has them, rounded to quanta.
+void write_rounded_points(const Map& map, ByteWriter& writer);
+struct RoundedPoints {
+  std::vector<MapPoint> points;           // without references
+  std::vector<std::uint32_t> references;  // which of its observations is the point's reference, counted from 0
+};
+RoundedPoints read_rounded_points(ByteReader reader);
+
+// What keyframes see of them; all sections have a part for each keyframe.
+struct ViewWriters {
+  ByteWriter features, patches, observations, descriptors;
+};
+struct ViewSections {
+  ByteReader features, patches, observations, descriptors;
+};
+void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections);
+// Fills in the features and sightings of the keyframes, and the references of the points.
+void read_views(ViewSections sections, RoundedPoints& points, const std::vector<Rig>& rigs,
+                std::vector<Keyframe>& keyframes);
+
+void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer);
+// Fills in the words of the keyframes and gives the checksum of their vocabulary.
+std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes);
+
+// Whether more pairs of keyframes share points than a section of so many bytes may describe.
+bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, std::size_t point_count,
+                                      std::size_t section_bytes);
 
 void write_refined_calibrations(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
 // Fills in those of the recordings.

@@ -39,9 +39,9 @@ std::vector<int> features_that_define_points(const Map& map, KeyframeId id) {
   return features;
 }
 
-// The features in the order that they have in a file, with these patches; order: which feature comes where.
+// The features that come in this order, with these patches.
 std::shared_ptr<const Features> for_keeping(const Features& features, const Rig& rig, const std::vector<int>& order,
-                                            const std::vector<int>& kept) {
+                                            const std::vector<int>& kept_patches) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
   std::vector<Patch> patches;
@@ -49,7 +49,7 @@ std::shared_ptr<const Features> for_keeping(const Features& features, const Rig&
   for (const int i : order) {
     keypoints.push_back(features.keypoint(i));
     if (!features.descriptors().empty()) descriptors.push_back(features.descriptor(i));
-    const Patch* const patch = std::ranges::binary_search(kept, i) ? features.find_patch(i) : nullptr;
+    const Patch* const patch = std::ranges::binary_search(kept_patches, i) ? features.find_patch(i) : nullptr;
     patch_of_keypoint.push_back(patch ? static_cast<int>(patches.size()) : -1);
     if (patch) patches.push_back(*patch);
   }
@@ -57,21 +57,35 @@ std::shared_ptr<const Features> for_keeping(const Features& features, const Rig&
                                           std::move(patches), std::move(patch_of_keypoint));
 }
 
-// Features that were moved may have left the order of their grid. What goes by their numbers follows.
-std::vector<int> sort_features(Keyframe& keyframe, const Rig& rig, const std::vector<int>& kept_patches) {
-  if (!keyframe.frame.features) return {};
-  const Features& features = *keyframe.frame.features;
-  const std::vector<int> order = Features::order_of(rig.width, rig.height, features.keypoints());
-  std::vector<int> number_of(order.size());
-  std::vector<Sighting> sightings(keyframe.sightings.size());
-  std::vector<Word> words(keyframe.words.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto before = static_cast<std::size_t>(order[i]);
-    number_of[before] = static_cast<int>(i);
-    sightings[i] = keyframe.sightings[before];
-    if (!words.empty()) words[i] = keyframe.words[before];
+// Features that see a point, in the order that they have in a file: those that were moved may have left that of their
+// grid, and there are fewer of them.
+std::vector<int> order_of_features_with_points(const Keyframe& keyframe, const Rig& rig) {
+  std::vector<int> with_point;
+  std::vector<Keypoint> keypoints;
+  for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
+    if (!keyframe.sightings[i].point) continue;
+    with_point.push_back(static_cast<int>(i));
+    keypoints.push_back(keyframe.frame.features->keypoint(static_cast<int>(i)));
   }
-  keyframe.frame.features = for_keeping(features, rig, order, kept_patches);
+  std::vector<int> order = Features::order_of(rig.width, rig.height, keypoints);
+  for (int& i : order) i = with_point[static_cast<std::size_t>(i)];
+  return order;
+}
+
+// The keyframe forgets features that see no point. What goes by the numbers of the others follows; gives their new
+// ones, by the old.
+std::vector<int> keep_features_with_points(Keyframe& keyframe, const Rig& rig, const std::vector<int>& kept_patches) {
+  if (!keyframe.frame.features) return {};
+  const std::vector<int> order = order_of_features_with_points(keyframe, rig);
+  std::vector<int> number_of(keyframe.sightings.size(), -1);
+  std::vector<Sighting> sightings;
+  std::vector<Word> words;
+  for (const int before : order) {
+    number_of[static_cast<std::size_t>(before)] = static_cast<int>(sightings.size());
+    sightings.push_back(keyframe.sightings[static_cast<std::size_t>(before)]);
+    if (!keyframe.words.empty()) words.push_back(keyframe.words[static_cast<std::size_t>(before)]);
+  }
+  keyframe.frame.features = for_keeping(*keyframe.frame.features, rig, order, kept_patches);
   keyframe.sightings = std::move(sightings);
   keyframe.words = std::move(words);
   return number_of;
@@ -93,11 +107,8 @@ Map offline_copy(const Map& online) {
   for (const KeyframeId id : keyframes.ids()) {
     Keyframe keyframe = *online.find_keyframe(id);
     const Rig& rig = online.rigs()[static_cast<std::size_t>(keyframe.rig)];
-    feature_numbers.push_back(sort_features(keyframe, rig, features_that_define_points(online, id)));
-    for (Sighting& sighting : keyframe.sightings) {
-      sighting.point = points(sighting.point);
-      if (!sighting.point) sighting = {};
-    }
+    for (Sighting& sighting : keyframe.sightings) sighting.point = points(sighting.point);
+    feature_numbers.push_back(keep_features_with_points(keyframe, rig, features_that_define_points(online, id)));
     keyframe.parent = keyframes(keyframe.parent);
     keyframe.covariance = symmetric(keyframe.covariance);
     parts.keyframes.push_back(std::move(keyframe));

@@ -1,0 +1,108 @@
+#include "byre/map/descriptor_difference.h"
+
+#include <bit>
+
+namespace byre {
+namespace {
+
+constexpr int kBits = 256;
+constexpr unsigned kSkip = 15;  // bits that are alike, and no other one follows them
+constexpr std::uint8_t kWhole = 255;
+constexpr std::size_t kMostHalves = 2 * sizeof(Descriptor);
+
+// Half bytes, put together in pairs.
+struct Halves {
+  std::array<std::uint8_t, kMostHalves / 2> bytes{};
+  std::size_t count = 0;
+  bool is_full = false;
+
+  void push(unsigned half) {
+    if (count == kMostHalves) {
+      is_full = true;
+      return;
+    }
+    bytes[count / 2] = static_cast<std::uint8_t>(bytes[count / 2] | half << (count % 2 == 0 ? 0 : 4));
+    ++count;
+  }
+};
+
+Halves halves_of(const Descriptor& difference) {
+  Halves halves;
+  int next = 0;  // first bit that nothing was said of
+  for (std::size_t word = 0; word < difference.size(); ++word) {
+    for (std::uint64_t rest = difference[word]; rest != 0; rest &= rest - 1) {
+      const int bit = static_cast<int>(64 * word) + std::countr_zero(rest);
+      for (; bit - next >= static_cast<int>(kSkip); next += kSkip) halves.push(kSkip);
+      halves.push(static_cast<unsigned>(bit - next));
+      next = bit + 1;
+    }
+  }
+  return halves;
+}
+
+// Takes half bytes from a reader.
+class HalfReader {
+ public:
+  explicit HalfReader(ByteReader& reader) : reader_(reader) {}
+
+  unsigned next() {
+    ++count_;
+    if (count_ % 2 == 0) return byte_ >> 4;
+    byte_ = reader_.read<std::uint8_t>();
+    return byte_ & 15u;
+  }
+  std::size_t count() const { return count_; }
+  bool leaves_something() const { return count_ % 2 == 1 && byte_ >> 4 != 0; }
+
+ private:
+  ByteReader& reader_;
+  unsigned byte_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+void write_difference(const Descriptor& descriptor, const Descriptor& from, ByteWriter& writer) {
+  Descriptor difference;
+  int differing = 0;
+  for (std::size_t i = 0; i < difference.size(); ++i) {
+    difference[i] = descriptor[i] ^ from[i];
+    differing += std::popcount(difference[i]);
+  }
+  const Halves halves = halves_of(difference);
+  if (halves.is_full) {
+    writer.write(kWhole);
+    writer.write_all<std::uint64_t>(descriptor);
+    return;
+  }
+  writer.write(static_cast<std::uint8_t>(differing));
+  writer.write_all(std::span<const std::uint8_t>(halves.bytes).first((halves.count + 1) / 2));
+}
+
+Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
+  const auto differing = reader.read<std::uint8_t>();
+  Descriptor descriptor = from;
+  if (differing == kWhole) {
+    reader.read_all<std::uint64_t>(descriptor);
+    Descriptor difference;
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = descriptor[i] ^ from[i];
+    if (!halves_of(difference).is_full) reader.fail("has a descriptor that is not told by its difference");
+    return descriptor;
+  }
+  HalfReader halves(reader);
+  int bit = -1;
+  for (int i = 0; i < differing; ++i) {
+    unsigned skipped = 0;
+    do {
+      skipped = halves.next();
+      bit += static_cast<int>(skipped);
+    } while (skipped == kSkip && bit < kBits);
+    if (++bit >= kBits) reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+    descriptor[static_cast<std::size_t>(bit) / 64] ^= std::uint64_t{1} << (bit % 64);
+  }
+  if (halves.leaves_something() || halves.count() > kMostHalves)
+    reader.fail("has a descriptor that is not told as it is");
+  return descriptor;
+}
+
+}  // namespace byre

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "byre/input/byte_stream.h"
+#include "byre/map/map_numbers.h"
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace byre {
+
+// Remembers, while the sightings of one keyframe after the other are read, who saw each point last. Fails for a point
+// that is seen twice by a keyframe, and at the end for one that is seen by none.
+class PointObservers {
+ public:
+  explicit PointObservers(std::size_t point_count) : last_observer_(point_count, kNobody) {}
+
+  std::size_t point_count() const { return last_observer_.size(); }
+
+  // Precondition: point < point_count().
+  void add(const ByteReader& reader, std::uint32_t point, std::uint32_t keyframe) {
+    if (last_observer_[point] == keyframe) require_no_fault(reader, "is seen twice by a keyframe", "point", point);
+    last_observer_[point] = keyframe;
+  }
+
+  void require_that_all_are_seen(const ByteReader& reader) const {
+    for (std::size_t point = 0; point < last_observer_.size(); ++point) {
+      if (last_observer_[point] == kNobody) require_no_fault(reader, "is seen by no keyframe", "point", point);
+    }
+  }
+
+ private:
+  static constexpr auto kNobody = std::numeric_limits<std::uint32_t>::max();
+
+  std::vector<std::uint32_t> last_observer_;  // number of the last keyframe that observes each point
+};
+
+}  // namespace byre

@@ -1,0 +1,282 @@
+// What the keyframes see, as format 5 has it: keypoints, descriptors, patches and sightings, rounded to quanta.
+
+#include "byre/map/descriptor_difference.h"
+#include "byre/map/map_numbers.h"
+#include "byre/map/map_observers.h"
+#include "byre/map/map_quanta.h"
+#include "byre/map/map_sections.h"
+#include "byre/map/map_values.h"
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+
+namespace byre {
+namespace {
+
+// What a keypoint's first byte tells; its lowest bits are the octave.
+constexpr std::uint8_t kOctaveBits = 7;
+constexpr std::uint8_t kHasDisparity = 8;
+constexpr std::uint8_t kHasPatch = 16;
+constexpr std::uint8_t kSeesPoint = 32;
+constexpr std::uint8_t kNoOctave = 64;  // no sound map has a keypoint with this bit
+constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSeesPoint;
+
+constexpr std::size_t kLeastKeypointBytes = 1 + 2;
+constexpr std::size_t kDisparityBytes = 3;
+
+// Bytes that hold all numbers below count.
+std::size_t bytes_for(std::uint64_t count) {
+  return count <= 1 ? 1 : (static_cast<std::size_t>(std::bit_width(count - 1)) + 7) / 8;
+}
+
+std::size_t bytes_for_pixels(int size) {
+  return bytes_for(std::uint64_t{pixel_codes(size)} + 1);
+}
+
+std::uint32_t disparity_code(const Keypoint& keypoint) {
+  return keypoint.has_disparity() ? float24_code(keypoint.disparity) : 0;
+}
+
+std::uint8_t bits_of(const Keypoint& keypoint, bool has_patch, bool sees_point) {
+  return static_cast<std::uint8_t>((keypoint.octave < kOctaves ? keypoint.octave : kNoOctave) |
+                                   (disparity_code(keypoint) != 0 ? kHasDisparity : 0) | (has_patch ? kHasPatch : 0) |
+                                   (sees_point ? kSeesPoint : 0));
+}
+
+void write_keypoint(const Keypoint& keypoint, std::uint8_t bits, const Rig& rig, ByteWriter& writer) {
+  writer.write(bits);
+  writer.write_low_bytes(pixel_code(keypoint.pixel.x(), rig.width), bytes_for_pixels(rig.width));
+  writer.write_low_bytes(pixel_code(keypoint.pixel.y(), rig.height), bytes_for_pixels(rig.height));
+  if ((bits & kHasDisparity) == 0) return;
+  writer.write_low_bytes(disparity_code(keypoint), kDisparityBytes);
+  writer.write(sigma_code(keypoint.disparity_sigma));
+}
+
+float read_coordinate(ByteReader& reader, int size) {
+  const auto code = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for_pixels(size)));
+  if (code >= pixel_codes(size)) reader.fail("has a keypoint outside its image");
+  return coordinate_of(code);
+}
+
+void read_disparity(ByteReader& reader, Keypoint& keypoint) {
+  keypoint.disparity = float_of_24(static_cast<std::uint32_t>(reader.read_low_bytes(kDisparityBytes)));
+  keypoint.disparity_sigma = sigma_of_code(reader.read<std::uint8_t>());
+  if (!(keypoint.disparity > 0.0f)) reader.fail("has a disparity that is none");
+}
+
+void write_descriptors(const Map& map, const Keyframe& keyframe, ByteWriter& writer) {
+  const std::vector<Descriptor>& descriptors = features_of(keyframe).descriptors();
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const std::optional<PointId>& point = keyframe.sightings[i].point;
+    if (point) {
+      write_difference(descriptors[i], map.find_point(*point)->descriptor, writer);
+    } else {
+      writer.write_all<std::uint64_t>(descriptors[i]);
+    }
+  }
+}
+
+// Keypoints of one keyframe, with the first byte of each.
+struct ReadKeypoints {
+  std::vector<Keypoint> keypoints;
+  std::vector<std::uint8_t> bits;
+};
+
+ReadKeypoints read_keypoints(ByteReader& reader, const Rig& rig, std::size_t keyframe) {
+  ReadKeypoints read;
+  read.keypoints.resize(reader.read_count(kLeastKeypointBytes));
+  read.bits.reserve(read.keypoints.size());
+  for (Keypoint& keypoint : read.keypoints) {
+    const auto bits = read.bits.emplace_back(reader.read<std::uint8_t>());
+    if ((bits & ~kAllBits) != 0) reader.fail("has a keypoint of an unknown kind");
+    keypoint.octave = bits & kOctaveBits;
+    keypoint.pixel.x() = read_coordinate(reader, rig.width);
+    keypoint.pixel.y() = read_coordinate(reader, rig.height);
+    if ((bits & kHasDisparity) != 0) read_disparity(reader, keypoint);
+    require_no_fault(reader, fault_in(keypoint, rig), "keyframe", keyframe);
+  }
+  return read;
+}
+
+void write_sighting(const Sighting& sighting, const Keypoint& keypoint, const Rig& rig, std::size_t point_count,
+                    ByteWriter& writer) {
+  writer.write_low_bytes(sighting.point->number, bytes_for(point_count));
+  const Eigen::Vector2f rounded(coordinate_of(pixel_code(keypoint.pixel.x(), rig.width)),
+                                coordinate_of(pixel_code(keypoint.pixel.y(), rig.height)));
+  writer.write_varint(offset_code(sighting.pixel.x() - rounded.x()));
+  writer.write_varint(offset_code(sighting.pixel.y() - rounded.y()));
+  writer.write(sigma_code(sighting.pixel_sigma));
+}
+
+float read_offset(ByteReader& reader) {
+  const std::uint32_t code = reader.read_varint();
+  if (code > kLargestOffsetCode) reader.fail("has a sighting far from its keypoint");
+  return offset_of(code);
+}
+
+Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32_t keyframe,
+                       PointObservers& observers) {
+  const auto point = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for(observers.point_count())));
+  if (point >= observers.point_count()) {
+    reader.fail("names point " + std::to_string(point) + " of " + std::to_string(observers.point_count()));
+  }
+  observers.add(reader, point, keyframe);
+  const float u = read_offset(reader);
+  const float v = read_offset(reader);
+  const float sigma = sigma_of_code(reader.read<std::uint8_t>());
+  const Sighting sighting{PointId{Origin::offline, point}, keypoint.pixel + Eigen::Vector2f(u, v), sigma};
+  require_no_fault(reader, fault_in(sighting), "keyframe", keyframe);
+  return sighting;
+}
+
+std::vector<Sighting> read_sightings(ByteReader& reader, const ReadKeypoints& of, std::uint32_t keyframe,
+                                     PointObservers& observers) {
+  std::vector<Sighting> sightings(of.keypoints.size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if ((of.bits[i] & kSeesPoint) == 0) continue;
+    sightings[i] = read_sighting(reader, of.keypoints[i], keyframe, observers);
+  }
+  return sightings;
+}
+
+std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<Sighting>& sightings,
+                                         const std::vector<MapPoint>& points) {
+  std::vector<Descriptor> descriptors(sightings.size());
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    const std::optional<PointId>& point = sightings[i].point;
+    if (point) {
+      descriptors[i] = read_difference(reader, points[point->number].descriptor);
+    } else {
+      reader.read_all<std::uint64_t>(descriptors[i]);
+    }
+  }
+  return descriptors;
+}
+
+void write_patch(const Patch& patch, ByteWriter& writer) {
+  const PatchCode code = patch_code(patch);
+  writer.write(code.darkest);
+  writer.write(code.brightest);
+  writer.write_all<std::uint16_t>(code.centre);
+  writer.write_all<std::uint8_t>(code.steps);
+}
+
+Patch read_patch(ByteReader& reader, std::size_t keyframe) {
+  PatchCode code;
+  code.darkest = reader.read<std::uint8_t>();
+  code.brightest = reader.read<std::uint8_t>();
+  reader.read_all<std::uint16_t>(code.centre);
+  reader.read_all<std::uint8_t>(code.steps);
+  const std::optional<Patch> patch = patch_of(code);
+  require_no_fault(reader, patch ? fault_in(*patch) : "has a patch that is none", "keyframe", keyframe);
+  return *patch;
+}
+
+struct RoundedPatches {
+  std::vector<Patch> patches;
+  std::vector<int> patch_of_keypoint;  // -1: none
+};
+
+RoundedPatches read_rounded_patches(ByteReader& reader, const std::vector<std::uint8_t>& bits, std::size_t keyframe) {
+  RoundedPatches kept;
+  kept.patch_of_keypoint.assign(bits.size(), -1);
+  kept.patches.reserve(
+      static_cast<std::size_t>(std::ranges::count_if(bits, [](std::uint8_t each) { return (each & kHasPatch) != 0; })));
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if ((bits[i] & kHasPatch) == 0) continue;
+    kept.patch_of_keypoint[i] = static_cast<int>(kept.patches.size());
+    kept.patches.push_back(read_patch(reader, keyframe));
+  }
+  return kept;
+}
+
+// Reads all that the keyframes see, from sections that each have a part for every keyframe.
+class ViewReader {
+ public:
+  ViewReader(ViewSections sections, const std::vector<MapPoint>& points)
+      : sections_(std::move(sections)), points_(points), observers_(points.size()) {}
+
+  void read(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
+    const ReadKeypoints read = read_keypoints(sections_.features, rig, number);
+    keyframe.sightings = read_sightings(sections_.observations, read, number, observers_);
+    std::vector<Descriptor> descriptors = read_descriptors(sections_.descriptors, keyframe.sightings, points_);
+    RoundedPatches kept = read_rounded_patches(sections_.patches, read.bits, number);
+    auto features = std::make_shared<const Features>(rig.width, rig.height, read.keypoints, std::move(descriptors),
+                                                     std::move(kept.patches), std::move(kept.patch_of_keypoint));
+    if (!std::ranges::equal(features->keypoints(), read.keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
+      require_no_fault(sections_.features, "has keypoints that are not sorted by the cells of their grid", "keyframe",
+                       number);
+    }
+    keyframe.frame.features = std::move(features);
+  }
+
+  void require_end() const {
+    for (const ByteReader* const section :
+         {&sections_.features, &sections_.patches, &sections_.observations, &sections_.descriptors}) {
+      section->require_end();
+    }
+    observers_.require_that_all_are_seen(sections_.observations);
+  }
+
+ private:
+  ViewSections sections_;
+  const std::vector<MapPoint>& points_;
+  PointObservers observers_;
+};
+
+// Each is one of the point's observations, which come in the order of keyframes.
+void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyframes, RoundedPoints& points) {
+  std::vector<std::uint32_t> left = points.references;  // observations to come before the reference
+  std::vector<bool> is_set(points.points.size(), false);
+  for (std::uint32_t number = 0; number < keyframes.size(); ++number) {
+    const std::vector<Sighting>& sightings = keyframes[number].sightings;
+    for (std::size_t feature = 0; feature < sightings.size(); ++feature) {
+      if (!sightings[feature].point) continue;
+      const std::uint32_t point = sightings[feature].point->number;
+      if (is_set[point] || left[point]-- > 0) continue;
+      points.points[point].reference = {{Origin::offline, number}, static_cast<int>(feature)};
+      is_set[point] = true;
+    }
+  }
+  for (std::size_t point = 0; point < is_set.size(); ++point) {
+    if (!is_set[point]) require_no_fault(reader, "has a reference that does not see it", "point", point);
+  }
+}
+
+}  // namespace
+
+void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections) {
+  for (const Keyframe* const keyframe : keyframes) {
+    const Features& features = features_of(*keyframe);
+    const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe->rig)];
+    sections.features.write(static_cast<std::uint32_t>(features.size()));
+    for (int i = 0; i < features.size(); ++i) {
+      const Keypoint& keypoint = features.keypoint(i);
+      const Sighting& sighting = keyframe->sightings[static_cast<std::size_t>(i)];
+      const Patch* const patch = features.find_patch(i);
+      write_keypoint(keypoint, bits_of(keypoint, patch != nullptr, sighting.point.has_value()), rig, sections.features);
+      if (patch) write_patch(*patch, sections.patches);
+      if (sighting.point) {
+        write_sighting(sighting, keypoint, rig, static_cast<std::size_t>(map.point_count()), sections.observations);
+      }
+    }
+    write_descriptors(map, *keyframe, sections.descriptors);
+  }
+}
+
+void read_views(ViewSections sections, RoundedPoints& points, const std::vector<Rig>& rigs,
+                std::vector<Keyframe>& keyframes) {
+  const ByteReader observations = sections.observations;
+  ViewReader reader(std::move(sections), points.points);
+  for (std::uint32_t i = 0; i < keyframes.size(); ++i) {
+    reader.read(i, rigs[static_cast<std::size_t>(keyframes[i].rig)], keyframes[i]);
+  }
+  reader.require_end();
+  set_references(observations, keyframes, points);
+  if (has_too_many_covisible_keyframes(keyframes, points.points.size(), observations.remaining())) {
+    observations.fail("has more keyframes that share points than a file of this size can hold");
+  }
+}
+
+}  // namespace byre
