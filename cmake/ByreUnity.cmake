@@ -2,10 +2,6 @@
 # command. Names in anonymous namespaces must so be unique in a room, see tools/check_floors.py.
 option(BYRE_UNITY "Compile several files of a room as one: a build from scratch has half the objects" ON)
 
-# Rooms whose results are kept from one version to the next, bit by bit: what the compiler rounds where must not depend
-# on which files happen to be compiled together.
-set(BYRE_ROOMS_APART geometry motion features optimise map place simulation slam mapping localisation session system)
-
 # Rooms whose tests are apart, and optimised as the library is: in a large file, or for a short build, the compiler does
 # not put Eigen's allocation where it is called, see tools/check_allocations.sh.
 set(BYRE_TESTS_APART optimise)
@@ -18,5 +14,5 @@ list(TRANSFORM BYRE_FILES_APART PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
 set_source_files_properties(${BYRE_FILES_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 function(byre_unite target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BYRE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${BYRE_UNITY} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
