@@ -9,7 +9,7 @@ target_compile_options(byre_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc
 if(BYRE_ARCH)
   target_compile_options(byre_flags INTERFACE -march=${BYRE_ARCH})
 endif()
-# What is rounded where must depend neither on the processor nor on which files are compiled together.
+# What is rounded where must not depend on which files are compiled together.
 target_compile_options(byre_flags INTERFACE -ffp-contract=off)
 if(BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
