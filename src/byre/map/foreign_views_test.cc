@@ -23,7 +23,7 @@ Keyframe keyframe_with_features() {
   return keyframe;
 }
 
-PointId add_seen_point(Map& map, const Observation& seen) {
+PointId add_sighted_point(Map& map, const Observation& seen) {
   MapPoint point;
   point.reference = seen;
   const PointId id = map.add_point(point);
@@ -40,8 +40,8 @@ class ForeignViews : public ::testing::Test {
   ForeignViews() {
     online.add_rig({});
     keyframe = online.add_keyframe(keyframe_with_features());
-    first = add_seen_point(online, {keyframe, 0});
-    second = add_seen_point(online, {keyframe, 1});
+    first = add_sighted_point(online, {keyframe, 0});
+    second = add_sighted_point(online, {keyframe, 1});
   }
   void TearDown() override { EXPECT_THAT(find_faults(online), IsEmpty()); }
 
@@ -81,7 +81,7 @@ TEST_F(ForeignViews, RefuseWhatContradictsThem) {
 
 TEST_F(ForeignViews, AreNotForAnOfflineMap) {
   Map offline(Origin::offline);
-  const PointId point = add_seen_point(offline, {offline.add_keyframe(keyframe_with_features()), 0});
+  const PointId point = add_sighted_point(offline, {offline.add_keyframe(keyframe_with_features()), 0});
   EXPECT_FALSE(offline.add_foreign_view({{{Origin::online, 0}, 0}, {point}}));
 }
 
@@ -105,7 +105,7 @@ TEST_F(ForeignViews, CanBeTakenAway) {
 TEST(FindFaults, NamesAForeignViewWithSpoiltValues) {
   Map map(Origin::online);
   map.add_rig({});
-  const PointId point = add_seen_point(map, {map.add_keyframe(keyframe_with_features()), 0});
+  const PointId point = add_sighted_point(map, {map.add_keyframe(keyframe_with_features()), 0});
   map.add_foreign_view({{kOld, 0}, {point, {1.0f, 1.0f}, -1.0f}});
   EXPECT_THAT(find_faults(map), ElementsAre(HasSubstr("view by keyframe offline 7 has a sighting")));
 }
@@ -114,8 +114,8 @@ class StandaloneCopy : public ForeignViews {
  protected:
   StandaloneCopy() {
     const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with_features());
-    seen = add_seen_point(offline, {old_keyframe, 0});
-    add_seen_point(offline, {old_keyframe, 1});  // not by the online map
+    seen = add_sighted_point(offline, {old_keyframe, 0});
+    add_sighted_point(offline, {old_keyframe, 1});  // not by the online map
     MapPoint point = *offline.find_point(seen);
     point.position_in_world = {1.0, 2.0, 3.0};
     point.covariance = 0.25 * Eigen::Matrix3d::Identity();

@@ -31,7 +31,7 @@ PlanBox box_of_image(const FloorPlan& plan) {
   return box;
 }
 
-constexpr std::array<std::pair<int, int>, 8> kSteps = {
+constexpr std::array<std::pair<int, int>, 8> kNeighbours = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
 }  // namespace
@@ -125,7 +125,7 @@ void PlanWalls::flood(std::vector<Cell> front) {
   while (!front.empty()) {
     const Cell from = front.back();
     front.pop_back();
-    for (const auto& [right, down] : kSteps) {
+    for (const auto& [right, down] : kNeighbours) {
       const Cell to{from.column + right, from.row + down};
       if (!may_step(from, right, down) || is_reached_[index(to)] != 0) continue;
       is_reached_[index(to)] = 1;
@@ -163,7 +163,7 @@ std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDi
     if (so_far > length[place(from)]) continue;
     const int right_of = from.column - goal.column, below = from.row - goal.row;
     if (right_of * right_of + below * below <= goal_reach * goal_reach) return so_far;
-    for (const auto& [right, down] : kSteps) {
+    for (const auto& [right, down] : kNeighbours) {
       const Cell to{from.column + right, from.row + down};
       if (!may_step(from, right, down)) continue;
       const float further = so_far + static_cast<float>(cell_ * std::hypot(right, down));

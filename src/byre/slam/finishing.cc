@@ -22,10 +22,6 @@ void announce(const FinishHooks& hooks, const char* step) {
   if (hooks.before_step) hooks.before_step(step);
 }
 
-const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
-  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 // The keyframes around one that found an old place say whether they find it too.
 std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis) {
   for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {

@@ -96,10 +96,6 @@ CameraShift camera_shift(const Pose& camera_from_world, const Similarity& old_fr
           rotation_log(old_from_new.target_from_source.rotation).norm()};
 }
 
-const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
-  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOptions& options) {
   const Keyframe& keyframe = *map.find_keyframe(hypothesis.keyframe);
   const CameraShift shift = camera_shift(keyframe.camera_from_world, drift_of(hypothesis));
@@ -129,6 +125,10 @@ std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyfr
 }
 
 }  // namespace
+
+const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
+  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+}
 
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options, const PlaceNoise& noise) {

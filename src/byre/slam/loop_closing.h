@@ -69,6 +69,9 @@ inline Similarity drift_of(const LoopHypothesis& hypothesis) {
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options, const PlaceNoise& noise = {});
 
+// By which the keyframe was seen.
+const Rig& rig_of(const Map& map, const Keyframe& keyframe);
+
 // Looks for a later frame, tracked in the newer part of the map, in the older one. The hypothesis with one confirmation
 // or miss more, and with the drift as this frame saw it.
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
