@@ -65,6 +65,13 @@ void bind_reports(py::module_& module) {
       .def_readonly("matches", &FrameReport::matches)
       .def_readonly("inliers", &FrameReport::inliers)
       .def_readonly("keyframe_added", &FrameReport::keyframe_added)
+      .def_property_readonly(
+          "online_points_left_out", [](const FrameReport& report) { return report.cuts.online_points; },
+          "Whether few points of the session's own map were looked for, to keep to the deadline.")
+      .def_property_readonly(
+          "right_image_left_out", [](const FrameReport& report) { return report.cuts.right_image; },
+          "Whether the frame was tracked by its left image alone, to keep to the deadline.")
+      .def_readonly("is_late", &FrameReport::is_late, "Whether the frame took longer than its deadline.")
       .def_readonly(
           "refused_place", &FrameReport::refused_place,
           "Why the robot cannot be where it was found in the offline map; Doubt.none where it was not refused.")

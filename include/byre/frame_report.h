@@ -38,6 +38,13 @@ inline bool is_dropped(InputFault fault) {
   return fault >= InputFault::no_image;
 }
 
+// What was left out of a frame so that it keeps to its deadline, see the option frame.deadline_ms.
+struct FrameCuts {
+  // Fewer points of the session's own map were looked for: none where points of an offline map hold the pose.
+  bool online_points = false;
+  bool right_image = false;  // the frame was tracked by its left image alone
+};
+
 // What the caller learns about one frame.
 struct FrameReport {
   Timestamp time{};
@@ -60,6 +67,8 @@ struct FrameReport {
   int matches = 0;
   int inliers = 0;
   bool keyframe_added = false;
+  FrameCuts cuts;        // what was left out
+  bool is_late = false;  // it took longer than its deadline all the same
   // Why the robot cannot be where this frame, or one shortly before, was found in the offline map: Health::doubt tells
   // it as well where there is no other pose.
   Doubt refused_place = Doubt::none;

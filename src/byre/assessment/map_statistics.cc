@@ -49,6 +49,9 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
     if (!frame.report) continue;
     counts.without_right_image += frame.has_right ? 0 : 1;
     counts.with_depth_image += frame.has_depth ? 1 : 0;
+    counts.without_online_points += frame.report->cuts.online_points ? 1 : 0;
+    counts.with_left_alone += frame.report->cuts.right_image ? 1 : 0;
+    counts.late += frame.report->is_late ? 1 : 0;
     count_events(*frame.report, counts);
     if (frame.report->start_failure != TwoViewFailure::none) ++counts.refused_starts[frame.report->start_failure];
     const State before = std::exchange(state, frame.report->state);

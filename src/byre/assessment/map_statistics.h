@@ -31,7 +31,10 @@ struct FrameCounts {
   int unreadable = 0;
   int without_right_image = 0;  // readable frames that came without a right image
   int with_depth_image = 0;
-  int keyframes = 0;  // frames that became keyframes
+  int without_online_points = 0;  // frames in which few of them were looked for, or none, to keep to a deadline
+  int with_left_alone = 0;        // frames whose right image was left alone for that
+  int late = 0;                   // frames that took longer than their deadline all the same
+  int keyframes = 0;              // frames that became keyframes
   int lost_episodes = 0;
   int lost = 0;    // frames in these episodes
   int resets = 0;  // how often a map was given up for a new one

@@ -150,6 +150,16 @@ Json late_json(const MapRun& run) {
   return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
 }
 
+// null without a deadline.
+Json deadline_json(const MapRun& run, double deadline_ms) {
+  if (deadline_ms <= 0.0) return nullptr;
+  const FrameCounts counts = count_frames(run.frames);
+  return {{"deadline_ms", deadline_ms},
+          {"frames_late", counts.late},
+          {"frames_without_online_points", counts.without_online_points},
+          {"frames_with_left_image_alone", counts.with_left_alone}};
+}
+
 Json warnings_json(const std::vector<std::string>& warnings) {
   const auto listed = static_cast<std::ptrdiff_t>(std::min(warnings.size(), kListedWarnings));
   return {{"count", warnings.size()}, {"first", std::vector(warnings.begin(), warnings.begin() + listed)}};
@@ -166,6 +176,7 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"finishing", run.finishing ? byre::to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},
+               {"deadline", deadline_json(run, protocol.options.frame_deadline_ms)},
                {"mapping_jobs", jobs_json(run.job_seconds)}};
   if (pace == Pace::same_thread) json["frame_thread_without_jobs_ms"] = to_json(summarise_without_jobs(run.frames));
   if (pace == Pace::live) json["late"] = late_json(run);
@@ -211,6 +222,8 @@ Json frame_json(const MappedFrame& frame, const PoseError* error) {
   json["map_corrected"] = report.has(SessionEvent::map_corrected);
   json["has_right_image"] = frame.has_right;
   json["has_depth_image"] = frame.has_depth;
+  json["online_points_left_out"] = report.cuts.online_points;
+  json["right_image_left_out"] = report.cuts.right_image;
   json["keyframe"] = report.keyframe_added;
   json["features"] = report.features;
   json["expected"] = report.expected_points;

@@ -107,6 +107,12 @@ std::string describe_late(const MapRun& run) {
   return formatted("%d frames, by up to %.1f ms", late.count, late.max_ms);
 }
 
+std::string describe_deadline(const MapRun& run, double deadline_ms) {
+  const FrameCounts counts = count_frames(run.frames);
+  return formatted("%g ms: %d frames late; %d without most online points, %d without their right image", deadline_ms,
+                   counts.late, counts.without_online_points, counts.with_left_alone);
+}
+
 std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
   const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
   const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
@@ -137,8 +143,10 @@ std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
   return row("finishing", "left out; \"byre refine\" does it");
 }
 
-std::string cost_rows(const MapRun& run, Pace pace, const ResourceUse& resources) {
+std::string cost_rows(const MapRun& run, const EngineOptions& options, const ResourceUse& resources) {
+  const Pace pace = options.pace;
   std::string text = row("frame time", describe_frame_time(run, pace));
+  if (options.frame_deadline_ms > 0.0) text += row("deadline", describe_deadline(run, options.frame_deadline_ms));
   text += row("mapping", describe_mapping(run));
   if (pace == Pace::live) text += row("late", describe_late(run));
   text += row("CPU time", describe_processor(run, resources));
@@ -222,7 +230,7 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   text += motion_rows(run, protocol.is_metric);
   text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
                                 protocol.is_metric ? "m" : "units", run.final.size()));
-  text += cost_rows(run, protocol.options.pace, resources);
+  text += cost_rows(run, protocol.options, resources);
   text += closing_rows(run, files);
   return text;
 }

@@ -28,6 +28,9 @@ SpeedMeasures measures_of(const MapRun& run) {
   measures.frames = counts.frames - counts.unreadable;
   measures.with_pose = counts.with_pose;
   measures.keyframes = counts.keyframes;
+  measures.late = counts.late;
+  measures.without_online_points = counts.without_online_points;
+  measures.with_left_alone = counts.with_left_alone;
   for (const FrameStage& stage : kStages) measures.stages.push_back(summarise_stage(run.frames, stage.seconds));
   measures.jobs = summarise_times(run.job_seconds);
   return measures;

@@ -35,7 +35,10 @@ struct SpeedCase {
 struct SpeedMeasures {
   int frames = 0;  // frames that were processed
   int with_pose = 0;
-  int keyframes = 0;                          // keyframes that were made
+  int keyframes = 0;              // keyframes that were made
+  int late = 0;                   // frames that took longer than their deadline, where there is one
+  int without_online_points = 0;  // see FrameCounts, as the next
+  int with_left_alone = 0;
   std::vector<TimeSummary> stages;            // one for each of frame_stages()
   TimeSummary jobs;                           // mapping jobs
   std::optional<double> first_pose_seconds;   // wall time from opening recording and map to the first pose

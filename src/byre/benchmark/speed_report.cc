@@ -47,7 +47,7 @@ std::string stage_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasu
   return table.text();
 }
 
-std::string cost_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
+std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
   constexpr double kMega = 1e6;
   MarkdownTable table({"the whole run", "figure"});
   const auto add = [&](const char* name, const SpeedFigure& figure, int digits) {
@@ -70,6 +70,14 @@ std::string cost_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasur
       1);
   add(
       "keyframes", [](const SpeedMeasures& run) { return run.keyframes; }, 0);
+  if (what.engine.frame_deadline_ms > 0.0) {
+    add(
+        "frames late", [](const SpeedMeasures& run) { return run.late; }, 0);
+    add(
+        "frames without most online points", [](const SpeedMeasures& run) { return run.without_online_points; }, 0);
+    add(
+        "frames without their right image", [](const SpeedMeasures& run) { return run.with_left_alone; }, 0);
+  }
   add(
       "mapping jobs", [](const SpeedMeasures& run) { return run.jobs.count; }, 0);
   add(
@@ -91,6 +99,9 @@ Json json_of(const std::optional<Value>& value) {
 
 Json run_json(const SpeedMeasures& run) {
   Json json = {{"frames", run.frames}, {"with_pose", run.with_pose}, {"keyframes", run.keyframes}};
+  json["frames_late"] = run.late;
+  json["frames_without_online_points"] = run.without_online_points;
+  json["frames_with_left_image_alone"] = run.with_left_alone;
   for (std::size_t i = 0; i < frame_stages().size(); ++i) {
     json["stages"][frame_stages()[i].key] = times_json(run.stages[i]);
   }
@@ -116,7 +127,7 @@ std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> run
   if (runs.size() > 1) {
     text += formatted(". Of %zu runs, the one whose frames took the median time, with the range of all", runs.size());
   }
-  text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(runs, median);
+  text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(what, runs, median);
   if (!median.instructions) text += "\nThis machine does not let programs count instructions.\n";
   return text;
 }

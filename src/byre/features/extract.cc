@@ -155,7 +155,7 @@ struct Extractor::State {
   std::array<Described, kOctaves> described;
   TaskThreads threads;
 
-  void prepare(const ImageFrame& images, Frame& frame);
+  void prepare(const ImageFrame& images, bool stereo, Frame& frame);
   void describe_octave(int octave, int quota);
   Described describe_all(bool stereo);
   void match_right(std::vector<Keypoint>& keypoints);
@@ -164,8 +164,7 @@ struct Extractor::State {
 };
 
 // Images rectified and developed, the left one at every octave, and what they are like as they came.
-void Extractor::State::prepare(const ImageFrame& images, Frame& frame) {
-  const bool stereo = calibration.right && images.right;
+void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
   const auto prepare_left = [&] {
@@ -286,14 +285,14 @@ const Rig& Extractor::rig() const {
   return state_->rectifier.rig();
 }
 
-Extraction Extractor::extract(const ImageFrame& images) {
+Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const Clock::time_point start = Clock::now();
   const Calibration& calibration = state_->calibration;
-  const bool stereo = calibration.right && images.right;
+  const bool stereo = calibration.right && images.right && used == ImagesUsed::all;
   Extraction extraction;
   Frame& frame = extraction.frame;
   frame.time = images.time;
-  state_->prepare(images, frame);
+  state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
   Described described = state_->describe_all(stereo);
   const Clock::time_point extracted = Clock::now();

@@ -32,6 +32,9 @@ struct ExtractTimes {
   double stereo = 0.0;   // matching left to right, or reading depths
 };
 
+// Which images of a stereo frame are looked at.
+enum class ImagesUsed : std::uint8_t { all, left };
+
 struct Extraction {
   Frame frame;
   ExtractTimes times;
@@ -50,9 +53,10 @@ class Extractor {
   const Rig& rig() const;  // the ideal rig whose pixels the features are given in
 
   // Rectifies, detects, describes and, where there is a right image, matches left to right; where there is a depth
-  // image, its depths become disparities. A frame of a stereo rig without either has no disparities. Throws InputError
-  // when an image's size is not the calibration's.
-  Extraction extract(const ImageFrame& images);
+  // image, its depths become disparities. A frame of a stereo rig without either has no disparities.
+  // used: a right image that is there may be left alone. Throws InputError when an image's size is not the
+  // calibration's.
+  Extraction extract(const ImageFrame& images, ImagesUsed used = ImagesUsed::all);
 
  private:
   struct State;

@@ -224,6 +224,18 @@ TEST(Extractor, FindsNoDisparitiesWithoutARightImage) {
   EXPECT_EQ(features->descriptors(), with_right->descriptors()) << "the left image alone decides what is found";
 }
 
+TEST(Extractor, LeavesTheRightImageAloneWhereItIsToldTo) {
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  Extractor extractor(ideal_pair(), {});
+  ImageFrame left = images;
+  left.right.reset();
+  const auto of_left = extractor.extract(left).frame;
+  const auto told = extractor.extract(images, ImagesUsed::left).frame;
+  EXPECT_EQ(told.features->descriptors(), of_left.features->descriptors());
+  EXPECT_EQ(share_with_disparity(*told.features), 0.0);
+  EXPECT_FALSE(told.right_condition);
+}
+
 TEST(Extractor, IgnoresTheRightImageOfASingleCamera) {
   Extractor extractor({ideal_camera(), std::nullopt, Pose{}}, {});
   const auto features = extractor.extract(wall().seen_by(ideal_pair())).frame.features;

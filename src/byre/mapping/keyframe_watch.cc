@@ -15,6 +15,7 @@ bool has_disparities(const Frame& frame) {
 
 void KeyframeWatch::note_frame(const Frame& frame, const Rig& rig) {
   ++frames_since_keyframe_;
+  is_short_ = false;
   frames_without_depth_ = rig.is_stereo() && !has_disparities(frame) ? frames_without_depth_ + 1 : 0;
 }
 
@@ -39,6 +40,20 @@ KeyframeEvidence KeyframeWatch::evidence(const HybridTrack& track, const MapView
   evidence.turn = rotation_log(motion.rotation).norm();
   evidence.shift_share = motion.translation.norm() / std::max(1e-3, median_depth(track.tracked, map));
   return evidence;
+}
+
+bool KeyframeWatch::asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, bool is_pressed,
+                                      const KeyframeOptions& options) {
+  KeyframeEvidence judged = evidence;
+  if (is_pressed) {
+    judged.fresh_inliers = 0;
+    is_short_ = static_cast<int>(track.tracked.features.size()) < options.min_tracked;
+    if (is_short_) return false;
+  }
+  if (needs_keyframe(track.tracked, judged, options)) return true;
+  judged.without_depth = 0;
+  is_short_ = needs_keyframe(track.tracked, judged, options);
+  return false;
 }
 
 }  // namespace byre

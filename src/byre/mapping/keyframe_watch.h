@@ -20,11 +20,19 @@ class KeyframeWatch {
   // For the frame noted last; pending: keyframes that mapping has not worked on.
   KeyframeEvidence evidence(const HybridTrack& track, const MapView& map, int pending) const;
 
+  // Whether the frame noted last is to become a keyframe. is_pressed: few online points were looked for in it, so that
+  // their number says nothing of the view.
+  bool asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, bool is_pressed,
+                         const KeyframeOptions& options);
+  // Whether that one had too few points, or no depths, to become one.
+  bool is_short() const { return is_short_; }
+
  private:
   int frames_since_keyframe_ = 0;
   int frames_without_depth_ = 0;         // since one had disparities, with a rig that gives them
   std::optional<KeyframeId> reference_;  // reference of the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with that reference
+  bool is_short_ = false;
 };
 
 }  // namespace byre

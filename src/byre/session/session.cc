@@ -57,7 +57,7 @@ std::optional<RefinedCalibration> Session::self_calibration() const {
   return shutter_.refined({});
 }
 
-FrameReport Session::process(const Frame& rectified, const std::optional<BodyMotion>& motion) {
+FrameReport Session::process(const Frame& rectified, const std::optional<BodyMotion>& motion, FrameBudget* budget) {
   FrameReport report;
   report.time = rectified.time;
   if (!first_frame_) first_frame_ = rectified.time;
@@ -65,13 +65,15 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   hint_.pass(rectified.time);
   const Stopwatch mapping_before;
   take_over_results(report);
-  const InputFrame input = input_of(rectified);
+  InputFrame input = input_of(rectified);
   mapper_.start_job();
   const double seconds_before = mapping_before.seconds();
 
+  input.is_pressed = budget != nullptr && !budget->has_time_for_online_points();
   const Stopwatch tracking;
   const Located located = locate(input);
   report.track_seconds = tracking.seconds();
+  if (budget != nullptr && located.track) budget->note_tracked();
 
   const Stopwatch mapping_after;
   keyframe_watch_.note_frame(input.frame, rig_);
@@ -88,6 +90,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
     lose_pose(input.fault, report);
     whereabouts_.go_on(rectified.time, rig_, map(), mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr);
   }
+
+  if (budget != nullptr && (!located.track || keyframe_watch_.is_short())) budget->keep_next_whole();
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
   const bool is_believed = whereabouts_.confirmation().is_believed();
@@ -202,7 +206,8 @@ Session::Located Session::locate(const InputFrame& input) {
                              hint_.get(),
                              whereabouts_.confirmation().is_proven(),
                              trusted_place_.way_from_there(),
-                             mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr};
+                             mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr,
+                             input.is_pressed};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -258,7 +263,9 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
                          located.is_by_hint},
                         rig_, map());
   tracker_.note(track);
-  keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
+  if (!input.is_pressed) {
+    keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
+  }
   if (progress.was_proven && !located.from_nothing) {
     shutter_.note(input.frame, rig_, track.tracked, map(), whereabouts_.motion().velocity());
   }
@@ -292,10 +299,11 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
     mission_->search_beside({input.frame, rig_, hint_.get(), trusted_place_.way_from_there()}, whereabouts_, mapper_);
 }
 
-bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) const {
+bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) {
   if (!options_.map_online || is_mapping_paused_) return false;
   if (!whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none) return false;
-  return needs_keyframe(track.tracked, keyframe_watch_.evidence(track, map(), mapper_.pending()), options_.keyframes);
+  const KeyframeEvidence evidence = keyframe_watch_.evidence(track, map(), mapper_.pending());
+  return keyframe_watch_.asks_for_keyframe(track, evidence, input.is_pressed, options_.keyframes);
 }
 
 // While offline points hold the pose there is no drift that a loop could tell of.

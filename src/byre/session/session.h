@@ -11,6 +11,7 @@
 #include "byre/session/frame_summary.h"
 #include "byre/session/session_options.h"
 #include "byre/session/tracker.h"
+#include "byre/slam/frame_budget.h"
 #include "byre/slam/health.h"
 #include "byre/slam/input_watch.h"
 #include "byre/slam/state.h"
@@ -73,8 +74,10 @@ class Session {
   void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
   bool is_mapping_paused() const { return is_mapping_paused_; }
 
-  // motion: of the body since the last frame, where that is known.
-  FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {});
+  // motion: of the body since the last frame, where that is known. budget: what the frame may take, if that is limited;
+  // its begin() was called, and its end() is left to the caller.
+  FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {},
+                      FrameBudget* budget = nullptr);
 
   // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
   void hurry() { mapper_.hurry(); }
@@ -120,7 +123,7 @@ class Session {
   Located begin_submap(const Frame& frame);
   void remember(const InputFrame& input, const Located& located, FrameReport& report);
   void extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report);
-  bool may_add_keyframe(const InputFrame& input, const HybridTrack& track) const;
+  bool may_add_keyframe(const InputFrame& input, const HybridTrack& track);
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);

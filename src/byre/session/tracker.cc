@@ -3,6 +3,7 @@
 #include "byre/localisation/place_search.h"
 #include "byre/slam/planar_prior.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace byre {
@@ -63,9 +64,22 @@ const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted
   return offline_.points;
 }
 
+// None where offline points hold the pose and time is short.
+const std::vector<PointId>& Tracker::online_points(const Scene& scene) {
+  if (!scene.is_pressed) return points_around_reference(scene.mapper);
+  few_.clear();
+  const bool is_held = scene.mission && scene.is_place_proven && scene.mapper.submaps().is_registered() &&
+                       scene.mission->view() == OfflineView::held;
+  if (is_held || !reference_) return few_;
+  constexpr int kFewKeyframes = 4;
+  few_ = local_points(scene.mapper.map(), *reference_, std::min(kFewKeyframes, options_.local_keyframes));
+  std::erase_if(few_, [](PointId id) { return id.origin == Origin::offline; });
+  return few_;
+}
+
 std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                                const HybridLimits& limits) {
-  const std::vector<PointId>& online = points_around_reference(scene.mapper);
+  const std::vector<PointId>& online = online_points(scene);
   const MapView map = scene.mapper.map();
   if (!scene.mission) {
     const auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
@@ -89,6 +103,7 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
   if (scene.ground != nullptr) limits.prior = planar_prior(*scene.ground, scene.rig, predicted);
   auto best = track_from(frame, scene, predicted, limits);
+  if (best && scene.is_pressed) return best;
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   for (const std::optional<KeyframeId>& keyframe : {std::optional(last.keyframe), newest}) {

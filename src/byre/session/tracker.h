@@ -34,6 +34,7 @@ class Tracker {
     bool is_place_proven = false;           // so offline points cannot put the camera just anywhere
     std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
     const DrivenGround* ground = nullptr;   // ground that the body is held to; nullptr for none
+    bool is_pressed = false;                // few online points are looked for, see FrameCuts
   };
   // The last frame that had a pose.
   struct LastPose {
@@ -71,6 +72,7 @@ class Tracker {
 
   bool is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const;
   const std::vector<PointId>& points_around_reference(const Mapper& mapper);
+  const std::vector<PointId>& online_points(const Scene& scene);
   const std::vector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
   std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                         const HybridLimits& limits);
@@ -81,6 +83,7 @@ class Tracker {
   int last_inliers_ = 0;                 // in the last frame tracked
   PointsAround online_;
   PointsAround offline_;
+  std::vector<PointId> few_;  // online points looked for where time is short
 };
 
 }  // namespace byre

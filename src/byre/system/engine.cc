@@ -8,6 +8,8 @@
 namespace byre {
 namespace {
 
+constexpr double kMillisecondsPerSecond = 1e3;
+
 // The second lane of a mission looks for places in the offline map.
 Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
@@ -71,6 +73,7 @@ std::string_view name_of(OfflinePolicy policy) {
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
     : known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
+      budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
       session_(extractor_.rig(), session_options(given, options),
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
   prior_.begin_with(mounting_before(given, options));
@@ -88,20 +91,31 @@ void Engine::refine_calibration(const Calibration& given, const EngineOptions& o
 }
 
 FrameReport Engine::process(const Frame& frame, const std::optional<BodyMotion>& motion) {
+  budget_.begin();
+  return process_in_time(frame, motion);
+}
+
+FrameReport Engine::process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion) {
   log_.job_seconds.clear();
   const bool is_told = !motion && last_frame_ && !prior_.is_empty();
-  FrameReport report = session_.process(frame, is_told ? prior_.between(*last_frame_, frame.time) : motion);
+  const auto known_motion = is_told ? prior_.between(*last_frame_, frame.time) : motion;
+  FrameReport report = session_.process(frame, known_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
+  budget_.end();
+  report.cuts = budget_.cuts();
+  report.is_late = budget_.is_late();
   return report;
 }
 
 Engine::Processed Engine::process(const ImageFrame& images, const std::optional<BodyMotion>& motion) {
   const double submit_seconds_before = log_.submit_seconds;
   const Stopwatch watch;
-  const Extraction extraction = extractor_.extract(images);
-  Processed processed{process(extraction.frame, motion), {}};
+  budget_.begin();
+  const bool is_left_alone = images.right && !budget_.has_time_for_right_image();
+  const Extraction extraction = extractor_.extract(images, is_left_alone ? ImagesUsed::left : ImagesUsed::all);
+  Processed processed{process_in_time(extraction.frame, motion), {}};
   processed.seconds.total = watch.seconds();
   processed.seconds.rectify = extraction.times.rectify;
   processed.seconds.extract = extraction.times.extract;

@@ -41,6 +41,7 @@ struct EngineOptions {
   // How wheels and a gyroscope were mounted when the map was made that is gone on with; a mission asks its offline map.
   KnownMounting mounting;
   bool use_known_mounting = true;
+  double frame_deadline_ms = 0.0;             // wall time that a frame may take, see FrameBudget
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
 
@@ -108,12 +109,15 @@ class Engine {
 
  private:
   void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);
+  // Of a frame whose budget has begun.
+  FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
   std::optional<RefinedCalibration> known_;  // before any frame
   Extractor extractor_;
   MotionPrior prior_;
   std::optional<Timestamp> last_frame_;
+  FrameBudget budget_;
   Session session_;
 };
 

@@ -102,6 +102,10 @@ void add_run(Table& table) {
   table.push_back(number(
       "trajectory.max_poses", "poses", 0, 1e8, [](auto& o) -> auto& { return o.session.trajectory.max_poses; },
       "most poses of the trajectory that are kept: the newer half, older ones evenly thinned out; 0: all"));
+  table.push_back(number(
+      "frame.deadline_ms", "milliseconds", 0, 1e6, [](auto& o) -> auto& { return o.frame_deadline_ms; },
+      "wall time that a frame may take: where it would take longer, online points are left out first, then the right "
+      "image; 0: as long as it needs"));
 }
 
 void add_features(Table& table) {

@@ -246,6 +246,22 @@ TEST(Slam, TracksTheLeftImageWhereTheRightOneCannotBeUsed) {
   EXPECT_TRUE(unpaired.map_from_body);
 }
 
+TEST(Slam, LeavesOutWhatADeadlineHasNoTimeForAndTellsIt) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  SlamOptions options = repeatable();
+  options.settings.emplace_back("frame.deadline_ms", "0.001");
+  Slam slam = Slam::mapping(open_shared()->calibration(), options);
+  int with_left_alone = 0;
+  for (const ImageFrame& frame : frames) {
+    const FrameReport report = slam.process(view_of(frame));
+    EXPECT_TRUE(report.map_from_body);
+    EXPECT_TRUE(report.is_late);
+    EXPECT_EQ(report.input, InputFault::none) << "the right image is there, and left alone";
+    with_left_alone += report.cuts.right_image ? 1 : 0;
+  }
+  EXPECT_GT(2 * with_left_alone, static_cast<int>(frames.size()));
+}
+
 TEST(Slam, SeesTheSameInEveryFormatOfTheSamePicture) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam grey = Slam::mapping(open_shared()->calibration(), repeatable());

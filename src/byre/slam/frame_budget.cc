@@ -1,0 +1,86 @@
+#include "byre/slam/frame_budget.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kShareOfCut = 0.6;  // what a stage takes with work left out, of all of it, before that was ever seen
+
+}  // namespace
+
+void ExpectedTime::note(double seconds) {
+  constexpr double kGain = 0.125;
+  constexpr double kDeviationGain = 0.25;
+  if (!mean_) {
+    mean_ = seconds;
+    return;
+  }
+  deviation_ += kDeviationGain * (std::abs(seconds - *mean_) - deviation_);
+  *mean_ += kGain * (seconds - *mean_);
+}
+
+// By half within 280 frames, which is 14 s at 20 Hz.
+void ExpectedTime::fade() {
+  constexpr double kKept = 0.9975;
+  if (mean_) *mean_ *= kKept;
+  deviation_ *= kKept;
+}
+
+std::optional<double> ExpectedTime::seconds() const {
+  constexpr double kDeviations = 2.0;
+  return mean_ ? std::optional(*mean_ + kDeviations * deviation_) : std::nullopt;
+}
+
+void FrameBudget::Stage::note(double seconds, bool is_cut) {
+  (is_cut ? cut : whole).note(seconds);
+  if (is_cut) whole.fade();
+}
+
+double FrameBudget::Stage::expected_when_cut() const {
+  return cut.seconds().value_or(kShareOfCut * expected());
+}
+
+FrameBudget::FrameBudget(double deadline, Clock clock) : deadline_(deadline), clock_(std::move(clock)) {}
+
+FrameBudget::Clock FrameBudget::wall_clock() {
+  return [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+}
+
+void FrameBudget::begin() {
+  begun_ = clock_();
+  tracking_begun_ = 0.0;
+  tracking_ended_.reset();
+  cuts_ = {};
+  is_whole_ = std::exchange(is_next_whole_, false);
+}
+
+bool FrameBudget::has_time_for_right_image() {
+  const double expected = images_.expected() + tracking_.expected_when_cut() + rest_.seconds().value_or(0.0);
+  cuts_.right_image = is_set() && !is_whole_ && expected > deadline_;
+  return !cuts_.right_image;
+}
+
+bool FrameBudget::has_time_for_online_points() {
+  tracking_begun_ = elapsed();
+  const double expected = tracking_begun_ + tracking_.expected() + rest_.seconds().value_or(0.0);
+  cuts_.online_points = is_set() && !is_whole_ && expected > deadline_;
+  return !cuts_.online_points;
+}
+
+void FrameBudget::note_tracked() {
+  tracking_ended_ = elapsed();
+}
+
+void FrameBudget::end() {
+  const double seconds = elapsed();
+  is_late_ = is_set() && seconds > deadline_;
+  images_.note(tracking_begun_, cuts_.right_image);
+  if (!tracking_ended_) return;
+  tracking_.note(*tracking_ended_ - tracking_begun_, cuts_.online_points);
+  rest_.note(seconds - *tracking_ended_);
+}
+
+}  // namespace byre
