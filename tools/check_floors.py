@@ -46,7 +46,7 @@ PUBLIC = {
     "features.h": "features", "image.h": "features", "image_condition.h": "features",
     "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
     "calibration_file.h": "dataset", "floor_plan.h": "dataset", "recording.h": "dataset",
-    "health.h": "slam", "session_event.h": "slam", "state.h": "slam",
+    "frame_cuts.h": "slam", "health.h": "slam", "session_event.h": "slam", "state.h": "slam",
     "frame_report.h": "session",
     "byre.h": "system", "slam.h": "system",
 }

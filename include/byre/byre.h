@@ -8,6 +8,7 @@
 #include "byre/calibration_file.h"
 #include "byre/features.h"
 #include "byre/floor_plan.h"
+#include "byre/frame_cuts.h"
 #include "byre/frame_report.h"
 #include "byre/health.h"
 #include "byre/image.h"

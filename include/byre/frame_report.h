@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/frame_cuts.h"
 #include "byre/health.h"
 #include "byre/pose.h"
 #include "byre/session_event.h"
@@ -37,13 +38,6 @@ std::string_view to_string(InputFault fault);
 inline bool is_dropped(InputFault fault) {
   return fault >= InputFault::no_image;
 }
-
-// What was left out of a frame so that it keeps to its deadline, see the option frame.deadline_ms.
-struct FrameCuts {
-  // Fewer points of the session's own map were looked for: none where points of an offline map hold the pose.
-  bool online_points = false;
-  bool right_image = false;  // the frame was tracked by its left image alone
-};
 
 // What the caller learns about one frame.
 struct FrameReport {

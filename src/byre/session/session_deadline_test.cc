@@ -10,12 +10,12 @@
 namespace byre {
 namespace {
 
-constexpr int kFramesOfLap = 120;
+constexpr int kFramesInTime = 120;
 
-SimulatedMission lap(std::uint64_t noise_seed) {
+SimulatedMission timed_lap(std::uint64_t noise_seed) {
   SimulationOptions options;
   options.noise_seed = noise_seed;
-  return simulate_mission(simulated_rig(), circling_trajectory(kFramesOfLap, 10.0, 2.0, 1.0), options);
+  return simulate_mission(simulated_rig(), circling_trajectory(kFramesInTime, 10.0, 2.0, 1.0), options);
 }
 
 // A clock that has gone on by a second whenever somebody looks at it.
@@ -42,13 +42,13 @@ int count_pressed(const std::vector<FrameReport>& reports) {
 }
 
 TEST(Deadline, LeavesAMissionItsOfflinePoints) {
-  const auto offline = offline_map_of(lap(1));
-  const SimulatedMission mission = lap(2);
+  const auto offline = offline_map_of(timed_lap(1));
+  const SimulatedMission mission = timed_lap(2);
   Session session(simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
                   offline);
   FrameBudget budget = budget_always_spent();
   const auto reports = reports_in_time(session, budget, mission.frames);
-  EXPECT_GT(count_pressed(reports), kFramesOfLap - 10);
+  EXPECT_GT(count_pressed(reports), kFramesInTime - 10);
   for (std::size_t i = 10; i < reports.size(); ++i) {
     ASSERT_TRUE(reports[i].map_from_body) << i;
     EXPECT_THAT(*reports[i].map_from_body, PoseNear(mission.truth[i].world_from_body, 0.03, 0.01)) << i;
@@ -58,13 +58,13 @@ TEST(Deadline, LeavesAMissionItsOfflinePoints) {
 }
 
 TEST(Deadline, LeavesMappingItsKeyframes) {
-  const SimulatedMission mission = lap(1);
+  const SimulatedMission mission = timed_lap(1);
   Session whole(mission.rig, {}, make_inline_executor());
   reports_of(whole, mission.frames);
   Session pressed(mission.rig, {}, make_inline_executor());
   FrameBudget budget = budget_always_spent();
   const auto reports = reports_in_time(pressed, budget, mission.frames);
-  EXPECT_GT(count_pressed(reports), kFramesOfLap / 2);
+  EXPECT_GT(count_pressed(reports), kFramesInTime / 2);
   EXPECT_THAT(reports, testing::Each(testing::Field(&FrameReport::state, State::tracking)));
   EXPECT_GT(2 * pressed.map().online().keyframe_count(), whole.map().online().keyframe_count());
   EXPECT_LT(pressed.map().online().keyframe_count(), 2 * whole.map().online().keyframe_count());
@@ -74,7 +74,7 @@ TEST(Deadline, LeavesMappingItsKeyframes) {
 }
 
 TEST(Deadline, SeesAFrameWholeAfterOneThatWasLost) {
-  const SimulatedMission mission = lap(1);
+  const SimulatedMission mission = timed_lap(1);
   Session session(mission.rig, {}, make_inline_executor());
   FrameBudget budget = budget_always_spent();
   std::vector<Frame> frames(mission.frames.begin(), mission.frames.begin() + 20);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/frame_report.h"
+#include "byre/frame_cuts.h"
 
 #include <functional>
 #include <optional>
@@ -42,7 +42,7 @@ class FrameBudget {
   void keep_next_whole() { is_next_whole_ = true; }
   void end();  // there is a report
 
-  const FrameCuts& cuts() const { return cuts_; }  // of this frame
+  const FrameCuts& cuts() const { return cuts_; }  // what was left out of this frame
   bool is_late() const { return is_late_; }        // it took longer than it may
 
  private:

@@ -109,7 +109,7 @@ class Engine {
 
  private:
   void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);
-  // Of a frame whose budget has begun.
+  // The frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
