@@ -50,8 +50,8 @@ std::vector<std::string> values(const EngineOptions& options) {
 TEST(OptionTable, ListsEveryLeaf) {
   const EngineOptions options;
   [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, known, self_calibration, vocabulary, mounting,
-                                use_known_mounting, offline] = options;
-  const std::size_t in_engine = 3;                                         // pace, self_calibrate, use_known_mounting
+                                use_known_mounting, frame_deadline_ms, offline] = options;
+  const std::size_t in_engine = 4;  // pace, self_calibrate, use_known_mounting, frame_deadline_ms
   const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording, and groups
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
