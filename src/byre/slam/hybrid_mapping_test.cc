@@ -2,6 +2,7 @@
 
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/map/map_file.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/hybrid_scene.h"
 #include "byre/slam/mapping_steps.h"

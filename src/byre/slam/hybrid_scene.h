@@ -2,7 +2,7 @@
 
 // A mission on an offline map, as the tests of mapping need it: two visits to the same room.
 
-#include "byre/map/map_file.h"
+#include "byre/map/map.h"
 #include "byre/map/map_view.h"
 #include "byre/slam/mapping.h"
 #include "byre/slam/mission_scene.h"
@@ -52,16 +52,16 @@ inline void see_offline(HybridScene& scene) {
   }
 }
 
-// Both maps true. The online one has points of its own for all landmarks, known or not.
+// Both maps true. The online one has points of its own for all landmarks, known or not. Offline keyframes have features
+// that see no point, as those of maps from elsewhere may.
 inline HybridScene two_true_maps(const SimulationOptions& options) {
   HybridScene scene;
   scene.first = visit(1, 2.0, options);
   scene.second = visit(2, 1.9, options);
-  Map whole = true_map(scene.first, kFramesPerKeyframe, Origin::offline);
-  for (const PointId id : whole.point_ids()) {
-    if (!is_known(true_landmark(scene.first, whole, id))) whole.remove_point(id);
+  scene.offline = true_map(scene.first, kFramesPerKeyframe, Origin::offline);
+  for (const PointId id : scene.offline.point_ids()) {
+    if (!is_known(true_landmark(scene.first, scene.offline, id))) scene.offline.remove_point(id);
   }
-  scene.offline = offline_copy(whole);
   for (const PointId id : scene.offline.point_ids()) {
     scene.known_points[true_landmark(scene.first, scene.offline, id)] = id;
   }
