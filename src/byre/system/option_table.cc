@@ -150,10 +150,6 @@ void add_start(Table& table) {
   table.push_back(number(
       "start.min_points", "points", 1, 1e5, [](auto& o) -> auto& { return o.session.min_initial_points; },
       "stereo points of the first keyframe"));
-  table.push_back(number(
-      "start.monocular_median_depth", "lengths of the map's own", 1e-6, 1e6,
-      [](auto& o) -> auto& { return o.session.monocular_start.median_depth; },
-      "median depth of the first points of one camera, which sets its scale"));
 }
 
 void add_tracking(Table& table) {

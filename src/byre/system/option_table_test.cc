@@ -55,7 +55,8 @@ TEST(OptionTable, ListsEveryLeaf) {
   const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording, and groups
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
-                 HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>();
+                 HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>() -
+      1;  // without the length that a map of one camera calls one
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
                                  member_count<PlaceBoundsOptions>() - 1;  // without what other cameras set
