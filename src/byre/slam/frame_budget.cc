@@ -30,7 +30,7 @@ void ExpectedTime::fade() {
 }
 
 std::optional<double> ExpectedTime::seconds() const {
-  constexpr double kDeviations = 2.0;
+  constexpr double kDeviations = 1.5;
   return mean_ ? std::optional(*mean_ + kDeviations * deviation_) : std::nullopt;
 }
 
@@ -58,14 +58,14 @@ void FrameBudget::begin() {
 }
 
 bool FrameBudget::has_time_for_right_image() {
-  const double expected = images_.expected() + tracking_.expected_when_cut() + rest_.seconds().value_or(0.0);
+  const double expected = images_.expected() + tracking_.expected_when_cut() + rest_.mean();
   cuts_.right_image = is_set() && !is_whole_ && expected > deadline_;
   return !cuts_.right_image;
 }
 
 bool FrameBudget::has_time_for_online_points() {
   tracking_begun_ = elapsed();
-  const double expected = tracking_begun_ + tracking_.expected() + rest_.seconds().value_or(0.0);
+  const double expected = tracking_begun_ + tracking_.expected() + rest_.mean();
   cuts_.online_points = is_set() && !is_whole_ && expected > deadline_;
   return !cuts_.online_points;
 }

@@ -16,6 +16,7 @@ class ExpectedTime {
   void fade();
   // Seldom exceeded; empty before the stage was ever done.
   std::optional<double> seconds() const;
+  double mean() const { return mean_.value_or(0.0); }
 
  private:
   std::optional<double> mean_;
@@ -65,7 +66,7 @@ class FrameBudget {
 
   Stage images_;  // until tracking begins
   Stage tracking_;
-  ExpectedTime rest_;  // from tracking on
+  ExpectedTime rest_;  // from tracking on: by its mean, as nothing left out spares a keyframe's frame its longer time
   double begun_ = 0.0;
   double tracking_begun_ = 0.0;           // seconds after begin(), as the next
   std::optional<double> tracking_ended_;  // empty where the frame was not tracked
