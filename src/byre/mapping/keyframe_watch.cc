@@ -42,15 +42,15 @@ KeyframeEvidence KeyframeWatch::evidence(const HybridTrack& track, const MapView
   return evidence;
 }
 
-bool KeyframeWatch::asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, bool is_pressed,
+bool KeyframeWatch::asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, const FrameCuts& cuts,
                                       const KeyframeOptions& options) {
   KeyframeEvidence judged = evidence;
-  if (is_pressed) {
+  if (cuts.online_points) {
     judged.fresh_inliers = 0;
     is_short_ = static_cast<int>(track.tracked.features.size()) < options.min_tracked;
     if (is_short_) return false;
   }
-  if (needs_keyframe(track.tracked, judged, options)) return true;
+  if (!cuts.right_image && needs_keyframe(track.tracked, judged, options)) return true;
   judged.without_depth = 0;
   is_short_ = needs_keyframe(track.tracked, judged, options);
   return false;

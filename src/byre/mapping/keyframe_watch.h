@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/frame_cuts.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/keyframes.h"
 
@@ -20,9 +21,9 @@ class KeyframeWatch {
   // For the frame noted last; pending: keyframes that mapping has not worked on.
   KeyframeEvidence evidence(const HybridTrack& track, const MapView& map, int pending) const;
 
-  // Whether the frame noted last is to become a keyframe. is_pressed: few online points were looked for in it, so that
-  // their number says nothing of the view.
-  bool asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, bool is_pressed,
+  // Whether the frame noted last is to become a keyframe. cuts: what was left out of it. Where few online points were
+  // looked for their number says nothing of the view, and no keyframe is made without a right image that was there.
+  bool asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, const FrameCuts& cuts,
                          const KeyframeOptions& options);
   // Whether that one had too few points, or no depths, to become one.
   bool is_short() const { return is_short_; }

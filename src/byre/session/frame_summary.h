@@ -13,7 +13,7 @@ struct InputFrame {
   Frame frame;
   ImageFault fault = ImageFault::none;
   InputEvidence evidence;
-  bool is_pressed = false;  // few online points are looked for in it, see FrameCuts
+  FrameCuts cuts;  // what is left out of it
 };
 
 // All that is told of a frame, once the session has taken it in.

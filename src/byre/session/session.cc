@@ -69,7 +69,10 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   mapper_.start_job();
   const double seconds_before = mapping_before.seconds();
 
-  input.is_pressed = budget != nullptr && !budget->has_time_for_online_points();
+  if (budget != nullptr) {
+    budget->has_time_for_online_points();
+    input.cuts = budget->cuts();
+  }
   const Stopwatch tracking;
   const Located located = locate(input);
   report.track_seconds = tracking.seconds();
@@ -207,7 +210,7 @@ Session::Located Session::locate(const InputFrame& input) {
                              whereabouts_.confirmation().is_proven(),
                              trusted_place_.way_from_there(),
                              mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr,
-                             input.is_pressed};
+                             input.cuts.online_points};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -263,7 +266,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
                          located.is_by_hint},
                         rig_, map());
   tracker_.note(track);
-  if (!input.is_pressed) {
+  if (!input.cuts.online_points) {
     keyframe_watch_.note_track(anchor_of(track), static_cast<int>(track.tracked.features.size()));
   }
   if (progress.was_proven && !located.from_nothing) {
@@ -303,7 +306,7 @@ bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track
   if (!options_.map_online || is_mapping_paused_) return false;
   if (!whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none) return false;
   const KeyframeEvidence evidence = keyframe_watch_.evidence(track, map(), mapper_.pending());
-  return keyframe_watch_.asks_for_keyframe(track, evidence, input.is_pressed, options_.keyframes);
+  return keyframe_watch_.asks_for_keyframe(track, evidence, input.cuts, options_.keyframes);
 }
 
 // While offline points hold the pose there is no drift that a loop could tell of.
