@@ -69,10 +69,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   mapper_.start_job();
   const double seconds_before = mapping_before.seconds();
 
-  if (budget != nullptr) {
-    budget->has_time_for_online_points();
-    input.cuts = budget->cuts();
-  }
+  if (budget != nullptr) input.cuts = budget->begin_tracking();
   const Stopwatch tracking;
   const Located located = locate(input);
   report.track_seconds = tracking.seconds();

@@ -63,11 +63,11 @@ bool FrameBudget::has_time_for_right_image() {
   return !cuts_.right_image;
 }
 
-bool FrameBudget::has_time_for_online_points() {
+FrameCuts FrameBudget::begin_tracking() {
   tracking_begun_ = elapsed();
   const double expected = tracking_begun_ + tracking_.expected() + rest_.mean();
   cuts_.online_points = is_set() && !is_whole_ && expected > deadline_;
-  return !cuts_.online_points;
+  return cuts_;
 }
 
 void FrameBudget::note_tracked() {

@@ -36,9 +36,9 @@ class FrameBudget {
   void begin();  // a frame has come
   // Asked before its images are looked at.
   bool has_time_for_right_image();
-  // Asked before the frame is tracked.
-  bool has_time_for_online_points();  // cuts() tells it too
-  void note_tracked();                // the frame was tracked, and not looked for from nothing
+  // Tracking begins: what is left out of the frame, its right image included.
+  FrameCuts begin_tracking();
+  void note_tracked();  // the frame was tracked, and not looked for from nothing
   // Nothing is left out of the next frame: a keyframe waits for depths, or too few points were seen in this one.
   void keep_next_whole() { is_next_whole_ = true; }
   void end();  // there is a report

@@ -24,7 +24,7 @@ class FrameBudgetTest : public testing::Test {
     constexpr double kShareOfOffline = 0.5;
     budget_.begin();
     now_ += times.images * (budget_.has_time_for_right_image() ? 1.0 : kShareOfLeftImage);
-    now_ += times.tracking * (budget_.has_time_for_online_points() ? 1.0 : kShareOfOffline);
+    now_ += times.tracking * (budget_.begin_tracking().online_points ? kShareOfOffline : 1.0);
     if (is_tracked) budget_.note_tracked();
     now_ += times.rest;
     budget_.end();
