@@ -1,9 +1,65 @@
 #include "byre/mapping/keyframe_watch.h"
 
+#include "byre/slam/mission_scene.h"
+
 #include <gtest/gtest.h>
 
 namespace byre {
 namespace {
+
+class KeyframesWatched : public ::testing::Test {
+ protected:
+  const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
+  const Map map_ = true_map(mission_, 8, Origin::online);
+  KeyframeWatch watch_;
+
+  // A frame turned by so many radians against the first keyframe.
+  KeyframeEvidence evidence(double turn = 0.0) const {
+    HybridTrack track;
+    track.tracked.reference = map_.keyframe_ids().front();
+    track.tracked.camera_from_world =
+        Pose{rotation_exp({0.0, turn, 0.0}), Eigen::Vector3d::Zero()} * map_.camera_from_world(track.tracked.reference);
+    return watch_.evidence(track, map_, 2);
+  }
+  Frame without_disparities() const { return {mission_.frames[1].time, std::make_shared<const Features>()}; }
+};
+
+TEST_F(KeyframesWatched, CountsFramesSinceTheLastOne) {
+  for (int i = 0; i < 3; ++i) watch_.note_frame(mission_.frames[1], mission_.rig);
+  EXPECT_EQ(evidence().frames_since_last, 3);
+  watch_.restart();
+  EXPECT_EQ(evidence().frames_since_last, 0);
+  EXPECT_EQ(evidence().pending, 2);
+}
+
+TEST_F(KeyframesWatched, CountsFramesWithoutDepthWithARigThatGivesDepthsOnly) {
+  watch_.note_frame(without_disparities(), mission_.rig);
+  watch_.note_frame(without_disparities(), mission_.rig);
+  EXPECT_EQ(evidence().without_depth, 2);
+  watch_.note_frame(mission_.frames[1], mission_.rig);
+  EXPECT_EQ(evidence().without_depth, 0);
+  Rig one_camera = mission_.rig;
+  one_camera.baseline = 0.0;
+  watch_.note_frame(without_disparities(), one_camera);
+  EXPECT_EQ(evidence().without_depth, 0);
+}
+
+TEST_F(KeyframesWatched, KeepsTheInliersOfTheFirstFrameOfAReference) {
+  const std::vector<KeyframeId> keyframes = map_.keyframe_ids();
+  watch_.note_track(keyframes[0], 200);
+  watch_.note_track(keyframes[0], 150);
+  EXPECT_EQ(evidence().fresh_inliers, 200);
+  watch_.note_track(keyframes[1], 180);
+  EXPECT_EQ(evidence().fresh_inliers, 180);
+  watch_.restart();
+  watch_.note_track(keyframes[1], 170);
+  EXPECT_EQ(evidence().fresh_inliers, 170);
+}
+
+TEST_F(KeyframesWatched, TellsTheTurnFromTheReference) {
+  EXPECT_NEAR(evidence(0.2).turn, 0.2, 1e-9);
+  EXPECT_NEAR(evidence(0.2).shift_share, 0.0, 1e-9);
+}
 
 constexpr FrameCuts kNoCuts{};
 constexpr FrameCuts kNoRightImage{.online_points = false, .right_image = true};
@@ -24,7 +80,7 @@ KeyframeEvidence after_a_turn() {
   return evidence;
 }
 
-TEST(KeyframeWatch, MakesNoKeyframeWithoutARightImageThatWasLeftOut) {
+TEST(KeyframeOfACutFrame, IsNotMadeWithoutARightImageThatWasLeftOut) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.without_depth = 10 * kMaxWaitForDepth;  // as after many such frames
@@ -32,13 +88,13 @@ TEST(KeyframeWatch, MakesNoKeyframeWithoutARightImageThatWasLeftOut) {
   EXPECT_TRUE(watch.is_short()) << "so that the next frame is seen whole";
 }
 
-TEST(KeyframeWatch, MakesAKeyframeOfAFrameThatWasSeenWhole) {
+TEST(KeyframeOfACutFrame, IsMadeWhereNothingWasLeftOut) {
   KeyframeWatch watch;
   EXPECT_TRUE(watch.asks_for_keyframe(tracked_on(200), after_a_turn(), kNoCuts, {}));
   EXPECT_FALSE(watch.is_short());
 }
 
-TEST(KeyframeWatch, WaitsForDepthsWhereTheyWereMissing) {
+TEST(KeyframeOfACutFrame, WaitsForDepthsWhereTheyWereMissing) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.without_depth = 1;
@@ -46,7 +102,7 @@ TEST(KeyframeWatch, WaitsForDepthsWhereTheyWereMissing) {
   EXPECT_TRUE(watch.is_short());
 }
 
-TEST(KeyframeWatch, TakesFewPointsForNoNewViewWhereFewWereLookedFor) {
+TEST(KeyframeOfACutFrame, IsNotAskedForByFewPointsWhereFewWereLookedFor) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.turn = 0.0;
