@@ -79,7 +79,8 @@ struct SectionSize {
 };
 
 // The layout is described in docs/map_format.md. Equal maps give equal bytes. Values are rounded, far below their
-// noise; a map that was read from its bytes is written as them again. Precondition: ids without gaps.
+// noise; a map that was read from its bytes is written as them again. Preconditions: ids without gaps, and keyframes
+// whose rigs exist.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
 // All or nothing: throws InputError naming section and byte for any damage, any broken invariant, and a format that is

@@ -48,9 +48,10 @@ double median_point_error(const HybridScene& scene) {
   return *middle;
 }
 
+// As it would be kept, without gaps in its ids.
 std::vector<std::byte> bytes_of(const Map& offline) {
   StoredMap stored;
-  stored.map = offline;
+  stored.map = offline_copy(offline);
   stored.recordings.emplace_back();
   return write_map(stored);
 }
