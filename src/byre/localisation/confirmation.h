@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/registration.h"
 
 #include <optional>
@@ -8,8 +9,8 @@ namespace byre {
 
 // How far a pose found from nothing may be relied on. It is believed once the frames that follow have been tracked on
 // it; the more of them, the less the robot can have come there by itself. It is trusted once some frames have seen much
-// of what should be there; the more, where it was looked for near a hint alone, for a hint may name a place that looks
-// alike.
+// of what should be there, all over the image: a thing that was moved, or a roof that is the same in each bay, fits a
+// pose of its own. The more, where it was looked for near a hint alone, for a hint may name a place that looks alike.
 struct Confirmation {
   int frames_to_believe = 0;
   int frames_to_prove = 0;
@@ -36,8 +37,8 @@ struct FindEvidence {
 //   nearer                                      confirmations          confirmations
 Confirmation confirmation_of(const FindEvidence& find, const RegistrationOptions& options);
 
-// After one more frame was tracked on the pose, on so many of the offline points expected.
-Confirmation confirmed_further(const Confirmation& before, int expected, int inliers,
+// After one more frame was tracked on the pose, which saw so many points of the offline map.
+Confirmation confirmed_further(const Confirmation& before, const ByImageRegion<PointsInView>& offline,
                                const RegistrationOptions& options);
 
 }  // namespace byre

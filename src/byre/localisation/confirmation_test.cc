@@ -33,19 +33,43 @@ TEST(ConfirmationOfAFind, FollowsTheTable) {
   for (const Row& row : table) EXPECT_EQ(confirmation_of(row.evidence, kOptions), row.needed) << row.find;
 }
 
+// So many of 100 points in each region of the image.
+ByImageRegion<PointsInView> seeing(int points) {
+  ByImageRegion<PointsInView> regions;
+  regions.fill({100, points});
+  return regions;
+}
+
 TEST(ConfirmedFurther, CountsFramesDownToNone) {
-  const Confirmation once = confirmed_further({2, 1}, 100, 50, kOptions);
+  const Confirmation once = confirmed_further({2, 1}, seeing(50), kOptions);
   EXPECT_EQ(once, (Confirmation{1, 0}));
   EXPECT_FALSE(once.is_believed());
   EXPECT_TRUE(once.is_proven());
-  const Confirmation twice = confirmed_further(once, 100, 50, kOptions);
+  const Confirmation twice = confirmed_further(once, seeing(50), kOptions);
   EXPECT_TRUE(twice.is_believed());
-  EXPECT_EQ(confirmed_further(twice, 100, 50, kOptions), twice);
+  EXPECT_EQ(confirmed_further(twice, seeing(50), kOptions), twice);
 }
 
 TEST(ConfirmedFurther, IsProvenByFramesAloneThatSeeMuchOfWhatShouldBeThere) {
-  EXPECT_EQ(confirmed_further({3, 3}, 100, 5, kOptions), (Confirmation{2, 3}));
-  EXPECT_EQ(confirmed_further({3, 3}, 100, 6, kOptions), (Confirmation{2, 2}));
+  EXPECT_EQ(confirmed_further({3, 3}, seeing(5), kOptions), (Confirmation{2, 3}));
+  EXPECT_EQ(confirmed_further({3, 3}, seeing(6), kOptions), (Confirmation{2, 2}));
+  EXPECT_EQ(confirmed_further({3, 3}, {}, kOptions), (Confirmation{2, 3}));
+}
+
+TEST(ConfirmedFurther, IsNotProvenByWhatFillsAPartOfTheImage) {
+  ByImageRegion<PointsInView> regions = seeing(0);
+  constexpr std::size_t kMostRegions = 8;
+  for (std::size_t i = 0; i + 1 < kMostRegions; ++i) regions[i].seen = 50;
+  EXPECT_EQ(confirmed_further({3, 3}, regions, kOptions), (Confirmation{2, 3}));
+  regions[kMostRegions - 1].seen = 3;
+  EXPECT_EQ(confirmed_further({3, 3}, regions, kOptions), (Confirmation{2, 2}));
+}
+
+TEST(ConfirmedFurther, IsProvenWhereTheMapFillsAPartOfTheImage) {
+  ByImageRegion<PointsInView> regions;
+  regions.fill({10, 0});
+  regions[0] = {100, 20};
+  EXPECT_EQ(confirmed_further({3, 3}, regions, kOptions), (Confirmation{2, 2}));
 }
 
 TEST(ConfirmedFurther, AsksMoreOfWhatWasLookedForNearAHintAlone) {
@@ -53,8 +77,8 @@ TEST(ConfirmedFurther, AsksMoreOfWhatWasLookedForNearAHintAlone) {
   find.is_by_hint = true;
   const Confirmation hinted = confirmation_of(find, kOptions);
   EXPECT_EQ(hinted, (Confirmation{3, 3, true}));
-  EXPECT_EQ(confirmed_further(hinted, 100, 11, kOptions), (Confirmation{2, 3, true}));
-  EXPECT_EQ(confirmed_further(hinted, 100, 12, kOptions), (Confirmation{2, 2, true}));
+  EXPECT_EQ(confirmed_further(hinted, seeing(11), kOptions), (Confirmation{2, 3, true}));
+  EXPECT_EQ(confirmed_further(hinted, seeing(12), kOptions), (Confirmation{2, 2, true}));
 }
 
 TEST(Confirmation, IsNotAskedForByDefault) {

@@ -21,13 +21,14 @@ class OnAnOfflineMap : public ::testing::Test {
   OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
   Whereabouts whereabouts_{{}, {}, {}, true};
 
-  HybridTrack track_of(std::size_t frame, int inliers = 100) const {
+  HybridTrack track_of(std::size_t frame, int inliers = 100, int expected = 100) const {
     HybridTrack track;
     track.tracked.camera_from_world = true_camera_from_world(mission_, frame);
     track.tracked.reference = map_->map().keyframe_ids()[frame / 4];
     track.offline_reference = track.tracked.reference;
-    track.offline_expected = 100;
+    track.offline_expected = expected;
     track.offline_inliers = inliers;
+    track.offline_by_region.fill({expected, inliers});
     return track;
   }
   void note_found(std::size_t frame, int inliers = 100) {
@@ -52,8 +53,7 @@ class OnAnOfflineMap : public ::testing::Test {
   // where none does.
   std::size_t frame_that_refutes(const Way& way) {
     for (std::size_t i = way.begin; i < mission_.frames.size(); ++i) {
-      HybridTrack track = track_of(i, way.inliers);
-      track.offline_expected = 1000;
+      const HybridTrack track = track_of(i, way.inliers, 1000);
       const bool is_find = way.is_by_hint && i == way.begin;
       whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find}, mission_.rig, mapper_.map());
       tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
@@ -126,8 +126,7 @@ TEST_F(OnAnOfflineMap, BelievesWhatAHintLedToUntilARivalIsFoundAllAlongTheWay) {
 TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
   mapper_.begin_where_found(track_of(0));
   for (std::size_t i = 0; i < 4; ++i) {
-    HybridTrack track = track_of(i, 70);
-    track.offline_expected = 1000;
+    const HybridTrack track = track_of(i, 70, 1000);
     whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
   }
   tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
@@ -160,8 +159,7 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
 
 TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   note_found(0);
-  HybridTrack track = track_of(4, 70);
-  track.offline_expected = 1000;
+  const HybridTrack track = track_of(4, 70, 1000);
   tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place().found;

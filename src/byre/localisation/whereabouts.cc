@@ -90,7 +90,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
   Progress progress{0.0, confirmation_.is_proven(), last_believed_.has_value()};
   if (!seen.from_nothing) {
-    confirmation_ = confirmed_further(confirmation_, track.offline_expected, track.offline_inliers, registration_);
+    confirmation_ = confirmed_further(confirmation_, track.offline_by_region, registration_);
   } else if (on_offline_map_) {
     FindEvidence find = evidence_of_find(seen.frame.time, body);
     find.is_by_hint = seen.is_by_hint;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/geometry/image_regions.h"
 #include "byre/slam/focal_check.h"
 #include "byre/slam/health.h"
 #include "byre/slam/tracking.h"
@@ -21,6 +22,12 @@ Agreement agreement_of(const Pose& one, const Pose& other);
 
 bool is_within(const Agreement& agreement, const DriftBound& drift);
 
+// Points that should be in view, and those of them that are where they should be.
+struct PointsInView {
+  int expected = 0;
+  int seen = 0;
+};
+
 // A frame tracked on the points of an offline and an online map.
 struct HybridTrack {
   TrackedFrame tracked;
@@ -29,9 +36,10 @@ struct HybridTrack {
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
-  std::optional<Pose> from_offline;  // camera_from_world, as offline points alone have it
-  std::optional<Pose> from_online;   // camera_from_world, as online points alone have it
-  bool maps_disagree = false;        // both poses are farther apart than their covariances explain
+  ByImageRegion<PointsInView> offline_by_region{};  // where the image shows them, or should
+  std::optional<Pose> from_offline;                 // camera_from_world, as offline points alone have it
+  std::optional<Pose> from_online;                  // camera_from_world, as online points alone have it
+  bool maps_disagree = false;                       // both poses are farther apart than their covariances explain
   // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
   bool offline_stands = false;
   std::optional<FocalEvidence> focal;   // what offline points say of the focal length, where they were asked
