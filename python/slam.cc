@@ -213,17 +213,20 @@ void bind_options(py::module_& module) {
       .def_property("settings", &settings_of, &set_settings, "Options of docs/options.md by name.");
 }
 
-void bind_slam_itself(py::module_& module) {
+using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;
+
+void bind_making(SlamClass& slam) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>(
-      module, "Slam", "One robot's SLAM: images in, poses out. Call it from one thread.")
-      .def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
+  slam.def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
                   "Maps what is seen.")
       .def_static("extending", &Slam::extending, py::arg("calibration"), py::arg("map"),
                   py::arg("options") = SlamOptions{}, released, "Goes on with a kept map.")
       .def_static("on_map", &Slam::on_map, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-                  released, "A mission on a kept map.")
-      .def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
+                  released, "A mission on a kept map.");
+}
+
+void bind_input(SlamClass& slam) {
+  slam.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
            "Tracks the next frame of a Recording.")
       .def(
           "process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
@@ -255,8 +258,12 @@ void bind_slam_itself(py::module_& module) {
           "there alone for so many seconds, then everywhere again. Metres, radians.")
       .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"),
            "While it is paused nothing is added to the map, and frames are tracked on what there is.")
-      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused)
-      .def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
+      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused);
+}
+
+void bind_results(SlamClass& slam) {
+  const auto released = py::call_guard<py::gil_scoped_release>();
+  slam.def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")
       .def(
@@ -278,6 +285,13 @@ void bind_slam_itself(py::module_& module) {
       .def_property_readonly("points", &Slam::points)
       .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Frames handed over.")
       .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"));
+}
+
+void bind_slam_itself(py::module_& module) {
+  SlamClass slam(module, "Slam", "One robot's SLAM: images in, poses out. Call it from one thread.");
+  bind_making(slam);
+  bind_input(slam);
+  bind_results(slam);
 }
 
 }  // namespace

@@ -26,6 +26,14 @@ runner=()
 
 headline() { printf '\n== %s\n' "$1"; }
 
+# What each part took, told at the end: "<seconds> s  <part>", from the last call on.
+parts=()
+part_began=$SECONDS
+end_part() {
+  parts+=("$(printf '%5d s  %s' $((SECONDS - part_began)) "$1")")
+  part_began=$SECONDS
+}
+
 # Why tests of a preset were skipped, in their own words; also those within a program that ran others.
 print_skips() {
   local output=build/$1/Testing/Temporary/LastTest.log
@@ -82,19 +90,26 @@ check_format() {
 
 headline "Release: all tests"
 scripts/build.sh release
+end_part "building the release"
 run_tests release
+end_part "all tests of the release"
 
 headline "Formatting"
 check_format
+end_part "formatting"
 
 if ! $quick; then
   headline "Address and undefined-behaviour sanitizers: unit tests of the library"
   scripts/build.sh dev byre_unit_tests
+  end_part "building with address and undefined-behaviour sanitizers"
   run_tests dev
+  end_part "unit tests under them"
 
   headline "Thread sanitizer: tests of rooms with threads"
   scripts/build.sh tsan
+  end_part "building with the thread sanitizer"
   run_tests tsan
+  end_part "tests of threads under it"
 
   headline "Fuzzing: map files and bags, for 20 s each"
   if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then
@@ -105,6 +120,7 @@ if ! $quick; then
     failures+=("fuzzing")
     failure_logs+=(build/fuzz.log)
   fi
+  end_part "fuzzing"
 fi
 
 for log in "${failure_logs[@]}"; do
@@ -112,6 +128,7 @@ for log in "${failure_logs[@]}"; do
   tail -n 60 "$log"
 done
 echo
+printf '%s\n' "${parts[@]}"
 ((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"
 echo "$passed passed, $failed failed"

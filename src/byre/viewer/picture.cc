@@ -1,5 +1,6 @@
 #include "byre/viewer/picture.h"
 
+#include "byre/input/output_file.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <algorithm>
@@ -29,6 +30,12 @@ Picture beside(Picture first, const Picture& second) {
 Picture below(Picture first, const Picture& second) {
   const int top = first.height;
   return joined(std::move(first), second, 0, top);
+}
+
+void write_picture(const Picture& picture, const std::filesystem::path& file) {
+  if (file.extension() == ".svg" || file.extension() == ".SVG") return write_whole(file, to_svg(picture));
+  const std::vector<std::byte> png = to_png(picture);
+  write_whole(file, std::string(reinterpret_cast<const char*>(png.data()), png.size()));
 }
 
 std::vector<Eigen::Vector2d> corners_of(Symbol symbol, double size) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,5 +98,8 @@ std::string to_svg(const Picture& picture);
 
 // The bytes of a PNG file of the picture's size.
 std::vector<std::byte> to_png(const Picture& picture);
+
+// SVG where the file is called so, else PNG. Throws InputError when it cannot be written.
+void write_picture(const Picture& picture, const std::filesystem::path& file);
 
 }  // namespace byre

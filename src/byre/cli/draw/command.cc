@@ -56,12 +56,6 @@ PlanScene scene_without_mission(const DrawOptions& options, const StoredMap& sto
   return scene;
 }
 
-void write_picture(const Picture& picture, const fs::path& file) {
-  if (file.extension() == ".svg" || file.extension() == ".SVG") return write_whole(file, to_svg(picture));
-  const std::vector<std::byte> png = to_png(picture);
-  write_whole(file, std::string(reinterpret_cast<const char*>(png.data()), png.size()));
-}
-
 void write_plan_picture(const PlanScene& scene, const DrawOptions& options) {
   PlanPictureOptions picture;
   picture.width = options.width;

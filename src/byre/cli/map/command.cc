@@ -1,11 +1,11 @@
 #include "byre/assessment/calibration_report.h"
+#include "byre/assessment/record_file.h"
 #include "byre/assessment/run_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/map/options.h"
 #include "byre/cli/map/posed_map.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
-#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
@@ -134,7 +134,8 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   limit_image_threads(1);
   input.show_check();
   const InterruptCatcher interrupt(options.outputs());
-  RecordFile messages(options.record, input.calibration(), options.record_images);
+  RecordFile messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
+                      [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
   const MapRun run =
       run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
   messages.finish(run);

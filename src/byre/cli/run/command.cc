@@ -1,11 +1,11 @@
 #include "byre/assessment/event_log.h"
 #include "byre/assessment/mission_judge.h"
+#include "byre/assessment/record_file.h"
 #include "byre/assessment/run_report.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/run/options.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/outputs.h"
-#include "byre/cli/shared/record_file.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/cli/shared/warnings.h"
@@ -157,7 +157,8 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   if (options.view.is_wanted) viewer.emplace(options.view, input.watched(options.map, protocol.options.offline));
   const InterruptCatcher interrupt(options.outputs());
   EventFile events(options.events);
-  RecordFile record(options.record, input.calibration(), options.record_images);
+  RecordFile record(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
+                    [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
   MapRun run = run_and_log(input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
   record.finish(run);
   if (viewer) viewer->finish(run);

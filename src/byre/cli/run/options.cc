@@ -5,7 +5,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/pose_options.h"
-#include "byre/cli/shared/record_file.h"
+#include "byre/cli/shared/record_options.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/input/formatted.h"
 
