@@ -30,7 +30,7 @@ Halves halves_of(const Descriptor& difference) {
   Halves halves;
   int next = 0;  // first bit that nothing was said of
   for (std::size_t word = 0; word < difference.size(); ++word) {
-    for (std::uint64_t rest = difference[word]; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = difference[word]; rest != 0 && !halves.is_full; rest &= rest - 1) {
       const int bit = static_cast<int>(64 * word) + std::countr_zero(rest);
       for (; bit - next >= static_cast<int>(kSkip); next += kSkip) halves.push(kSkip);
       halves.push(static_cast<unsigned>(bit - next));
@@ -40,23 +40,30 @@ Halves halves_of(const Descriptor& difference) {
   return halves;
 }
 
-// Takes half bytes from a reader.
+// Looks at half bytes, and takes their bytes from the reader once all are known.
 class HalfReader {
  public:
-  explicit HalfReader(ByteReader& reader) : reader_(reader) {}
+  explicit HalfReader(ByteReader& reader) : reader_(reader), bytes_(reader.rest()) {}
 
   unsigned next() {
-    ++count_;
-    if (count_ % 2 == 0) return byte_ >> 4;
-    byte_ = reader_.read<std::uint8_t>();
-    return byte_ & 15u;
+    const std::size_t place = count_ / 2;
+    if (place >= bytes_.size()) fail_to_take();
+    const auto byte = static_cast<unsigned>(bytes_[place]);
+    return ++count_ % 2 == 0 ? byte >> 4 : byte & 15u;
   }
   std::size_t count() const { return count_; }
-  bool leaves_something() const { return count_ % 2 == 1 && byte_ >> 4 != 0; }
+  bool leaves_something() const { return count_ % 2 == 1 && static_cast<unsigned>(bytes_[count_ / 2]) >> 4 != 0; }
+
+  void take() { reader_.take((count_ + 1) / 2); }
 
  private:
+  void fail_to_take() {
+    take();
+    reader_.take(1);
+  }
+
   ByteReader& reader_;
-  unsigned byte_ = 0;
+  std::span<const std::byte> bytes_;
   std::size_t count_ = 0;
 };
 
@@ -97,9 +104,13 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
       skipped = halves.next();
       bit += static_cast<int>(skipped);
     } while (skipped == kSkip && bit < kBits);
-    if (++bit >= kBits) reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+    if (++bit >= kBits) {
+      halves.take();
+      reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+    }
     descriptor[static_cast<std::size_t>(bit) / 64] ^= std::uint64_t{1} << (bit % 64);
   }
+  halves.take();
   if (halves.leaves_something() || halves.count() > kMostHalves)
     reader.fail("has a descriptor that is not told as it is");
   return descriptor;

@@ -95,6 +95,25 @@ int step_of_grey(int grey, int darkest, int range) {
   return range == 0 ? 0 : (2 * (grey - darkest) * kSteps + range) / (2 * range);
 }
 
+// What the steps of a patch whose grey values span so many stand for.
+struct StepsOfRange {
+  std::array<std::uint8_t, kSteps + 1> greys{};  // above the darkest
+  std::uint32_t proper = 0;                      // bits of those steps that a patch of this range has
+};
+
+std::array<StepsOfRange, 256> steps_of_ranges() {
+  std::array<StepsOfRange, 256> ranges;
+  for (int range = 0; range < 256; ++range) {
+    StepsOfRange& steps = ranges[static_cast<std::size_t>(range)];
+    for (int step = 0; step <= kSteps; ++step) {
+      const int grey = grey_of_step(step, 0, range);
+      steps.greys[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(grey);
+      if (step_of_grey(grey, 0, range) == step) steps.proper |= 1u << step;
+    }
+  }
+  return ranges;
+}
+
 }  // namespace
 
 // In double, where nothing is rounded beyond an edge between two quanta.
@@ -211,25 +230,23 @@ PatchCode patch_code(const Patch& patch) {
 }
 
 std::optional<Patch> patch_of(const PatchCode& code) {
+  static const std::array<StepsOfRange, 256> kRanges = steps_of_ranges();
   const int range = code.brightest - code.darkest;
   if (range < 0) return std::nullopt;
-  std::array<std::uint8_t, kSteps + 1> greys{};
-  std::uint32_t proper_steps = 0;  // bits of those that a patch of this range has
-  for (int step = 0; step <= kSteps; ++step) {
-    greys[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(grey_of_step(step, code.darkest, range));
-    if (step_of_grey(greys[static_cast<std::size_t>(step)], code.darkest, range) == step) proper_steps |= 1u << step;
-  }
+  const StepsOfRange& steps = kRanges[static_cast<std::size_t>(range)];
+  std::array<std::uint8_t, kSteps + 1> greys = steps.greys;
+  for (std::uint8_t& grey : greys) grey = static_cast<std::uint8_t>(code.darkest + grey);
   std::uint32_t seen_steps = 0;
-  Patch patch;
+  std::optional<Patch> patch(std::in_place);
   for (std::size_t i = 0; i < code.steps.size(); ++i) {
     const unsigned low = code.steps[i] & 15u, high = code.steps[i] >> 4;
     seen_steps |= 1u << low | 1u << high;
-    patch.pixels[2 * i] = greys[low];
-    patch.pixels[2 * i + 1] = greys[high];
+    patch->pixels[2 * i] = greys[low];
+    patch->pixels[2 * i + 1] = greys[high];
   }
   const std::uint32_t ends = range == 0 ? 1u : 1u | 1u << kSteps;
-  if ((seen_steps & ~proper_steps) != 0 || (seen_steps & ends) != ends) return std::nullopt;
-  patch.centre << static_cast<float>(code.centre[0]) / kCentreCodes, static_cast<float>(code.centre[1]) / kCentreCodes;
+  if ((seen_steps & ~steps.proper) != 0 || (seen_steps & ends) != ends) return std::nullopt;
+  patch->centre << static_cast<float>(code.centre[0]) / kCentreCodes, static_cast<float>(code.centre[1]) / kCentreCodes;
   return patch;
 }
 
