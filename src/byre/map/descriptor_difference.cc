@@ -1,6 +1,9 @@
 #include "byre/map/descriptor_difference.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
+#include <span>
 
 namespace byre {
 namespace {
@@ -40,32 +43,49 @@ Halves halves_of(const Descriptor& difference) {
   return halves;
 }
 
-// Looks at half bytes, and takes their bytes from the reader once all are known.
+// Looks at half bytes, sixteen at a time, and takes their bytes from the reader once all are known.
 class HalfReader {
  public:
   explicit HalfReader(ByteReader& reader) : reader_(reader), bytes_(reader.rest()) {}
 
   unsigned next() {
-    const std::size_t place = count_ / 2;
-    if (place >= bytes_.size()) fail_to_take();
-    const auto byte = static_cast<unsigned>(bytes_[place]);
-    return ++count_ % 2 == 0 ? byte >> 4 : byte & 15u;
+    if (count_ == known_) look_further();
+    const auto half = static_cast<unsigned>(ahead_ & 15u);
+    ahead_ >>= 4;
+    ++count_;
+    return half;
   }
   std::size_t count() const { return count_; }
-  bool leaves_something() const { return count_ % 2 == 1 && static_cast<unsigned>(bytes_[count_ / 2]) >> 4 != 0; }
+  bool leaves_something() const { return count_ % 2 == 1 && (ahead_ & 15u) != 0; }
 
   void take() { reader_.take((count_ + 1) / 2); }
 
  private:
-  void fail_to_take() {
-    take();
-    reader_.take(1);
+  // Fails where there is nothing further.
+  void look_further() {
+    const std::size_t size = std::min(sizeof(ahead_), bytes_.size() - known_ / 2);
+    if (size == 0) {
+      take();
+      reader_.take(1);
+    }
+    ahead_ = 0;
+    std::memcpy(&ahead_, bytes_.data() + known_ / 2, size);
+    known_ += 2 * size;
   }
 
   ByteReader& reader_;
   std::span<const std::byte> bytes_;
+  std::uint64_t ahead_ = 0;  // half bytes that are known and not yet given, the next one lowest
+  std::size_t known_ = 0;
   std::size_t count_ = 0;
 };
+
+// Whether the half bytes would be too many; surely where more bits differ than there may be half bytes.
+bool is_told_whole(const Descriptor& difference) {
+  std::size_t differing = 0;
+  for (const std::uint64_t word : difference) differing += static_cast<std::size_t>(std::popcount(word));
+  return differing > kMostHalves || halves_of(difference).is_full;
+}
 
 }  // namespace
 
@@ -93,7 +113,7 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
     reader.read_all<std::uint64_t>(descriptor);
     Descriptor difference;
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = descriptor[i] ^ from[i];
-    if (!halves_of(difference).is_full) reader.fail("has a descriptor that is not told by its difference");
+    if (!is_told_whole(difference)) reader.fail("has a descriptor that is not told by its difference");
     return descriptor;
   }
   HalfReader halves(reader);
