@@ -32,7 +32,7 @@ struct PlaceQueryOptions {
 };
 
 // An inverted file from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the words kept with keyframes
-// when a map is loaded, in a hundredth of a millisecond per keyframe; never saved. Keyframes are looked up by their
+// when a map is loaded, in some hundredths of a millisecond per keyframe; never saved. Keyframes are looked up by their
 // numbers, so these should be dense, as a map's are.
 class PlaceIndex {
  public:
