@@ -275,7 +275,7 @@ TEST_F(TwoRooms, AreIndexedByTheirDescriptorsWhereTheyHaveNoWords) {
 // A long row of keyframes with random words, each covisible with some before it. The words of some are much alike.
 class Row : public testing::Test {
  protected:
-  static constexpr int kKeyframes = 300;
+  static constexpr int kKeyframes = 600;  // so many that several threads index them
   static constexpr int kNeighbours = 3;
 
   Row() {
