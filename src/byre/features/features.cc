@@ -1,5 +1,6 @@
 #include "byre/features.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -10,7 +11,7 @@ namespace {
 
 template <typename Item>
 std::vector<Item> in_order(std::vector<Item> items, const std::vector<int>& order) {
-  if (items.empty()) return items;
+  if (items.empty() || std::ranges::is_sorted(order)) return items;
   std::vector<Item> sorted;
   sorted.reserve(items.size());
   for (const int i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);

@@ -43,13 +43,9 @@ void ByteWriter::write_varint(std::uint32_t value) {
   write(static_cast<std::uint8_t>(value));
 }
 
-std::span<const std::byte> ByteReader::take(std::size_t size) {
-  if (size > remaining()) {
-    fail("ends too early: " + std::to_string(size) + " more bytes are needed, " + std::to_string(remaining()) +
-         " are left");
-  }
-  position_ += size;
-  return bytes_.subspan(position_ - size, size);
+void ByteReader::fail_to_take(std::size_t size) const {
+  fail("ends too early: " + std::to_string(size) + " more bytes are needed, " + std::to_string(remaining()) +
+       " are left");
 }
 
 std::string ByteReader::read_text() {
@@ -58,7 +54,7 @@ std::string ByteReader::read_text() {
   return text;
 }
 
-std::uint64_t ByteReader::read_low_bytes(std::size_t count) {
+std::uint64_t ByteReader::read_last_bytes(std::size_t count) {
   assert(count >= 1 && count <= sizeof(std::uint64_t));
   std::uint64_t value = 0;
   std::memcpy(&value, take(count).data(), count);

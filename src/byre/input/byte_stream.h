@@ -65,10 +65,22 @@ class ByteReader {
     const std::span<const std::byte> bytes = take(values.size_bytes());
     if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
   }
-  std::span<const std::byte> take(std::size_t size);
-  std::string read_text();                          // text as ByteWriter::write_text wrote it
-  std::uint64_t read_low_bytes(std::size_t count);  // precondition: 1 to 8
-  std::uint32_t read_varint();                      // refuses what takes more bytes than it needs
+  std::span<const std::byte> take(std::size_t size) {
+    if (size > remaining()) fail_to_take(size);
+    position_ += size;
+    return bytes_.subspan(position_ - size, size);
+  }
+  std::span<const std::byte> rest() const { return bytes_.subspan(position_); }  // what is left, not taken
+  std::string read_text();                           // text as ByteWriter::write_text wrote it
+  std::uint64_t read_low_bytes(std::size_t count) {  // precondition: 1 to 8
+    std::uint64_t value = 0;
+    const std::size_t bits_above = 8 * (sizeof(value) - count);
+    if (remaining() < sizeof(value)) return read_last_bytes(count);
+    std::memcpy(&value, bytes_.data() + position_, sizeof(value));
+    position_ += count;
+    return value << bits_above >> bits_above;
+  }
+  std::uint32_t read_varint();  // refuses what takes more bytes than it needs
 
   // A number (u32) of things that take at least bytes_each each: refuses more than the remaining bytes can hold, so
   // that nothing is reserved that the file does not justify. Precondition: bytes_each > 0.
@@ -79,6 +91,9 @@ class ByteReader {
   [[noreturn]] void fail(std::string_view reason) const;
 
  private:
+  [[noreturn]] void fail_to_take(std::size_t size) const;
+  std::uint64_t read_last_bytes(std::size_t count);  // as read_low_bytes, where fewer than 8 are left
+
   std::span<const std::byte> bytes_;
   std::string place_;
   std::size_t first_byte_;

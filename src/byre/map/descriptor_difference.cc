@@ -1,6 +1,9 @@
 #include "byre/map/descriptor_difference.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
+#include <span>
 
 namespace byre {
 namespace {
@@ -30,7 +33,7 @@ Halves halves_of(const Descriptor& difference) {
   Halves halves;
   int next = 0;  // first bit that nothing was said of
   for (std::size_t word = 0; word < difference.size(); ++word) {
-    for (std::uint64_t rest = difference[word]; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = difference[word]; rest != 0 && !halves.is_full; rest &= rest - 1) {
       const int bit = static_cast<int>(64 * word) + std::countr_zero(rest);
       for (; bit - next >= static_cast<int>(kSkip); next += kSkip) halves.push(kSkip);
       halves.push(static_cast<unsigned>(bit - next));
@@ -40,25 +43,49 @@ Halves halves_of(const Descriptor& difference) {
   return halves;
 }
 
-// Takes half bytes from a reader.
+// Looks at half bytes, sixteen at a time, and takes their bytes from the reader once all are known.
 class HalfReader {
  public:
-  explicit HalfReader(ByteReader& reader) : reader_(reader) {}
+  explicit HalfReader(ByteReader& reader) : reader_(reader), bytes_(reader.rest()) {}
 
   unsigned next() {
+    if (count_ == known_) look_further();
+    const auto half = static_cast<unsigned>(ahead_ & 15u);
+    ahead_ >>= 4;
     ++count_;
-    if (count_ % 2 == 0) return byte_ >> 4;
-    byte_ = reader_.read<std::uint8_t>();
-    return byte_ & 15u;
+    return half;
   }
   std::size_t count() const { return count_; }
-  bool leaves_something() const { return count_ % 2 == 1 && byte_ >> 4 != 0; }
+  bool leaves_something() const { return count_ % 2 == 1 && (ahead_ & 15u) != 0; }
+
+  void take() { reader_.take((count_ + 1) / 2); }
 
  private:
+  // Fails where there is nothing further.
+  void look_further() {
+    const std::size_t size = std::min(sizeof(ahead_), bytes_.size() - known_ / 2);
+    if (size == 0) {
+      take();
+      reader_.take(1);
+    }
+    ahead_ = 0;
+    std::memcpy(&ahead_, bytes_.data() + known_ / 2, size);
+    known_ += 2 * size;
+  }
+
   ByteReader& reader_;
-  unsigned byte_ = 0;
+  std::span<const std::byte> bytes_;
+  std::uint64_t ahead_ = 0;  // half bytes that are known and not yet given, the next one lowest
+  std::size_t known_ = 0;
   std::size_t count_ = 0;
 };
+
+// Whether the half bytes would be too many; surely where more bits differ than there may be half bytes.
+bool is_told_whole(const Descriptor& difference) {
+  std::size_t differing = 0;
+  for (const std::uint64_t word : difference) differing += static_cast<std::size_t>(std::popcount(word));
+  return differing > kMostHalves || halves_of(difference).is_full;
+}
 
 }  // namespace
 
@@ -86,7 +113,7 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
     reader.read_all<std::uint64_t>(descriptor);
     Descriptor difference;
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = descriptor[i] ^ from[i];
-    if (!halves_of(difference).is_full) reader.fail("has a descriptor that is not told by its difference");
+    if (!is_told_whole(difference)) reader.fail("has a descriptor that is not told by its difference");
     return descriptor;
   }
   HalfReader halves(reader);
@@ -97,9 +124,13 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
       skipped = halves.next();
       bit += static_cast<int>(skipped);
     } while (skipped == kSkip && bit < kBits);
-    if (++bit >= kBits) reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+    if (++bit >= kBits) {
+      halves.take();
+      reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+    }
     descriptor[static_cast<std::size_t>(bit) / 64] ^= std::uint64_t{1} << (bit % 64);
   }
+  halves.take();
   if (halves.leaves_something() || halves.count() > kMostHalves)
     reader.fail("has a descriptor that is not told as it is");
   return descriptor;

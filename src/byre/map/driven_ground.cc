@@ -41,13 +41,32 @@ bool is_of_wheels(const Spread& spread) {
   return value_above(spread.heights, kShare) <= kMostHeight && value_above(spread.tilts, kShare) <= kMostTilt;
 }
 
+std::vector<Eigen::Vector3d> places_of(const std::vector<Pose>& path) {
+  std::vector<Eigen::Vector3d> places;
+  places.reserve(path.size());
+  for (const Pose& body : path) places.push_back(body.translation);
+  return places;
+}
+
 }  // namespace
+
+DrivenGround::DrivenGround(std::vector<Pose> path) : path_(std::move(path)), cells_(places_of(path_), kAround) {}
+
+// The whole path is looked at only where none of it is within the reach of its cells.
+const Pose& DrivenGround::nearest_to(const Eigen::Vector3d& position_in_map) const {
+  const auto squared_distance = [&](const Pose& body) { return (body.translation - position_in_map).squaredNorm(); };
+  const std::vector<std::uint32_t> near = cells_.near(position_in_map);
+  const auto nearest = std::ranges::min_element(near, {}, [&](std::uint32_t i) { return squared_distance(path_[i]); });
+  const bool is_within = nearest != near.end() && squared_distance(path_[*nearest]) < kAround * kAround;
+  return is_within ? path_[*nearest] : *std::ranges::min_element(path_, {}, squared_distance);
+}
 
 // "Up" along the path is that of the bodies around, which is right on a ramp and on a slope across the way as well.
 DrivingPlane DrivenGround::plane_around(const Eigen::Vector3d& position_in_map) const {
   std::vector<Eigen::Vector3d> around;
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  for (const Pose& body : path_) {
+  for (const std::uint32_t i : cells_.near(position_in_map)) {
+    const Pose& body = path_[i];
     if ((body.translation - position_in_map).squaredNorm() > kAround * kAround) continue;
     around.push_back(body.translation);
     up += body.rotation * up_in_body_;
@@ -56,14 +75,11 @@ DrivingPlane DrivenGround::plane_around(const Eigen::Vector3d& position_in_map) 
 }
 
 DrivenGround::Stand DrivenGround::stand_of(const Pose& map_from_body) const {
-  const auto squared_distance = [&](const Pose& body) {
-    return (body.translation - map_from_body.translation).squaredNorm();
-  };
-  const Pose& nearest = *std::ranges::min_element(path_, {}, squared_distance);
+  const Pose& nearest = nearest_to(map_from_body.translation);
   const DrivingPlane plane = plane_around(nearest.translation);
   const Eigen::Vector3d from_middle = map_from_body.translation - plane.point_in_map;
   Stand stand;
-  stand.distance = std::sqrt(squared_distance(nearest));
+  stand.distance = (nearest.translation - map_from_body.translation).norm();
   stand.height = from_middle.dot(plane.up_in_map);
   const Eigen::Vector3d beside = from_middle - stand.height * plane.up_in_map;
   const double by_tilt = beside.dot(plane.up_information.inverse() * beside);
@@ -81,8 +97,9 @@ std::optional<DrivenGround> DrivenGround::under(const Map& map) {
   constexpr double kLeastLength = 1.0;  // metres, spread of the path
   const std::optional<DrivingPlane> whole = fit_driving_plane(map);
   if (!whole || whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength) return std::nullopt;
-  DrivenGround ground;
-  for (const KeyframeId id : map.keyframe_ids()) ground.path_.push_back(world_from_body(map, *map.find_keyframe(id)));
+  std::vector<Pose> path;
+  for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.find_keyframe(id)));
+  DrivenGround ground(std::move(path));
   constexpr int kRounds = 2;
   Eigen::Vector3d up_in_body = Eigen::Vector3d::Zero();
   for (const Pose& body : ground.path_) up_in_body += body.rotation.conjugate() * whole->up_in_map;

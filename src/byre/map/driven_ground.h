@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/map/driving_plane.h"
+#include "byre/map/path_cells.h"
 
 #include <optional>
 #include <vector>
@@ -33,11 +34,13 @@ class DrivenGround {
   double tilt_spread() const { return tilt_spread_; }      // radians, root mean square of tilts in one direction
 
  private:
-  DrivenGround() = default;
+  explicit DrivenGround(std::vector<Pose> path);
 
+  const Pose& nearest_to(const Eigen::Vector3d& position_in_map) const;
   DrivingPlane plane_around(const Eigen::Vector3d& position_in_map) const;
 
   std::vector<Pose> path_;  // map_from_body
+  PathCells cells_;         // the path's places
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
   double height_spread_ = 0.0;
   double tilt_spread_ = 0.0;

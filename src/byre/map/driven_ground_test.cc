@@ -3,6 +3,7 @@
 #include "byre/geometry/degrees.h"
 #include "byre/map/driven_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -47,6 +48,20 @@ TEST(DrivenGround, KnowsLessOfHeightFarFromThePath) {
   ASSERT_TRUE(ground);
   EXPECT_GT(stand(*ground, on_floor(14.0, 12.0, 0.0)).height_sigma,
             stand(*ground, on_floor(14.0, 3.0, 0.0)).height_sigma);
+}
+
+TEST(DrivenGround, FindsTheNearestPlaceOfThePathNearAndFar) {
+  const std::vector<Pose> path = driven();
+  const auto ground = DrivenGround::under(map_of(path));
+  ASSERT_TRUE(ground);
+  for (const double y : {1.0, -2.9, -3.0, -3.1, 4.9, 5.0, 5.1, 8.0, 300.0}) {
+    for (const double x : {-20.0, -3.0, 0.1, 7.3, 29.0, 32.9, 60.0}) {
+      const Pose body = on_floor(x, y, 0.0);
+      double nearest = 1e9;
+      for (const Pose& place : path) nearest = std::min(nearest, (place.translation - body.translation).norm());
+      EXPECT_NEAR(stand(*ground, body).distance, nearest, 1e-9) << x << ", " << y;
+    }
+  }
 }
 
 TEST(DrivenGround, FollowsRamps) {

@@ -95,6 +95,26 @@ int step_of_grey(int grey, int darkest, int range) {
   return range == 0 ? 0 : (2 * (grey - darkest) * kSteps + range) / (2 * range);
 }
 
+// The steps that a patch of this range has, as bits: those that a grey value is nearest to.
+std::uint32_t proper_steps(int range) {
+  std::uint32_t proper = 0;
+  for (int step = 0; step <= kSteps; ++step) {
+    if (step_of_grey(grey_of_step(step, 0, range), 0, range) == step) proper |= 1u << step;
+  }
+  return proper;
+}
+
+constexpr int kLeastFullRange = kSteps;  // from here on a patch has all steps
+
+using Steps = std::array<std::uint8_t, Patch::kSize * Patch::kSize>;
+
+bool are_proper(const Steps& steps, int range) {
+  if (range >= kLeastFullRange) return true;
+  std::uint32_t seen = 0;
+  for (const std::uint8_t step : steps) seen |= 1u << step;
+  return (seen & ~proper_steps(range)) == 0;
+}
+
 }  // namespace
 
 // In double, where nothing is rounded beyond an edge between two quanta.
@@ -210,26 +230,28 @@ PatchCode patch_code(const Patch& patch) {
   return code;
 }
 
+// Plain loops over bytes, of which the compiler makes vector instructions.
 std::optional<Patch> patch_of(const PatchCode& code) {
   const int range = code.brightest - code.darkest;
   if (range < 0) return std::nullopt;
-  std::array<std::uint8_t, kSteps + 1> greys{};
-  std::uint32_t proper_steps = 0;  // bits of those that a patch of this range has
-  for (int step = 0; step <= kSteps; ++step) {
-    greys[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(grey_of_step(step, code.darkest, range));
-    if (step_of_grey(greys[static_cast<std::size_t>(step)], code.darkest, range) == step) proper_steps |= 1u << step;
-  }
-  std::uint32_t seen_steps = 0;
-  Patch patch;
+  Steps steps;
   for (std::size_t i = 0; i < code.steps.size(); ++i) {
-    const unsigned low = code.steps[i] & 15u, high = code.steps[i] >> 4;
-    seen_steps |= 1u << low | 1u << high;
-    patch.pixels[2 * i] = greys[low];
-    patch.pixels[2 * i + 1] = greys[high];
+    steps[2 * i] = code.steps[i] & 15u;
+    steps[2 * i + 1] = code.steps[i] >> 4;
   }
-  const std::uint32_t ends = range == 0 ? 1u : 1u | 1u << kSteps;
-  if ((seen_steps & ~proper_steps) != 0 || (seen_steps & ends) != ends) return std::nullopt;
-  patch.centre << static_cast<float>(code.centre[0]) / kCentreCodes, static_cast<float>(code.centre[1]) / kCentreCodes;
+  std::uint8_t least = kSteps, greatest = 0;
+  for (const std::uint8_t step : steps) {
+    least = std::min(least, step);
+    greatest = std::max(greatest, step);
+  }
+  if (least != 0 || greatest != (range == 0 ? 0 : kSteps) || !are_proper(steps, range)) return std::nullopt;
+  std::optional<Patch> patch(std::in_place);
+  const auto twice_range = static_cast<std::uint16_t>(2 * range);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto scaled = static_cast<std::uint16_t>(steps[i] * twice_range + kSteps);
+    patch->pixels[i] = static_cast<std::uint8_t>(code.darkest + scaled / (2 * kSteps));
+  }
+  patch->centre << static_cast<float>(code.centre[0]) / kCentreCodes, static_cast<float>(code.centre[1]) / kCentreCodes;
   return patch;
 }
 

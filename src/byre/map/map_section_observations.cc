@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 
 namespace byre {
@@ -40,25 +42,52 @@ bool observes(const std::vector<Keyframe>& keyframes, const Observation& observa
   return feature < sightings.size() && sightings[feature].point == PointId{Origin::offline, point};
 }
 
-// The keyframes that see each point.
-std::vector<std::vector<std::uint32_t>> observers_of_points(const std::vector<Keyframe>& keyframes,
-                                                            std::size_t point_count) {
-  std::vector<std::vector<std::uint32_t>> observers(point_count);
+// The keyframes that see each point, those of one point after those of the other.
+struct Observers {
+  std::vector<std::size_t> begin;  // by point, and the end of the last one's
+  std::vector<std::uint32_t> keyframes;
+
+  std::span<const std::uint32_t> of(std::uint32_t point) const {
+    return std::span(keyframes).subspan(begin[point], begin[point + std::size_t{1}] - begin[point]);
+  }
+  // How many pairs of keyframes share points, counted once for each of these points.
+  std::size_t count_pairs() const {
+    std::size_t pairs = 0;
+    for (std::size_t point = 0; point + 1 < begin.size(); ++point) {
+      const std::size_t observers = begin[point + 1] - begin[point];
+      pairs += observers * (observers - 1);
+    }
+    return pairs;
+  }
+};
+
+template <typename Visitor>
+void visit_sightings(const std::vector<Keyframe>& keyframes, Visitor visit) {
   for (std::uint32_t i = 0; i < keyframes.size(); ++i) {
     for (const Sighting& sighting : keyframes[i].sightings) {
-      if (sighting.point) observers[sighting.point->number].push_back(i);
+      if (sighting.point) visit(i, sighting.point->number);
     }
   }
+}
+
+Observers observers_of_points(const std::vector<Keyframe>& keyframes, std::size_t point_count) {
+  Observers observers;
+  observers.begin.assign(point_count + 1, 0);
+  visit_sightings(keyframes, [&](std::uint32_t, std::uint32_t point) { ++observers.begin[point + std::size_t{1}]; });
+  std::partial_sum(observers.begin.begin(), observers.begin.end(), observers.begin.begin());
+  observers.keyframes.resize(observers.begin.back());
+  std::vector<std::size_t> next(observers.begin.begin(), observers.begin.end() - 1);
+  visit_sightings(keyframes,
+                  [&](std::uint32_t keyframe, std::uint32_t point) { observers.keyframes[next[point]++] = keyframe; });
   return observers;
 }
 
-std::size_t count_covisible_keyframes(const Keyframe& keyframe, std::uint32_t number,
-                                      const std::vector<std::vector<std::uint32_t>>& observers,
+std::size_t count_covisible_keyframes(const Keyframe& keyframe, std::uint32_t number, const Observers& observers,
                                       std::vector<std::uint32_t>& last_met_by) {
   std::size_t count = 0;
   for (const Sighting& sighting : keyframe.sightings) {
     if (!sighting.point) continue;
-    for (const std::uint32_t other : observers[sighting.point->number]) {
+    for (const std::uint32_t other : observers.of(sighting.point->number)) {
       if (other != number && std::exchange(last_met_by[other], number) != number) ++count;
     }
   }
@@ -73,7 +102,8 @@ bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, st
   constexpr std::size_t kAlwaysAllowed = std::size_t{1} << 19;
   const std::size_t allowed = kAlwaysAllowed + section_bytes / 2;
   if (keyframes.size() * keyframes.size() <= allowed) return false;
-  const auto observers = observers_of_points(keyframes, point_count);
+  const Observers observers = observers_of_points(keyframes, point_count);
+  if (observers.count_pairs() <= allowed) return false;
   std::vector<std::uint32_t> last_met_by(keyframes.size(), std::numeric_limits<std::uint32_t>::max());
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < keyframes.size() && count <= allowed; ++i) {

@@ -1,15 +1,18 @@
 // What the keyframes see, as format 5 has it: keypoints, descriptors, patches and sightings, rounded to quanta.
 
+#include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_observers.h"
 #include "byre/map/map_quanta.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
+#include "byre/workers/task_threads.h"
 
 #include <algorithm>
 #include <bit>
 #include <memory>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -24,6 +27,7 @@ constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSee
 
 constexpr std::size_t kLeastKeypointBytes = 1 + 2;
 constexpr std::size_t kDisparityBytes = 3;
+constexpr std::size_t kRoundedPatchBytes = 2 + sizeof(PatchCode::centre) + sizeof(PatchCode::steps);
 
 // Bytes that hold all numbers below count.
 std::size_t bytes_for(std::uint64_t count) {
@@ -191,6 +195,25 @@ RoundedPatches read_rounded_patches(ByteReader& reader, const std::vector<std::u
   return kept;
 }
 
+// All of a keyframe but its descriptors.
+struct PartOfView {
+  ReadKeypoints keypoints;
+  RoundedPatches patches;
+};
+
+std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartOfView part,
+                                                 std::vector<Descriptor> descriptors, const Rig& rig,
+                                                 std::uint32_t keyframe) {
+  const std::vector<Keypoint>& keypoints = part.keypoints.keypoints;
+  auto features =
+      std::make_shared<const Features>(rig.width, rig.height, keypoints, std::move(descriptors),
+                                       std::move(part.patches.patches), std::move(part.patches.patch_of_keypoint));
+  if (!std::ranges::equal(features->keypoints(), keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
+    require_no_fault(reader, "has keypoints that are not sorted by the cells of their grid", "keyframe", keyframe);
+  }
+  return features;
+}
+
 // Reads all that the keyframes see, from sections that each have a part for every keyframe.
 class ViewReader {
  public:
@@ -198,17 +221,20 @@ class ViewReader {
       : sections_(std::move(sections)), points_(points), observers_(points.size()) {}
 
   void read(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
-    const ReadKeypoints read = read_keypoints(sections_.features, rig, number);
-    keyframe.sightings = read_sightings(sections_.observations, read, number, observers_);
+    PartOfView part{read_keypoints(sections_.features, rig, number), {}};
+    keyframe.sightings = read_sightings(sections_.observations, part.keypoints, number, observers_);
     std::vector<Descriptor> descriptors = read_descriptors(sections_.descriptors, keyframe.sightings, points_);
-    RoundedPatches kept = read_rounded_patches(sections_.patches, read.bits, number);
-    auto features = std::make_shared<const Features>(rig.width, rig.height, read.keypoints, std::move(descriptors),
-                                                     std::move(kept.patches), std::move(kept.patch_of_keypoint));
-    if (!std::ranges::equal(features->keypoints(), read.keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
-      require_no_fault(sections_.features, "has keypoints that are not sorted by the cells of their grid", "keyframe",
-                       number);
-    }
-    keyframe.frame.features = std::move(features);
+    part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
+    keyframe.frame.features =
+        features_of_view(sections_.features, std::move(part), std::move(descriptors), rig, number);
+  }
+
+  // The same without descriptors.
+  PartOfView read_part(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
+    PartOfView part{read_keypoints(sections_.features, rig, number), {}};
+    keyframe.sightings = read_sightings(sections_.observations, part.keypoints, number, observers_);
+    part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
+    return part;
   }
 
   void require_end() const {
@@ -224,6 +250,147 @@ class ViewReader {
   const std::vector<MapPoint>& points_;
   PointObservers observers_;
 };
+
+void skip_varint(ByteReader& reader) {
+  while ((reader.read<std::uint8_t>() & 128u) != 0) {
+  }
+}
+
+// Goes through so many features of a keyframe without looking at values: calls visit for each, with the point that it
+// sees or nullptr.
+template <typename Visitor>
+void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, ViewSections& sections, Visitor visit) {
+  const std::size_t pixel_bytes = bytes_for_pixels(rig.width) + bytes_for_pixels(rig.height);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto bits = sections.features.read<std::uint8_t>();
+    sections.features.take(pixel_bytes + ((bits & kHasDisparity) != 0 ? kDisparityBytes + 1 : 0));
+    if ((bits & kHasPatch) != 0) sections.patches.take(kRoundedPatchBytes);
+    if ((bits & kSeesPoint) == 0) {
+      visit(nullptr);
+      continue;
+    }
+    const auto point = static_cast<std::uint32_t>(sections.observations.read_low_bytes(point_bytes));
+    skip_varint(sections.observations);
+    skip_varint(sections.observations);
+    sections.observations.take(1);
+    visit(&point);
+  }
+}
+
+// Reads the same in several threads. One of them reads all descriptors, where nothing tells how long the next one is;
+// the others take keyframes by runs of neighbours, whose beginnings are looked for first. Throws where anything is
+// wrong, but not always what ViewReader would.
+class ViewsReader {
+ public:
+  ViewsReader(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
+              std::vector<Keyframe>& keyframes)
+      : sections_(sections),
+        points_(points),
+        rigs_(rigs),
+        keyframes_(keyframes),
+        parts_(keyframes.size()),
+        descriptors_(keyframes.size()) {}
+
+  void read(int thread_count) {
+    TaskThreads threads(thread_count - 1);
+    length_of_runs_ =
+        std::max(kShortestRun, keyframes_.size() / (kRunsOfThread * static_cast<std::size_t>(thread_count)));
+    find_runs();
+    const auto runs = static_cast<int>(runs_.size());
+    threads.run(1 + runs, [this](int task) {
+      if (task == 0) return read_all_descriptors();
+      read_run(static_cast<std::size_t>(task - 1));
+    });
+    threads.run(runs, [this](int run) { make_features(static_cast<std::size_t>(run)); });
+  }
+
+ private:
+  static constexpr std::size_t kShortestRun = 16;  // keyframes
+  static constexpr std::size_t kRunsOfThread = 8;
+
+  const Rig& rig_of(std::size_t keyframe) const { return rigs_[static_cast<std::size_t>(keyframes_[keyframe].rig)]; }
+  std::size_t end_of(std::size_t run) const { return std::min(length_of_runs_ * (run + 1), keyframes_.size()); }
+
+  void find_runs() {
+    ViewSections rest = sections_;
+    for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+      if (i % length_of_runs_ == 0) runs_.push_back(rest);
+      const std::uint32_t count = rest.features.read_count(kLeastKeypointBytes);
+      skip_view(count, rig_of(i), bytes_for(points_.size()), rest, [](const std::uint32_t*) {});
+    }
+    rest.features.require_end();
+    rest.patches.require_end();
+    rest.observations.require_end();
+  }
+
+  void read_run(std::size_t run) {
+    ViewReader reader(runs_[run], points_);
+    for (std::size_t i = length_of_runs_ * run; i < end_of(run); ++i) {
+      parts_[i] = reader.read_part(static_cast<std::uint32_t>(i), rig_of(i), keyframes_[i]);
+    }
+  }
+
+  void read_all_descriptors() {
+    ViewSections rest = sections_;
+    ByteReader& reader = rest.descriptors;
+    for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+      std::vector<Descriptor>& descriptors = descriptors_[i];
+      const std::uint32_t count = rest.features.read_count(kLeastKeypointBytes);
+      descriptors.reserve(count);
+      skip_view(count, rig_of(i), bytes_for(points_.size()), rest, [&](const std::uint32_t* point) {
+        if (point == nullptr) {
+          reader.read_all<std::uint64_t>(descriptors.emplace_back());
+        } else if (*point < points_.size()) {
+          descriptors.push_back(read_difference(reader, points_[*point].descriptor));
+        } else {
+          reader.fail("is of a point that is none");
+        }
+      });
+    }
+    reader.require_end();
+  }
+
+  void make_features(std::size_t run) {
+    for (std::size_t i = length_of_runs_ * run; i < end_of(run); ++i) {
+      keyframes_[i].frame.features =
+          features_of_view(sections_.features, std::exchange(parts_[i], {}), std::exchange(descriptors_[i], {}),
+                           rig_of(i), static_cast<std::uint32_t>(i));
+    }
+  }
+
+  const ViewSections& sections_;
+  const std::vector<MapPoint>& points_;
+  const std::vector<Rig>& rigs_;
+  std::vector<Keyframe>& keyframes_;
+  std::size_t length_of_runs_ = kShortestRun;  // keyframes
+  std::vector<ViewSections> runs_;             // where each begins; descriptors at their beginning
+  std::vector<PartOfView> parts_;
+  std::vector<std::vector<Descriptor>> descriptors_;
+};
+
+void read_views_in_order(const ViewSections& sections, const std::vector<MapPoint>& points,
+                         const std::vector<Rig>& rigs, std::vector<Keyframe>& keyframes) {
+  ViewReader reader(sections, points);
+  for (std::uint32_t i = 0; i < keyframes.size(); ++i) {
+    reader.read(i, rigs[static_cast<std::size_t>(keyframes[i].rig)], keyframes[i]);
+  }
+  reader.require_end();
+}
+
+// Whether it could be done.
+bool try_to_read_views(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
+                       std::vector<Keyframe>& keyframes) {
+  constexpr std::size_t kWorthThreads = 256;  // keyframes
+  constexpr int kMostThreads = 8;
+  const int threads = std::min(processor_count(), kMostThreads);
+  if (threads < 2 || keyframes.size() < kWorthThreads) return false;
+  try {
+    ViewsReader(sections, points, rigs, keyframes).read(threads);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
 
 // Each is one of the point's observations, which come in the order of keyframes.
 void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyframes, RoundedPoints& points) {
@@ -265,14 +432,13 @@ void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sectio
   }
 }
 
-void read_views(ViewSections sections, RoundedPoints& points, const std::vector<Rig>& rigs,
+void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes) {
   const ByteReader observations = sections.observations;
-  ViewReader reader(std::move(sections), points.points);
-  for (std::uint32_t i = 0; i < keyframes.size(); ++i) {
-    reader.read(i, rigs[static_cast<std::size_t>(keyframes[i].rig)], keyframes[i]);
+  // What is wrong is told by whoever reads one thing after the other, always the first of several.
+  if (!try_to_read_views(sections, points.points, rigs, keyframes)) {
+    read_views_in_order(sections, points.points, rigs, keyframes);
   }
-  reader.require_end();
   set_references(observations, keyframes, points);
   if (has_too_many_covisible_keyframes(keyframes, points.points.size(), observations.remaining())) {
     observations.fail("has more keyframes that share points than a file of this size can hold");

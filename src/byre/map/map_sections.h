@@ -77,7 +77,7 @@ struct ViewSections {
 };
 void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections);
 // Fills in the features and sightings of the keyframes, and the references of the points.
-void read_views(ViewSections sections, RoundedPoints& points, const std::vector<Rig>& rigs,
+void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes);
 
 void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer);

@@ -1,6 +1,9 @@
 #include "byre/place/place_index.h"
 
+#include "byre/workers/task_threads.h"
+
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace byre {
@@ -14,32 +17,125 @@ bool has_better_group(const PlaceCandidate& a, const PlaceCandidate& b) {
   return a.group_score != b.group_score ? a.group_score > b.group_score : a.keyframe < b.keyframe;
 }
 
-// The matches that are not yet in a group, by keyframe.
-using UngroupedScores = std::map<KeyframeId, float>;
+constexpr std::uint32_t kNoSlot = 0xFFFFFFFF;
+constexpr int kMostIndexers = 8;  // threads
 
-// Takes the best match and those covisible with it out of the ungrouped ones.
-PlaceCandidate take_group(const PlaceMatch& best, const MapView& map, int group_size, UngroupedScores& ungrouped) {
-  std::vector<PlaceMatch> members = {best};
-  ungrouped.erase(best.keyframe);
-  for (const Covisible& covisible : map.covisible_keyframes(best.keyframe, group_size)) {
-    const auto found = ungrouped.find(covisible.keyframe);
-    if (found == ungrouped.end()) continue;
-    members.push_back({found->first, found->second});
-    ungrouped.erase(found);
-  }
-  std::sort(members.begin(), members.end(), is_better);
-  PlaceCandidate candidate{best.keyframe, best.score, 0.0f, {}};
-  for (const PlaceMatch& member : members) {
-    candidate.group_score += member.score;
-    candidate.group.push_back(member.keyframe);
-  }
-  return candidate;
+std::vector<Word> words_in(const BagOfWords& bag) {
+  std::vector<Word> words;
+  words.reserve(bag.size());
+  for (const auto& [word, weight] : bag) words.push_back(word);
+  return words;
 }
+
+// In how many keyframes each word is.
+std::vector<std::uint32_t> keyframes_of_words(const Map& map, int word_count) {
+  std::vector<std::uint32_t> counts(static_cast<std::size_t>(word_count), 0);
+  std::vector<std::uint32_t> last_with(counts.size(), kNoSlot);  // number of the last keyframe that was counted
+  for (const KeyframeId id : map.keyframe_ids()) {
+    for (const Word word : map.find_keyframe(id)->words) {
+      if (word < counts.size() && std::exchange(last_with[word], id.number) != id.number) ++counts[word];
+    }
+  }
+  return counts;
+}
+
+// The most that the rounded sum of so many scores can come to, none of which is greater.
+float greatest_sum(float score, int count) {
+  constexpr float kRounding = 1.0001f;
+  return kRounding * score * static_cast<float>(count);
+}
+
+// The best of the group scores so far, as many as are kept.
+class BestGroups {
+ public:
+  explicit BestGroups(int count) : count_(static_cast<std::size_t>(std::max(count, 0))) {}
+
+  void add(float score) {
+    best_ = std::max(best_, score);
+    scores_.insert(std::ranges::upper_bound(scores_, score, std::greater()), score);
+    if (scores_.size() > count_) scores_.pop_back();
+  }
+
+  // Whether no group of at most that score is kept.
+  bool leave_out(float score, float min_score_share) const {
+    const bool is_behind_all = scores_.size() >= count_ && (scores_.empty() || score < scores_.back());
+    return is_behind_all || score < min_score_share * best_;
+  }
+
+ private:
+  std::size_t count_;
+  std::vector<float> scores_;  // descending
+  float best_ = 0.0f;
+};
 
 }  // namespace
 
+// The matches of a query that are not yet in a group.
+class PlaceGrouping {
+ public:
+  PlaceGrouping(const PlaceIndex& index, const BagOfWords& query, const std::function<bool(KeyframeId)>& is_excluded)
+      : index_(index), is_excluded_(is_excluded), scores_(index.scores_of(query)) {
+    for (std::uint32_t slot = 0; slot < scores_.size(); ++slot) {
+      if (scores_[slot] > 0.0f) ranking_.push_back({index.entries_[slot].keyframe, scores_[slot]});
+    }
+    std::ranges::make_heap(ranking_, is_worse);
+  }
+
+  // Takes out the best match; empty when none is left.
+  std::optional<PlaceMatch> take_best() {
+    while (!ranking_.empty()) {
+      std::ranges::pop_heap(ranking_, is_worse);
+      const PlaceMatch best = ranking_.back();
+      ranking_.pop_back();
+      if (take(best.keyframe) > 0.0f) return best;
+    }
+    return std::nullopt;
+  }
+
+  // The match that was taken out, with those covisible with it, which are taken out as well.
+  PlaceCandidate take_group(const PlaceMatch& best, const MapView& map, int group_size) {
+    std::vector<PlaceMatch> members = {best};
+    for (const Covisible& covisible : map.covisible_keyframes(best.keyframe, group_size)) {
+      const float score = take(covisible.keyframe);
+      if (score > 0.0f) members.push_back({covisible.keyframe, score});
+    }
+    std::sort(members.begin(), members.end(), is_better);
+    PlaceCandidate candidate{best.keyframe, best.score, 0.0f, {}};
+    for (const PlaceMatch& member : members) {
+      candidate.group_score += member.score;
+      candidate.group.push_back(member.keyframe);
+    }
+    return candidate;
+  }
+
+ private:
+  static bool is_worse(const PlaceMatch& a, const PlaceMatch& b) { return is_better(b, a); }
+
+  // The score of a keyframe that is in no group yet and may be in one; zero for any other.
+  float take(KeyframeId id) {
+    const std::optional<std::uint32_t> slot = index_.slot_of(id);
+    const float score = slot ? std::exchange(scores_[*slot], 0.0f) : 0.0f;
+    return score > 0.0f && is_excluded_ && is_excluded_(id) ? 0.0f : score;
+  }
+
+  const PlaceIndex& index_;
+  const std::function<bool(KeyframeId)>& is_excluded_;
+  std::vector<float> scores_;        // by slot; zero for what was taken out
+  std::vector<PlaceMatch> ranking_;  // a heap, the best match first; with some that were taken out
+};
+
 PlaceIndex::PlaceIndex(Vocabulary vocabulary)
     : vocabulary_(std::move(vocabulary)), postings_(static_cast<std::size_t>(vocabulary_.word_count())) {}
+
+void PlaceIndex::reserve(std::span<const std::uint32_t> keyframes_of_words) {
+  for (std::size_t word = 0; word < postings_.size(); ++word) postings_[word].reserve(keyframes_of_words[word]);
+}
+
+std::optional<std::uint32_t> PlaceIndex::slot_of(KeyframeId id) const {
+  const std::vector<std::uint32_t>& slots = slots_[static_cast<std::size_t>(id.origin)];
+  if (id.number >= slots.size() || slots[id.number] == kNoSlot) return std::nullopt;
+  return slots[id.number];
+}
 
 std::uint32_t PlaceIndex::take_slot(KeyframeId id) {
   if (free_slots_.empty()) {
@@ -48,38 +144,50 @@ std::uint32_t PlaceIndex::take_slot(KeyframeId id) {
   }
   const std::uint32_t slot = free_slots_.back();
   free_slots_.pop_back();
-  slot_of_.emplace(id, slot);
+  std::vector<std::uint32_t>& slots = slots_[static_cast<std::size_t>(id.origin)];
+  if (id.number >= slots.size()) slots.resize(id.number + std::size_t{1}, kNoSlot);
+  slots[id.number] = slot;
+  ++size_;
   return slot;
 }
 
 void PlaceIndex::add(KeyframeId id, std::span<const Word> words) {
+  add_bag(id, vocabulary_.bag_of(words));
+}
+
+void PlaceIndex::add_bag(KeyframeId id, const BagOfWords& bag) {
   remove(id);
   const std::uint32_t slot = take_slot(id);
-  entries_[slot] = {id, vocabulary_.bag_of(words)};
-  for (const auto& [word, weight] : entries_[slot].bag) postings_[word].push_back({slot, weight});
+  entries_[slot] = {id, words_in(bag)};
+  for (const auto& [word, weight] : bag) postings_[word].push_back({slot, weight});
 }
 
 void PlaceIndex::remove(KeyframeId id) {
-  const auto found = slot_of_.find(id);
-  if (found == slot_of_.end()) return;
-  const std::uint32_t slot = found->second;
-  for (const auto& [word, weight] : entries_[slot].bag) {
-    std::erase_if(postings_[word], [slot](const Posting& posting) { return posting.slot == slot; });
+  const std::optional<std::uint32_t> slot = slot_of(id);
+  if (!slot) return;
+  for (const Word word : entries_[*slot].words) {
+    std::erase_if(postings_[word], [&slot](const Posting& posting) { return posting.slot == *slot; });
   }
-  entries_[slot] = {};
-  free_slots_.push_back(slot);
-  slot_of_.erase(found);
+  entries_[*slot] = {};
+  free_slots_.push_back(*slot);
+  slots_[static_cast<std::size_t>(id.origin)][id.number] = kNoSlot;
+  --size_;
 }
 
-std::vector<PlaceMatch> PlaceIndex::query(const BagOfWords& query, int max_results,
-                                          const std::function<bool(KeyframeId)>& is_excluded) const {
-  // Equation 5 of Nister and Stewenius 2006: of the norm of the difference only the words of both matter. For weights
-  // that sum to one, 1 - |a - b| / 2 is the sum of the smaller weights.
+// Equation 5 of Nister and Stewenius 2006: of the norm of the difference only the words of both matter. For weights
+// that sum to one, 1 - |a - b| / 2 is the sum of the smaller weights.
+std::vector<float> PlaceIndex::scores_of(const BagOfWords& query) const {
   std::vector<float> scores(entries_.size(), 0.0f);
   for (const auto& [word, weight] : query) {
     if (word >= postings_.size()) break;
     for (const Posting& posting : postings_[word]) scores[posting.slot] += std::min(weight, posting.weight);
   }
+  return scores;
+}
+
+std::vector<PlaceMatch> PlaceIndex::query(const BagOfWords& query, int max_results,
+                                          const std::function<bool(KeyframeId)>& is_excluded) const {
+  const std::vector<float> scores = scores_of(query);
   std::vector<PlaceMatch> matches;
   for (std::size_t slot = 0; slot < scores.size(); ++slot) {
     const KeyframeId id = entries_[slot].keyframe;
@@ -91,26 +199,43 @@ std::vector<PlaceMatch> PlaceIndex::query(const BagOfWords& query, int max_resul
   return matches;
 }
 
+// Bags are made by several threads, of some hundred keyframes at a time, so that few are there at once.
 PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary) {
+  constexpr std::size_t kAtOnce = 512;
+  constexpr std::size_t kOfTask = 32;
   PlaceIndex index(vocabulary);
-  for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_keyframe(id);
-    index.add(id, keyframe.words.empty() ? vocabulary.words_of(*keyframe.frame.features) : keyframe.words);
+  index.reserve(keyframes_of_words(map, vocabulary.word_count()));
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  TaskThreads threads(ids.size() < kAtOnce ? 0 : std::min(processor_count(), kMostIndexers) - 1);
+  std::vector<BagOfWords> bags(std::min(kAtOnce, ids.size()));
+  for (std::size_t begin = 0; begin < ids.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, ids.size() - begin);
+    threads.run(static_cast<int>((count + kOfTask - 1) / kOfTask), [&](int task) {
+      const std::size_t first = kOfTask * static_cast<std::size_t>(task);
+      for (std::size_t i = first; i < std::min(first + kOfTask, count); ++i) {
+        const Keyframe& keyframe = *map.find_keyframe(ids[begin + i]);
+        bags[i] =
+            vocabulary.bag_of(keyframe.words.empty() ? vocabulary.words_of(*keyframe.frame.features) : keyframe.words);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) index.add_bag(ids[begin + i], bags[i]);
   }
   return index;
 }
 
+// Groups are made from the best match on. What a match can come to at most ends it: as if all covisible with it matched
+// as well. That leaves most of a large map alone.
 std::vector<PlaceCandidate> find_places(const PlaceIndex& index, const MapView& map, std::span<const Word> words,
                                         const PlaceQueryOptions& options,
                                         const std::function<bool(KeyframeId)>& is_excluded) {
-  const std::vector<PlaceMatch> matches = index.query(index.vocabulary().bag_of(words), index.size(), is_excluded);
-  UngroupedScores ungrouped;
-  for (const PlaceMatch& match : matches) ungrouped.emplace(match.keyframe, match.score);
+  PlaceGrouping matches(index, index.vocabulary().bag_of(words), is_excluded);
+  BestGroups best(options.max_candidates);
   std::vector<PlaceCandidate> candidates;
-  for (const PlaceMatch& match : matches) {
-    if (ungrouped.contains(match.keyframe)) {
-      candidates.push_back(take_group(match, map, options.group_size, ungrouped));
-    }
+  while (const std::optional<PlaceMatch> match = matches.take_best()) {
+    const float most = greatest_sum(match->score, 1 + std::max(options.group_size, 0));
+    if (best.leave_out(most, options.min_score_share)) break;
+    candidates.push_back(matches.take_group(*match, map, options.group_size));
+    best.add(candidates.back().group_score);
   }
   if (candidates.empty()) return candidates;
   std::sort(candidates.begin(), candidates.end(), has_better_group);

@@ -3,9 +3,10 @@
 #include "byre/map/map_view.h"
 #include "byre/place/vocabulary.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,13 +32,14 @@ struct PlaceQueryOptions {
 };
 
 // An inverted file from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the words kept with keyframes
-// when a map is loaded, in a tenth of a millisecond per keyframe; never saved.
+// when a map is loaded, in some hundredths of a millisecond per keyframe; never saved. Keyframes are looked up by their
+// numbers, so these should be dense, as a map's are.
 class PlaceIndex {
  public:
   explicit PlaceIndex(Vocabulary vocabulary);
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
-  int size() const { return static_cast<int>(slot_of_.size()); }  // keyframes
+  int size() const { return size_; }  // keyframes
 
   void add(KeyframeId id, std::span<const Word> words);  // replaces what it had of the keyframe
   void remove(KeyframeId id);
@@ -48,22 +50,31 @@ class PlaceIndex {
                                 const std::function<bool(KeyframeId)>& is_excluded = {}) const;
 
  private:
+  friend class PlaceGrouping;
+  friend PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary);
+
   struct Posting {
     std::uint32_t slot = 0;
     float weight = 0.0f;  // weight of the word in the keyframe's bag
   };
   struct Entry {
     KeyframeId keyframe;
-    BagOfWords bag;  // empty in a free slot
+    std::vector<Word> words;  // words of the keyframe's bag; none in a free slot
   };
 
+  // Makes room for so many keyframes that have each word.
+  void reserve(std::span<const std::uint32_t> keyframes_of_words);
+  std::optional<std::uint32_t> slot_of(KeyframeId id) const;
   std::uint32_t take_slot(KeyframeId id);
+  void add_bag(KeyframeId id, const BagOfWords& bag);
+  std::vector<float> scores_of(const BagOfWords& query) const;  // similarity of the keyframe in each slot
 
   Vocabulary vocabulary_;                       // constant after construction
   std::vector<std::vector<Posting>> postings_;  // postings of each word
   std::vector<Entry> entries_;                  // keyframes by slot
   std::vector<std::uint32_t> free_slots_;
-  std::map<KeyframeId, std::uint32_t> slot_of_;
+  std::array<std::vector<std::uint32_t>, 2> slots_;  // slot by origin and number, or kNoSlot
+  int size_ = 0;
 };
 
 // The index of a map's keyframes, by their words; of those that have none, by their descriptors.

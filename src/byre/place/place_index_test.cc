@@ -272,6 +272,91 @@ TEST_F(TwoRooms, AreIndexedByTheirDescriptorsWhereTheyHaveNoWords) {
               testing::Each(Field(&PlaceMatch::score, testing::FloatEq(1.0f))));
 }
 
+// A long row of keyframes with random words, each covisible with some before it. The words of some are much alike.
+class Row : public testing::Test {
+ protected:
+  static constexpr int kKeyframes = 600;  // so many that several threads index them
+  static constexpr int kNeighbours = 3;
+
+  Row() {
+    map.add_rig({});
+    const auto features =
+        std::make_shared<const Features>(640, 480, std::vector<Keypoint>(kWordsEach, Keypoint{{1.0f, 1.0f}}),
+                                         random_descriptors(kWordsEach, 3), std::vector<Patch>{});
+    for (int i = 0; i < kKeyframes; ++i) {
+      Keyframe keyframe;
+      keyframe.frame.features = features;
+      keyframe.words = random_words(vocabulary, random);
+      if (i % 50 == 1) keyframe.words = map.find_keyframe({Origin::offline, static_cast<std::uint32_t>(i) - 1})->words;
+      const KeyframeId id = map.add_keyframe(std::move(keyframe));
+      for (int back = 1; back <= std::min(i, kNeighbours); ++back) see_together(id, back);
+    }
+  }
+
+  void see_together(KeyframeId id, int back) {
+    MapPoint point;
+    point.reference = {{id.origin, id.number - static_cast<std::uint32_t>(back)}, back};
+    const PointId shared = map.add_point(point);
+    map.add_observation(point.reference, {shared});
+    map.add_observation({id, static_cast<int>(kWordsEach) / 2 + back}, {shared});
+  }
+
+  // What must be found: groups of all matches, the best one first, of which the best are kept.
+  std::vector<PlaceCandidate> places_of_all(const PlaceIndex& index, std::vector<PlaceMatch> matches,
+                                            const PlaceQueryOptions& options) const {
+    std::vector<PlaceCandidate> all;
+    while (!matches.empty()) {
+      const auto covisible = map.covisible_keyframes(matches.front().keyframe, options.group_size);
+      PlaceCandidate group{matches.front().keyframe, matches.front().score, 0.0f, {}};
+      std::erase_if(matches, [&](const PlaceMatch& match) {
+        const bool is_in = match.keyframe == group.keyframe ||
+                           std::ranges::find(covisible, match.keyframe, &Covisible::keyframe) != covisible.end();
+        if (is_in) group.group_score += match.score;
+        if (is_in) group.group.push_back(match.keyframe);
+        return is_in;
+      });
+      all.push_back(std::move(group));
+    }
+    EXPECT_EQ(index.size(), kKeyframes);
+    std::ranges::stable_sort(all, [](const PlaceCandidate& a, const PlaceCandidate& b) {
+      return a.group_score != b.group_score ? a.group_score > b.group_score : a.keyframe < b.keyframe;
+    });
+    std::erase_if(all, [least = options.min_score_share * (all.empty() ? 0.0f : all.front().group_score)](
+                           const PlaceCandidate& candidate) { return candidate.group_score < least; });
+    all.resize(std::min(all.size(), static_cast<std::size_t>(options.max_candidates)));
+    return all;
+  }
+
+  std::mt19937_64 random{1};
+  const Vocabulary vocabulary = random_vocabulary();
+  Map map{Origin::offline};
+};
+
+TEST_F(Row, HasThePlacesThatLookingAtAllOfItFinds) {
+  const PlaceIndex index = index_of(map, vocabulary);
+  const Map online(Origin::online);
+  const auto is_excluded = [](KeyframeId id) { return id.number % 7 == 3; };
+  for (const PlaceQueryOptions& options :
+       {PlaceQueryOptions{}, PlaceQueryOptions{.max_candidates = 3}, PlaceQueryOptions{.group_size = 1},
+        PlaceQueryOptions{.min_score_share = 0.9f},
+        PlaceQueryOptions{.max_candidates = kKeyframes, .min_score_share = 0.0f}}) {
+    for (std::uint32_t number = 0; number < kKeyframes; number += 25) {
+      std::vector<Word> words = random_words(vocabulary, random);
+      if (number % 2 == 0) words = map.find_keyframe({Origin::offline, number})->words;
+      const auto matches = index.query(vocabulary.bag_of(words), kAll, is_excluded);
+      const std::vector<PlaceCandidate> expected = places_of_all(index, matches, options);
+      const auto found = find_places(index, MapView(&map, online), words, options, is_excluded);
+      ASSERT_THAT(found, SizeIs(expected.size()));
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].keyframe, expected[i].keyframe);
+        EXPECT_EQ(found[i].score, expected[i].score);
+        EXPECT_EQ(found[i].group_score, expected[i].group_score) << "to the last bit";
+        EXPECT_EQ(found[i].group, expected[i].group);
+      }
+    }
+  }
+}
+
 TEST_F(TwoRooms, AreNoPlaceForAnUnknownView) {
   show(0, {0, 1});
   EXPECT_THAT(places({6, 7}), IsEmpty());

@@ -1,8 +1,13 @@
 #include "byre/workers/task_threads.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace byre {
+
+int processor_count() {
+  return static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
+}
 
 TaskThreads::TaskThreads(int helpers) {
   for (int i = 0; i < helpers; ++i) {

@@ -11,6 +11,9 @@
 
 namespace byre {
 
+// How many threads the machine runs at a time; one at least.
+int processor_count();
+
 // Threads that help with short tasks and sleep between them. run() is called from one thread at a time.
 class TaskThreads {
  public:

@@ -1,0 +1,292 @@
+// How byre grows with the map: a kept map is tiled to sites of so many keyframes, and a recording of that map is run on
+// each.
+
+#include "tiled_map.h"
+
+#include "byre/benchmark/markdown_table.h"
+#include "byre/evaluation/distribution.h"
+#include "byre/features/image_threads.h"
+#include "byre/input/formatted.h"
+#include "byre/input_error.h"
+#include "byre/recording.h"
+#include "byre/slam/localisation.h"
+#include "byre/system/engine.h"
+#include "byre/system/resources.h"
+#include "byre/system/stored_map.h"
+#include "byre/workers/stopwatch.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <malloc.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMegabyte = 1e6;
+constexpr double kMilliseconds = 1e3;
+constexpr double kMicroseconds = 1e6;
+
+// CPU time of the calling thread alone: what the frame thread does, however busy the machine is.
+class ThreadStopwatch {
+ public:
+  double seconds() const { return now() - begin_; }
+
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+  double begin_ = now();
+};
+
+struct Writing {
+  double seconds = 0.0;
+  double file_mb = 0.0;
+  int points = 0;
+};
+
+struct Opening {
+  double seconds = 0.0;            // wall time, the best of three
+  double cpu_seconds = 0.0;        // CPU time of all threads, the least of three
+  double first_cpu_seconds = 0.0;  // CPU time of the first, when the program has no memory yet
+  double resident_mb = 0.0;        // what the program has more than before
+};
+
+struct Use {
+  double index_seconds = 0.0;  // CPU time of all threads
+  double index_mb = 0.0;
+  Distribution query_ms;
+  Distribution localise_ms;
+  int localised = 0;
+  Distribution frame_ms;      // wall time
+  Distribution frame_cpu_ms;  // CPU time of the frame thread
+  int with_pose = 0;
+  double ground_seconds = 0.0;
+  double stand_us = 0.0;
+};
+
+struct Inputs {
+  fs::path map;
+  fs::path recording;
+  Vocabulary vocabulary;
+};
+
+double heap_mb() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd) / kMegabyte;
+}
+
+fs::path site_file() {
+  return fs::temp_directory_path() / formatted("byre_site_%d.byre", static_cast<int>(getpid()));
+}
+
+// Runs it in a process of its own, so that memory that one measurement leaves is not counted to the next.
+template <typename Result>
+Result in_child(const std::function<Result()>& measure) {
+  static_assert(std::is_trivially_copyable_v<Result>);
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("there is no pipe to be had");
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      const Result result = measure();
+      const bool is_told = write(ends[1], &result, sizeof(result)) == ssize_t{sizeof(result)};
+      std::_Exit(is_told ? EXIT_SUCCESS : EXIT_FAILURE);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "byre_site: %s\n", error.what());
+      std::_Exit(EXIT_FAILURE);
+    }
+  }
+  close(ends[1]);
+  Result result;
+  const bool is_whole = child > 0 && read(ends[0], &result, sizeof(result)) == ssize_t{sizeof(result)};
+  close(ends[0]);
+  if (child > 0) waitpid(child, nullptr, 0);
+  if (!is_whole) throw std::runtime_error("a measurement failed");
+  return result;
+}
+
+Writing write_site(const Inputs& inputs, int keyframes, const fs::path& file) {
+  const StoredMap site = tiled_map(load_for_mapping(inputs.map, inputs.vocabulary), keyframes, inputs.vocabulary);
+  const Stopwatch watch;
+  save_map(site, file);
+  return {watch.seconds(), static_cast<double>(fs::file_size(file)) / kMegabyte, site.map.point_count()};
+}
+
+// The file is in the system's cache.
+Opening open_site(const Inputs& inputs, const fs::path& file) {
+  constexpr int kTimes = 3;
+  Opening best;
+  for (int i = 0; i < kTimes; ++i) {
+    const double memory_before = resident_memory_mb();
+    const double cpu_before = resources_used_so_far().cpu_seconds;
+    const Stopwatch watch;
+    const auto offline = load_offline_map(file, inputs.vocabulary);
+    const double seconds = watch.seconds(), cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+    if (i == 0) best = {seconds, cpu_seconds, cpu_seconds, resident_memory_mb() - memory_before};
+    best.seconds = std::min(best.seconds, seconds);
+    best.cpu_seconds = std::min(best.cpu_seconds, cpu_seconds);
+  }
+  return best;
+}
+
+void measure_index(const Inputs& inputs, const OfflineMap& offline, Use& use) {
+  const double heap_before = heap_mb();
+  const double cpu_before = resources_used_so_far().cpu_seconds;
+  const PlaceIndex index = index_of(offline.map(), inputs.vocabulary);
+  use.index_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  use.index_mb = heap_mb() - heap_before;
+}
+
+Calibration calibration_of(const OfflineMap& offline, const Recording& recording) {
+  const auto known = known_calibration(offline.recordings(), recording.calibration());
+  return known ? known->calibration : recording.calibration();
+}
+
+// Every tenth frame of the recording, each without a guess.
+void measure_places(const OfflineMap& offline, Recording& recording, Use& use) {
+  constexpr int kStride = 10;
+  Extractor extractor(calibration_of(offline, recording), {});
+  const Map nothing_online(Origin::online);
+  const MapView view(&offline.map(), nothing_online);
+  std::vector<double> queries, searches;
+  for (int i = 0; i < recording.size(); i += kStride) {
+    const std::optional<ImageFrame> images = recording.read(i);
+    if (!images) continue;
+    const Frame frame = extractor.extract(*images).frame;
+    const std::vector<Word> words = offline.places().vocabulary().words_of(*frame.features);
+    const ThreadStopwatch query;
+    find_places(offline.places(), view, words, {});
+    queries.push_back(kMilliseconds * query.seconds());
+    const ThreadStopwatch search;
+    if (localise(frame, extractor.rig(), view, offline.places(), {}).tracked) ++use.localised;
+    searches.push_back(kMilliseconds * search.seconds());
+  }
+  use.query_ms = distribution_of(queries);
+  use.localise_ms = distribution_of(searches);
+}
+
+// The recording as a mission.
+void measure_frames(const Inputs& inputs, const std::shared_ptr<const OfflineMap>& offline, Recording& recording,
+                    Use& use) {
+  EngineOptions options;
+  options.extract.threads = 1;
+  options.vocabulary = inputs.vocabulary;
+  options.offline = offline;
+  Engine engine(recording.calibration(), options);
+  std::vector<double> wall, cpu;
+  for (int i = 0; i < recording.size(); ++i) {
+    const std::optional<ImageFrame> images = recording.read(i);
+    if (!images) continue;
+    const ThreadStopwatch watch;
+    const Engine::Processed processed = engine.process(*images);
+    cpu.push_back(kMilliseconds * watch.seconds());
+    wall.push_back(kMilliseconds * processed.seconds.total);
+    if (processed.report.map_from_body) ++use.with_pose;
+  }
+  engine.finish();
+  use.frame_ms = distribution_of(wall);
+  use.frame_cpu_ms = distribution_of(cpu);
+}
+
+// A map that was driven has a ground; the recording need not be of one.
+void measure_ground(int keyframes, Use& use) {
+  constexpr int kStands = 1000;
+  const Map field = driven_field(keyframes);
+  const ThreadStopwatch watch;
+  const std::optional<DrivenGround> ground = DrivenGround::under(field);
+  use.ground_seconds = watch.seconds();
+  if (!ground) return;
+  const ThreadStopwatch stands;
+  for (int i = 0; i < kStands; ++i) ground->stand_of({Eigen::Quaterniond::Identity(), {0.05 * i, 0.03 * i, 0.0}});
+  use.stand_us = kMicroseconds * stands.seconds() / kStands;
+}
+
+Use use_site(const Inputs& inputs, int keyframes, const fs::path& file) {
+  Use use;
+  const auto offline = load_offline_map(file, inputs.vocabulary);
+  const auto recording = open_recording(inputs.recording, {});
+  measure_index(inputs, *offline, use);
+  measure_places(*offline, *recording, use);
+  measure_frames(inputs, offline, *recording, use);
+  measure_ground(keyframes, use);
+  return use;
+}
+
+std::vector<std::string> cells_of(int keyframes, const Writing& writing, const Opening& opening, const Use& use) {
+  return {std::to_string(keyframes),
+          std::to_string(writing.points),
+          formatted("%.1f", writing.file_mb),
+          formatted("%.2f", writing.seconds),
+          formatted("%.2f (%.2f, first %.2f)", opening.seconds, opening.cpu_seconds, opening.first_cpu_seconds),
+          formatted("%.0f", opening.resident_mb),
+          formatted("%.3f, %.1f MB", use.index_seconds, use.index_mb),
+          formatted("%.2f (%.2f)", use.query_ms.mean, use.query_ms.max),
+          formatted("%.1f (%.1f)", use.localise_ms.mean, use.localise_ms.max),
+          formatted("%d of %d", use.localised, use.localise_ms.count),
+          formatted("%.1f (%.1f)", use.frame_ms.mean, use.frame_ms.p99),
+          formatted("%.1f (%.1f)", use.frame_cpu_ms.mean, use.frame_cpu_ms.p99),
+          formatted("%d of %d", use.with_pose, use.frame_ms.count),
+          formatted("%.3f, %.1f us", use.ground_seconds, use.stand_us)};
+}
+
+void measure(const Inputs& inputs, const std::vector<int>& sizes) {
+  MarkdownTable table({"keyframes", "points", "file, MB", "written, s", "opened, s (CPU)", "resident, MB", "index, s",
+                       "place query, ms (max)", "from nothing, ms (max)", "found", "frame, ms (p99)",
+                       "frame's CPU, ms (p99)", "poses", "ground, s; a stand"});
+  const fs::path file = site_file();
+  for (const int keyframes : sizes) {
+    const auto writing = in_child<Writing>([&] { return write_site(inputs, keyframes, file); });
+    const auto opening = in_child<Opening>([&] { return open_site(inputs, file); });
+    const auto use = in_child<Use>([&] { return use_site(inputs, keyframes, file); });
+    fs::remove(file);
+    table.add(cells_of(keyframes, writing, opening, use));
+  }
+  std::fputs(table.text().c_str(), stdout);
+}
+
+std::vector<int> sizes_in(int argc, char** argv) {
+  std::vector<int> sizes;
+  for (int i = 3; i < argc; ++i) {
+    int size = 0;
+    const auto [end, fault] = std::from_chars(argv[i], argv[i] + std::strlen(argv[i]), size);
+    if (fault != std::errc() || *end != '\0' || size < 1) {
+      throw InputError(argv[i], "is no number of keyframes", "name one or more, such as 100 1000 10000");
+    }
+    sizes.push_back(size);
+  }
+  return sizes.empty() ? std::vector<int>{100, 1000, 10000} : sizes;
+}
+
+}  // namespace
+}  // namespace byre
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fputs("usage: byre_site MAP RECORDING [KEYFRAMES...]\n", stderr);
+    return 2;
+  }
+  try {
+    byre::limit_image_threads(1);
+    const byre::Inputs inputs{argv[1], argv[2], byre::open_vocabulary({})};
+    byre::measure(inputs, byre::sizes_in(argc, argv));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "byre_site: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
