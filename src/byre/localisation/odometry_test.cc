@@ -11,7 +11,7 @@ Pose at(double x) {
   return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
 }
 
-// Of a body that online points have so many metres before where it was tracked.
+// The offset of a body that online points have so many metres before where it was tracked.
 Odometry::Offset ahead_by(double x, double sigma = 0.0) {
   return {at(x), sigma};
 }
