@@ -1,6 +1,7 @@
 #include "byre/features/develop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include <opencv2/imgproc.hpp>
@@ -10,6 +11,23 @@ namespace {
 
 constexpr float kTolerable = 3.5f;  // grey values: noise up to which corners and patches do well
 constexpr float kLeft = 2.5f;       // grey values: noise that smoothing leaves
+
+// Grey values below black where the square root begins. With it the noise of light, which grows with the root of the
+// light, is much the same in dark and bright places (Anscombe 1948), and windows do not use up what there is of grey.
+constexpr float kRootBegin = 32.0f;
+
+// What the curve makes of a grey value, for a gain of 1.
+float along_root(float grey) {
+  return 2.0f * std::sqrt(kRootBegin) * (std::sqrt(std::max(0.0f, grey + kRootBegin)) - std::sqrt(kRootBegin));
+}
+
+void draw_along_root(float gain, cv::Mat& fine) {
+  fine += kRootBegin;
+  cv::max(fine, 0.0f, fine);
+  cv::sqrt(fine, fine);
+  const float slope = 2.0f * gain * std::sqrt(kRootBegin);
+  fine.convertTo(fine, CV_32F, slope, -slope * std::sqrt(kRootBegin));
+}
 
 // The standard deviation of a Gaussian that leaves a share of white noise: 1 / (2 sqrt(pi) sigma), for wide ones.
 float smoothing_to(float share) {
@@ -23,10 +41,14 @@ Development development_for(const ImageCondition& condition) {
   constexpr float kDull = 12.0f;      // grey values of contrast
   constexpr float kLeastSeen = 0.5f;  // grey values of contrast: below there is nothing to bring out
   constexpr float kMaxGain = 8.0f;
+  constexpr float kDark = 25.0f;  // grey values of brightness
+  constexpr float kGainOfDark = 2.0f;
   Development development;
   if (condition.contrast < kLeastSeen) return development;
-  development.gain = std::clamp(kDull / condition.contrast, 1.0f, kMaxGain);
-  if (development.gain > 1.0f) {
+  development.is_curved = condition.brightness < kDark;
+  const float least = development.is_curved ? kGainOfDark : 1.0f;
+  development.gain = std::clamp(kDull / condition.contrast, least, kMaxGain);
+  if (development.gain > 1.0f && !development.is_curved) {
     const float brightness = std::clamp(condition.brightness, 64.0f, 192.0f);  // room for what is brought out
     development.offset = brightness - development.gain * condition.brightness;
   }
@@ -36,13 +58,21 @@ Development development_for(const ImageCondition& condition) {
 }
 
 void develop(const Development& development, const cv::Mat& image, cv::Mat& fine, cv::Mat& developed) {
-  image.convertTo(fine, CV_32F, development.gain, development.offset);
+  const bool is_linear = !development.is_curved;
+  image.convertTo(fine, CV_32F, is_linear ? development.gain : 1.0, is_linear ? development.offset : 0.0);
   if (development.smoothing > 0.0f) cv::GaussianBlur(fine, fine, {}, development.smoothing);
+  if (development.is_curved) draw_along_root(development.gain, fine);
   fine.convertTo(developed, CV_8U);
 }
 
 ImageCondition condition_after(const Development& development, const ImageCondition& condition) {
   ImageCondition after = condition;
+  if (development.is_curved) {
+    const float slope = std::sqrt(kRootBegin / (kRootBegin + condition.brightness));
+    after.brightness = development.gain * along_root(condition.brightness);
+    after.contrast = development.gain * slope * condition.contrast;
+    return after;
+  }
   after.brightness = development.gain * condition.brightness + development.offset;
   after.contrast = development.gain * condition.contrast;
   return after;

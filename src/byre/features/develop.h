@@ -7,11 +7,13 @@
 namespace byre {
 
 // How an image taken in poor light is brought out before features are looked for, as a photograph is developed:
-// smoothed as much as its noise asks for, and amplified where it is dull. Images taken in good light stay as they are.
+// smoothed as much as its noise asks for, and amplified where it is dull or dark. Images taken in good light stay as
+// they are.
 struct Development {
   float smoothing = 0.0f;  // pixels, standard deviation of a Gaussian; 0: none
   float gain = 1.0f;
-  float offset = 0.0f;  // grey values, after the gain
+  float offset = 0.0f;     // grey values, after the gain
+  bool is_curved = false;  // what is bright is amplified less, along a square root; the gain is that of black
 
   bool changes_anything() const { return smoothing > 0.0f || gain != 1.0f; }
 };

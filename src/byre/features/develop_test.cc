@@ -44,6 +44,40 @@ TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
   EXPECT_NEAR(deviation[0], 2.5, 0.8);
 }
 
+TEST(Development, BringsOutWhatIsDarkBesideWindows) {
+  cv::Mat image = steps(6.0) - 22.0;  // grey values of 8 and 14
+  image(cv::Rect(0, 0, 376, 8)).setTo(255);
+  const ImageCondition condition = measure_condition(to_image(noisy(image, 1.0)));
+  const Development development = development_for(condition);
+  EXPECT_TRUE(development.is_curved);
+  cv::Mat fine, bright;
+  develop(development, image, fine, bright);
+  const int dark = bright.at<std::uint8_t>(100, 100), light = bright.at<std::uint8_t>(100, 125);
+  EXPECT_NEAR(std::abs(light - dark), 10, 2) << "twice as far apart in the dark, less what the root takes";
+  EXPECT_GE(bright.at<std::uint8_t>(5, 100), 250);
+  EXPECT_LT(dark, 40) << "black stays black";
+}
+
+TEST(Development, SmoothsWhatIsDarkAsMuchAsItAmplifiesIt) {
+  const Development development = development_for({.brightness = 10.0f, .contrast = 9.0f, .noise = 4.7f});
+  EXPECT_TRUE(development.is_curved);
+  EXPECT_EQ(development.gain, 2.0f);
+  EXPECT_NEAR(development.smoothing, 1.06f, 0.01f);
+  EXPECT_FALSE(development_for({.brightness = 35.0f, .contrast = 25.0f, .noise = 5.5f}).is_curved);
+}
+
+TEST(Development, ForetellsWhatTheDarkBecomes) {
+  const cv::Mat image = noisy(steps(5.0) - 22.0, 1.0);
+  const ImageCondition condition = measure_condition(to_image(image));
+  const Development development = development_for(condition);
+  cv::Mat fine, bright;
+  develop(development, image, fine, bright);
+  const ImageCondition after = measure_condition(to_image(bright));
+  const ImageCondition foretold = condition_after(development, condition);
+  EXPECT_NEAR(after.brightness, foretold.brightness, 2.0f);
+  EXPECT_NEAR(after.contrast, foretold.contrast, 0.25f * foretold.contrast);
+}
+
 TEST(Development, BringsOutWhatIsDull) {
   const cv::Mat image = noisy(steps(5.0), 1.0);
   const ImageCondition condition = measure_condition(to_image(image));

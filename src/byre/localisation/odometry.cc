@@ -1,5 +1,8 @@
 #include "byre/localisation/odometry.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace byre {
 
 void Odometry::start(const Pose& map_from_body) {
@@ -12,7 +15,7 @@ void Odometry::correct(const Pose& map_from_body) {
   map_from_body_ = map_from_body;
 }
 
-Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<Pose>& offset) {
+Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<Offset>& offset) {
   const Pose smooth = without_change_of(offset, map_from_body);
   const double metres = (map_from_body_.translation - smooth.translation).norm();
   map_from_body_ = smooth;
@@ -22,11 +25,14 @@ Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<P
   return {smooth, metres};
 }
 
-Pose Odometry::without_change_of(const std::optional<Pose>& offset, const Pose& map_from_body) const {
-  constexpr double kMaxChange = 0.01;  // metres: less is noise
+Pose Odometry::without_change_of(const std::optional<Offset>& offset, const Pose& map_from_body) const {
+  constexpr double kLeastChange = 0.01;  // metres: less is noise
+  constexpr double kSigmas = 3.0;
   if (!offset || !offset_) return map_from_body;
-  const double change = (offset->translation - offset_->translation).norm();
-  return change > kMaxChange ? map_from_body * inverse(*offset) * *offset_ : map_from_body;
+  const Pose &now = offset->online_from_body, &before = offset_->online_from_body;
+  const double change = (now.translation - before.translation).norm();
+  const double noise = kSigmas * std::hypot(offset->sigma, offset_->sigma);
+  return change > std::max(kLeastChange, noise) ? map_from_body * inverse(now) * before : map_from_body;
 }
 
 }  // namespace byre

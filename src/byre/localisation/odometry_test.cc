@@ -11,6 +11,11 @@ Pose at(double x) {
   return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
 }
 
+// The offset of a body that online points have so many metres before where it was tracked.
+Odometry::Offset ahead_by(double x, double sigma = 0.0) {
+  return {at(x), sigma};
+}
+
 Odometry started_at(const Pose& map_from_body) {
   Odometry odometry;
   odometry.start(map_from_body);
@@ -56,26 +61,34 @@ TEST(Odometry, CountsTheWayButNoCorrection) {
 
 TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {
   Odometry odometry = started_at(at(0.0));
-  odometry.follow(at(1.0), at(0.0));
-  const Odometry::Step step = odometry.follow(at(1.5), at(0.3));  // 0.2 metres on by online points
+  odometry.follow(at(1.0), ahead_by(0.0));
+  const Odometry::Step step = odometry.follow(at(1.5), ahead_by(0.3));  // 0.2 metres on by online points
   EXPECT_THAT(step.smooth, PoseNear(at(1.2), 1e-12, 1e-12));
   EXPECT_NEAR(step.metres, 0.2, 1e-12);
   EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.2), 1e-12, 1e-12));
   EXPECT_THAT(odometry.map_from_body(), PoseNear(at(1.5), 1e-12, 1e-12));
-  EXPECT_NEAR(odometry.follow(at(1.6), at(0.3)).metres, 0.1, 1e-12);
+  EXPECT_NEAR(odometry.follow(at(1.6), ahead_by(0.3)).metres, 0.1, 1e-12);
 }
 
 TEST(Odometry, TakesASmallChangeOfOffsetForNoise) {
   Odometry odometry = started_at(at(0.0));
-  odometry.follow(at(1.0), at(0.0));
-  EXPECT_NEAR(odometry.follow(at(1.005), at(0.005)).metres, 0.005, 1e-12);
+  odometry.follow(at(1.0), ahead_by(0.0));
+  EXPECT_NEAR(odometry.follow(at(1.005), ahead_by(0.005)).metres, 0.005, 1e-12);
+}
+
+TEST(Odometry, TakesWhatOnlinePointsDoNotTellForNoise) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), ahead_by(0.0, 0.08));
+  const Odometry::Step step = odometry.follow(at(1.1), ahead_by(-0.3, 0.08));  // few points, in the dark
+  EXPECT_NEAR(step.metres, 0.1, 1e-12);
+  EXPECT_THAT(step.smooth, PoseNear(at(1.1), 1e-12, 1e-12));
 }
 
 TEST(Odometry, ComparesNoOffsetsAcrossAGap) {
   Odometry odometry = started_at(at(0.0));
-  odometry.follow(at(1.0), at(0.0));
+  odometry.follow(at(1.0), ahead_by(0.0));
   odometry.remember_offset({});
-  EXPECT_NEAR(odometry.follow(at(1.5), at(0.3)).metres, 0.5, 1e-12);
+  EXPECT_NEAR(odometry.follow(at(1.5), ahead_by(0.3)).metres, 0.5, 1e-12);
 }
 
 }  // namespace

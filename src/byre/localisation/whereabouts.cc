@@ -9,9 +9,12 @@
 namespace byre {
 namespace {
 
-std::optional<Pose> offset_from_online(const HybridTrack& track, const Rig& rig) {
+std::optional<Odometry::Offset> offset_from_online(const HybridTrack& track, const Rig& rig) {
   if (!track.from_online) return std::nullopt;
-  return inverse(body_pose(rig, *track.from_online)) * body_pose(rig, track.tracked.camera_from_world);
+  const Pose online_from_body =
+      inverse(body_pose(rig, *track.from_online)) * body_pose(rig, track.tracked.camera_from_world);
+  const Matrix6 covariance = move_covariance(track.from_online_covariance, rig.body_from_camera);
+  return Odometry::Offset{online_from_body, std::sqrt(covariance.topLeftCorner<3, 3>().trace())};
 }
 
 }  // namespace
@@ -73,7 +76,7 @@ FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) con
 
 // The metres that the body went.
 double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {
-  const std::optional<Pose> offset = offset_from_online(seen.track, rig);
+  const std::optional<Odometry::Offset> offset = offset_from_online(seen.track, rig);
   if (seen.from_nothing) {
     trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
     odometry_.remember_offset(offset);

@@ -301,7 +301,10 @@ ByImageRegion<PointsInView> by_region(const std::vector<ExpectedPoint>& expected
 HybridTrack told(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
   HybridTrack result;
   if (opinions.offline) result.from_offline = opinions.offline->camera_from_world;
-  if (opinions.online) result.from_online = opinions.online->camera_from_world;
+  if (opinions.online) {
+    result.from_online = opinions.online->camera_from_world;
+    result.from_online_covariance = opinions.online->covariance;
+  }
   result.maps_disagree = opinions.maps_disagree;
   result.offline_stands = opinions.offline_stands;
 

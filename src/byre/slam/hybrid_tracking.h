@@ -36,10 +36,11 @@ struct HybridTrack {
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
-  ByImageRegion<PointsInView> offline_by_region{};  // where the image shows them, or should
-  std::optional<Pose> from_offline;                 // camera_from_world, as offline points alone have it
-  std::optional<Pose> from_online;                  // camera_from_world, as online points alone have it
-  bool maps_disagree = false;                       // both poses are farther apart than their covariances explain
+  ByImageRegion<PointsInView> offline_by_region{};   // where the image shows them, or should
+  std::optional<Pose> from_offline;                  // camera_from_world, as offline points alone have it
+  std::optional<Pose> from_online;                   // camera_from_world, as online points alone have it
+  Matrix6 from_online_covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * from_online
+  bool maps_disagree = false;                        // both poses are farther apart than their covariances explain
   // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
   bool offline_stands = false;
   std::optional<FocalEvidence> focal;   // what offline points say of the focal length, where they were asked
