@@ -41,7 +41,7 @@ Development development_for(const ImageCondition& condition) {
   constexpr float kDull = 12.0f;      // grey values of contrast
   constexpr float kLeastSeen = 0.5f;  // grey values of contrast: below there is nothing to bring out
   constexpr float kMaxGain = 8.0f;
-  constexpr float kDark = 25.0f;  // grey values of brightness
+  constexpr float kDark = 18.0f;  // grey values of brightness
   constexpr float kGainOfDark = 2.0f;
   Development development;
   if (condition.contrast < kLeastSeen) return development;

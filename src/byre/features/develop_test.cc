@@ -46,7 +46,7 @@ TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
 
 TEST(Development, BringsOutWhatIsDarkBesideWindows) {
   cv::Mat image = steps(6.0) - 22.0;  // grey values of 8 and 14
-  image(cv::Rect(0, 0, 376, 8)).setTo(255);
+  image(cv::Rect(0, 0, 188, 8)).setTo(255);
   const ImageCondition condition = measure_condition(to_image(noisy(image, 1.0)));
   const Development development = development_for(condition);
   EXPECT_TRUE(development.is_curved);
