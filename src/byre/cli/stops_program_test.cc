@@ -145,13 +145,13 @@ class Stops : public ProgramTest {
 };
 
 TEST_F(Stops, AtRandomMomentsLeaveWholeFiles) {
-  constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGKILL};
+  constexpr std::array kStops = {SIGINT, SIGTERM, SIGHUP, SIGKILL};
   std::mt19937 random(wanted_seed());
   const double whole_s = seconds_of_whole_run();
   std::map<std::string, int> counts;
   for (int i = 0; i < wanted_stops(); ++i) {
     clear();
-    const int signal = kSignals[static_cast<std::size_t>(i) % kSignals.size()];
+    const int signal = kStops[static_cast<std::size_t>(i) % kStops.size()];
     const Moment moment = i % 3 == 2 ? Moment::saving : Moment::any;
     const bool is_map = (i / 4) % 2 == 0;
     const double delay_s = std::uniform_real_distribution(0.0, (moment == Moment::any ? 1.0 : 0.7) * whole_s)(random);

@@ -101,6 +101,8 @@ Patch cut_patch(const cv::Mat& level, int x, int y) {
   return patch;
 }
 
+}  // namespace
+
 struct Described {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
@@ -134,8 +136,6 @@ struct Developed {
   cv::Mat fine_;  // memory, see develop()
   cv::Mat own_;   // the rectified image may be that of the caller
 };
-
-}  // namespace
 
 struct Extractor::State {
   State(const Calibration& used, const ExtractOptions& extract_options)

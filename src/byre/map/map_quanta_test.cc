@@ -146,18 +146,18 @@ Patch random_patch(std::mt19937_64& random, int darkest, int range) {
 }
 
 TEST(MapQuanta, HaveCodesOfTheirOwnForWhatNoMapHolds) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  for (const float outside : {kNan, -0.6f, 639.6f, 1e30f, -1e30f})
+  constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+  for (const float outside : {kNoNumber, -0.6f, 639.6f, 1e30f, -1e30f})
     EXPECT_EQ(pixel_code(outside, 640), pixel_codes(640));
-  EXPECT_GT(offset_code(kNan), kLargestOffsetCode);
-  for (const float sigma : {kNan, 0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
+  EXPECT_GT(offset_code(kNoNumber), kLargestOffsetCode);
+  for (const float sigma : {kNoNumber, 0.0f, -1.0f, std::numeric_limits<float>::infinity()}) {
     EXPECT_EQ(sigma_of_code(sigma_code(sigma)), 0.0f);
   }
-  EXPECT_FALSE(std::isfinite(float_of_24(float24_code(kNan))));
-  EXPECT_FALSE(std::isfinite(float_of_16(float16_code(kNan))));
-  EXPECT_FALSE(std::isfinite(double_of_48(double48_code(kNan))));
+  EXPECT_FALSE(std::isfinite(float_of_24(float24_code(kNoNumber))));
+  EXPECT_FALSE(std::isfinite(float_of_16(float16_code(kNoNumber))));
+  EXPECT_FALSE(std::isfinite(double_of_48(double48_code(kNoNumber))));
   EXPECT_EQ(direction_of(direction_code({1.1f, 0.0f, 0.0f})).norm(), 0.0f);
-  EXPECT_FALSE(covariance_of(covariance_code(Eigen::Matrix3d::Constant(kNan))));
+  EXPECT_FALSE(covariance_of(covariance_code(Eigen::Matrix3d::Constant(kNoNumber))));
 }
 
 TEST(MapQuanta, KeepPatchesToAThirtiethOfTheirContrast) {

@@ -85,7 +85,9 @@ TEST_F(OfflineCopy, KeepsFeaturesThatSeeAPointAndPatchesThatDefineOne) {
       EXPECT_EQ(features.descriptor(i), original.frame.features->descriptor(i));
       const std::optional<PointId> point = keyframe.sightings[static_cast<std::size_t>(i)].point;
       ASSERT_TRUE(point.has_value());
-      if (features.find_patch(i)) EXPECT_EQ(copy.find_point(*point)->reference, (Observation{id, i}));
+      if (features.find_patch(i)) {
+        EXPECT_EQ(copy.find_point(*point)->reference, (Observation{id, i}));
+      }
     }
   }
   EXPECT_GT(patches, 0);

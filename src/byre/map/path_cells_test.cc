@@ -26,7 +26,9 @@ TEST(PathCells, TellAllThatIsNear) {
     EXPECT_TRUE(std::ranges::is_sorted(near));
     EXPECT_LT(near.size(), places.size() / 4);
     for (std::uint32_t other = 0; other < places.size(); ++other) {
-      if ((places[other] - place).norm() <= kReach) EXPECT_THAT(near, Contains(other));
+      if ((places[other] - place).norm() <= kReach) {
+        EXPECT_THAT(near, Contains(other));
+      }
     }
   }
 }

@@ -13,7 +13,7 @@ struct InputFrame {
   Frame frame;
   ImageFault fault = ImageFault::none;
   InputEvidence evidence;
-  FrameCuts cuts;  // what is left out of it
+  FrameCuts cuts{};  // what is left out of it
 };
 
 // All that is told of a frame, once the session has taken it in.

@@ -53,7 +53,9 @@ TEST(Deadline, LeavesAMissionItsOfflinePoints) {
     ASSERT_TRUE(reports[i].map_from_body) << i;
     EXPECT_THAT(*reports[i].map_from_body, PoseNear(mission.truth[i].world_from_body, 0.03, 0.01)) << i;
     EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
-    if (reports[i].cuts.online_points) EXPECT_EQ(reports[i].health.online_inliers, 0) << i;
+    if (reports[i].cuts.online_points) {
+      EXPECT_EQ(reports[i].health.online_inliers, 0) << i;
+    }
   }
 }
 

@@ -125,10 +125,10 @@ Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& ra
 
 // The keypoint with its appearance somewhere else.
 Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
-  constexpr double kNearest = 0.5;  // metres
+  constexpr double kLeastDepth = 0.5;  // metres
   keypoint.pixel.x() = static_cast<float>(draw_uniform(random, 0.0, rig.width - 1.0));
   keypoint.pixel.y() = static_cast<float>(draw_uniform(random, 0.0, rig.height - 1.0));
-  const double max_disparity = std::max(options.min_disparity, rig.focal * rig.baseline / kNearest);
+  const double max_disparity = std::max(options.min_disparity, rig.focal * rig.baseline / kLeastDepth);
   const double disparity = draw_uniform(random, options.min_disparity, max_disparity);
   if (keypoint.has_disparity()) keypoint.disparity = static_cast<float>(disparity);
   return keypoint;
