@@ -61,6 +61,11 @@ std::uint64_t ByteReader::read_last_bytes(std::size_t count) {
   return value;
 }
 
+void ByteReader::skip_varint() {
+  while ((read<std::uint8_t>() & kVarintContinues) != 0) {
+  }
+}
+
 std::uint32_t ByteReader::read_varint() {
   std::uint64_t value = 0;
   for (int shift = 0; shift < 32; shift += kVarintBits) {

@@ -81,6 +81,7 @@ class ByteReader {
     return value << bits_above >> bits_above;
   }
   std::uint32_t read_varint();  // refuses what takes more bytes than it needs
+  void skip_varint();           // whatever it is
 
   // A number (u32) of things that take at least bytes_each each: refuses more than the remaining bytes can hold, so
   // that nothing is reserved that the file does not justify. Precondition: bytes_each > 0.

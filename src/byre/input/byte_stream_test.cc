@@ -42,6 +42,9 @@ TEST(ByteStream, ReadsBackNumbersOfFewBytes) {
     writer.write_varint(number);
     EXPECT_EQ(writer.size(), number < 128 ? 1u : number < 16384 ? 2u : number < 1u << 21 ? 3u : 5u);
     EXPECT_EQ(reader_of(writer).read_varint(), number);
+    ByteReader skipping = reader_of(writer);
+    skipping.skip_varint();
+    EXPECT_NO_THROW(skipping.require_end());
   }
   ByteWriter writer;
   writer.write_low_bytes(0x010203, 3);

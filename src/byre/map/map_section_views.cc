@@ -251,11 +251,6 @@ class ViewReader {
   PointObservers observers_;
 };
 
-void skip_varint(ByteReader& reader) {
-  while ((reader.read<std::uint8_t>() & 128u) != 0) {
-  }
-}
-
 // Goes through so many features of a keyframe without looking at values: calls visit for each, with the point that it
 // sees or nullptr.
 template <typename Visitor>
@@ -270,8 +265,7 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
       continue;
     }
     const auto point = static_cast<std::uint32_t>(sections.observations.read_low_bytes(point_bytes));
-    skip_varint(sections.observations);
-    skip_varint(sections.observations);
+    for (int offset = 0; offset < 2; ++offset) sections.observations.skip_varint();
     sections.observations.take(1);
     visit(&point);
   }

@@ -1,5 +1,7 @@
 #include "byre/simulation/row_workers.h"
 
+#include "byre/workers/task_threads.h"
+
 #include <algorithm>
 #include <atomic>
 #include <thread>
@@ -8,8 +10,7 @@
 namespace byre {
 
 void for_each_row(int rows, int threads, const std::function<void(int row)>& work) {
-  const int available = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
-  const int others = std::min(threads > 0 ? threads : available, rows) - 1;
+  const int others = std::min(threads > 0 ? threads : processor_count(), rows) - 1;
   std::atomic<int> next = 0;
   const auto work_on = [&] {
     for (int row = next++; row < rows; row = next++) work(row);

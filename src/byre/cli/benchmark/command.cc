@@ -15,11 +15,11 @@
 #include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
+#include "byre/workers/task_threads.h"
 
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -123,7 +123,7 @@ ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& re
   what.engine = options.engine_options();
   what.engine.pace = options.pace.value_or(Pace::live);
   what.engine.vocabulary = open_vocabulary(options.vocabulary);
-  what.cores = static_cast<int>(std::thread::hardware_concurrency());
+  what.cores = processor_count();
   const fs::path& folder = options.run.output;
   std::vector<fs::path> outputs;
   if (!folder.empty()) {
@@ -159,8 +159,7 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   make_folder(options.run.output);
   const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.engine.pace,
-                                 static_cast<int>(std::thread::hardware_concurrency()),
-                                 changed_options(options.run.engine)};
+                                 processor_count(), changed_options(options.run.engine)};
 
   limit_image_threads(1);
   const fs::path& folder = options.run.output;
