@@ -52,7 +52,11 @@ Confirmation confirmed_further(const Confirmation& before, const ByImageRegion<P
                                const RegistrationOptions& options) {
   Confirmation after = before;
   after.frames_to_believe = std::max(0, before.frames_to_believe - 1);
-  if (!before.is_proven() && is_proof(before, offline, options)) --after.frames_to_prove;
+  if (!before.is_proven()) {
+    after.frames_to_prove = is_proof(before, offline, options)
+                                ? before.frames_to_prove - 1
+                                : std::min(before.frames_to_prove + 1, options.confirmations);
+  }
   after.is_by_hint = before.is_by_hint && !after.is_proven();
   return after;
 }

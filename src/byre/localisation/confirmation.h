@@ -8,9 +8,10 @@
 namespace byre {
 
 // How far a pose found from nothing may be relied on. It is believed once the frames that follow have been tracked on
-// it; the more of them, the less the robot can have come there by itself. It is trusted once some frames have seen much
-// of what should be there, all over the image: a thing that was moved, or a roof that is the same in each bay, fits a
-// pose of its own. The more, where it was looked for near a hint alone, for a hint may name a place that looks alike.
+// it; the more of them, the less the robot can have come there by itself. It is trusted once enough frames have seen
+// much of what should be there, all over the image: a thing that was moved, or a roof that is the same in each bay,
+// fits a pose of its own. The more, where it was looked for near a hint alone, for a hint may name a place that looks
+// alike.
 struct Confirmation {
   int frames_to_believe = 0;
   int frames_to_prove = 0;
@@ -37,7 +38,8 @@ struct FindEvidence {
 //   nearer                                      confirmations          confirmations
 Confirmation confirmation_of(const FindEvidence& find, const RegistrationOptions& options);
 
-// After one more frame was tracked on the pose, which saw so many points of the offline map.
+// After one more frame was tracked on the pose, which saw so many points of the offline map. A frame that saw too few
+// to prove takes back what one before it proved: among many frames, some see enough in a wrong place by chance.
 Confirmation confirmed_further(const Confirmation& before, const ByImageRegion<PointsInView>& offline,
                                const RegistrationOptions& options);
 

@@ -56,6 +56,17 @@ TEST(ConfirmedFurther, IsProvenByFramesAloneThatSeeMuchOfWhatShouldBeThere) {
   EXPECT_EQ(confirmed_further({3, 3}, {}, kOptions), (Confirmation{2, 3}));
 }
 
+TEST(ConfirmedFurther, IsProvenNoMoreByFramesThatSeeLittle) {
+  EXPECT_EQ(confirmed_further({3, 1}, seeing(5), kOptions), (Confirmation{2, 2}));
+  EXPECT_EQ(confirmed_further({3, 1}, {}, kOptions), (Confirmation{2, 2}));
+  EXPECT_EQ(confirmed_further({3, 0}, seeing(5), kOptions), (Confirmation{2, 0}));
+  Confirmation of_a_place_alike{0, 3};
+  for (int i = 0; i < 20; ++i) {
+    of_a_place_alike = confirmed_further(of_a_place_alike, seeing(i % 4 == 0 ? 8 : 4), kOptions);
+    EXPECT_FALSE(of_a_place_alike.is_proven());
+  }
+}
+
 TEST(ConfirmedFurther, IsNotProvenByWhatFillsAPartOfTheImage) {
   ByImageRegion<PointsInView> regions = seeing(0);
   constexpr std::size_t kMostRegions = 8;
