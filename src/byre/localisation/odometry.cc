@@ -5,11 +5,6 @@
 
 namespace byre {
 
-void Odometry::start(const Pose& map_from_body) {
-  odometry_from_map_ = inverse(map_from_body);
-  map_from_body_ = map_from_body;
-}
-
 void Odometry::correct(const Pose& map_from_body) {
   odometry_from_map_ = odometry_from_map_ * map_from_body_ * inverse(map_from_body);
   map_from_body_ = map_from_body;
@@ -23,6 +18,11 @@ Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<O
   offset_ = offset;
   travelled_ += metres;
   return {smooth, metres};
+}
+
+void Odometry::go_by(const Pose& last_from_body, const Pose& map_from_body) {
+  correct(map_from_body * inverse(last_from_body));
+  follow(map_from_body, {});
 }
 
 Pose Odometry::without_change_of(const std::optional<Offset>& offset, const Pose& map_from_body) const {

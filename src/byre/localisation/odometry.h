@@ -14,9 +14,7 @@ class Odometry {
   Pose odometry_from_body() const { return odometry_from_map_ * map_from_body_; }
   double travelled() const { return travelled_; }  // metres
 
-  // A first pose.
-  void start(const Pose& map_from_body);
-  // The body did not move: what was taken for one pose turned out to be the other.
+  // The body did not move: what was taken for one pose turned out to be the other. The first pose comes so too.
   void correct(const Pose& map_from_body);
 
   // From where online points alone have the body to where it was tracked.
@@ -33,6 +31,9 @@ class Odometry {
   // The body was tracked to a pose. What offline points do to a pose that online points hold as well is no motion:
   // where the offset changes at once, by more than its uncertainty explains, the body is where it would be had it not.
   Step follow(const Pose& map_from_body, const std::optional<Offset>& offset);
+
+  // The body is at a pose in the map that it was not tracked to, and has moved since the last frame as it was told.
+  void go_by(const Pose& last_from_body, const Pose& map_from_body);
 
   // Sets the offset that the next pose is compared with; empty where the two have nothing to do with each other.
   void remember_offset(const std::optional<Offset>& offset) { offset_ = offset; }

@@ -18,7 +18,7 @@ Odometry::Offset ahead_by(double x, double sigma = 0.0) {
 
 Odometry started_at(const Pose& map_from_body) {
   Odometry odometry;
-  odometry.start(map_from_body);
+  odometry.correct(map_from_body);
   return odometry;
 }
 
@@ -57,6 +57,15 @@ TEST(Odometry, CountsTheWayButNoCorrection) {
   odometry.correct(at(4.0));
   EXPECT_NEAR(odometry.follow(at(4.5), {}).metres, 0.5, 1e-12);
   EXPECT_NEAR(odometry.travelled(), 1.5, 1e-12);
+}
+
+TEST(Odometry, GoesByWhatIsToldWhereverTheBodyIsTakenToBe) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), {});
+  odometry.go_by(at(0.2), at(7.0));
+  EXPECT_THAT(odometry.map_from_body(), PoseNear(at(7.0), 1e-12, 1e-12));
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.2), 1e-12, 1e-12));
+  EXPECT_NEAR(odometry.travelled(), 1.2, 1e-12);
 }
 
 TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {

@@ -25,6 +25,7 @@ KeyframeId anchor_of(const HybridTrack& track) {
 
 void Whereabouts::tell(const std::optional<BodyMotion>& motion) {
   motion_.tell(motion);
+  last_told_ = motion;
   since_believed_ = since_believed_ && motion ? std::optional(*since_believed_ * *motion) : std::nullopt;
 }
 
@@ -78,7 +79,7 @@ FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) con
 double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {
   const std::optional<Odometry::Offset> offset = offset_from_online(seen.track, rig);
   if (seen.from_nothing) {
-    trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
+    odometry_.go_by(last_told_ && !trajectory_.empty() ? last_told_->last_from_body : Pose{}, body);
     odometry_.remember_offset(offset);
     motion_.reach(Vector6::Zero());
     return 0.0;
@@ -121,7 +122,7 @@ void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t su
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
   if (bridge_ && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
-  bridge_ ? void(odometry_.follow(body, {})) : trajectory_.empty() ? odometry_.start(body) : odometry_.correct(body);
+  bridge_ ? void(odometry_.follow(body, {})) : odometry_.correct(body);
   odometry_.remember_offset({});
   for (const KeyframeId id : keyframes) {
     const Timestamp time = online.find_keyframe(id)->frame.time;
@@ -178,7 +179,7 @@ bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map, cons
   trajectory_.believe_all();
   since_believed_ = no_motion();
   motion_.go_on();
-  odometry_.follow(body_pose(rig, camera_from_map), {});
+  odometry_.go_by(last_told_->last_from_body, body_pose(rig, camera_from_map));
   return true;
 }
 

@@ -115,6 +115,7 @@ class Whereabouts {
 
   AnchoredTrajectory trajectory_;
   MotionModel motion_;
+  std::optional<BodyMotion> last_told_;                     // since the frame before
   std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
   std::optional<BodyMotion> bridge_;
   std::optional<Matrix6> bridge_covariance_;  // covariance in the map, where the ground adds to what is told

@@ -59,6 +59,15 @@ TEST_F(TrueWhereabouts, ForgetsAFindThatIsLostBeforeItIsBelieved) {
   EXPECT_TRUE(whereabouts_.trajectory().empty());
 }
 
+TEST_F(TrueWhereabouts, DoNotLetTheSmoothPoseJumpWhereAFirstFindIsForgotten) {
+  note(0, true);
+  note(1);
+  const Pose smooth = whereabouts_.odometry().odometry_from_body();
+  whereabouts_.lose();
+  note(9, true);
+  EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-12, 1e-12));
+}
+
 TEST_F(TrueWhereabouts, KeepsWhatWasBelievedWhenThePoseIsLost) {
   find_and_believe(0);
   const std::size_t frames = whereabouts_.trajectory().size();
@@ -147,6 +156,7 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   const Pose before = whereabouts_.odometry().map_from_body();
+  const Pose smooth = whereabouts_.odometry().odometry_from_body();
   Pose ahead;
   ahead.translation.x() = 0.1;
   whereabouts_.tell(ahead);
@@ -158,6 +168,8 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
   whereabouts_.lose();
   ASSERT_TRUE(whereabouts_.go_on(mission_.frames[next + 2].time, mission_.rig, map_));
   EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(before * ahead * ahead * ahead, 1e-9, 1e-9));
+  EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth * ahead * ahead * ahead, 1e-9, 1e-9))
+      << "the smooth pose goes as the robot does, wherever it is taken to be";
 }
 
 TEST_F(TrueWhereabouts, BelieveASubmapThatBeginsAtOnce) {
