@@ -31,17 +31,38 @@ cv::Rect searched_area(const cv::Mat& level, int border) {
   return {border, border, level.cols - 2 * border, level.rows - 2 * border};
 }
 
-// Pixels of an image that is used for a while; the memory is kept from one to the next.
+struct RankedCorner {
+  Corner corner;
+  int square = 0;
+  int rank = 0;  // within its square, strongest first
+};
+
+// Memory of a detection, kept by its thread from one to the next.
+struct Memory {
+  std::vector<std::uint8_t> strengths;
+  std::vector<std::uint8_t> cell;
+  std::vector<Corner> corners;
+  std::vector<int> found;
+  std::vector<bool> poor;
+  std::vector<RankedCorner> ranked;
+};
+
+Memory& memory_of_thread() {
+  thread_local Memory memory;
+  return memory;
+}
+
+// Pixels of an image that is used for a while.
 cv::Mat scratch_image(std::vector<std::uint8_t>& memory, cv::Size size) {
   memory.resize(std::max(memory.size(), static_cast<std::size_t>(size.area())));
   return {size, CV_8U, memory.data()};
 }
 
 // Corners of one cell at the lower threshold, each stronger than its neighbours in the cell.
-void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, std::vector<Corner>& corners) {
-  thread_local std::vector<std::uint8_t> memory;
+void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, std::vector<std::uint8_t>& memory,
+                 std::vector<Corner>& corners) {
   cv::Mat widened = scratch_image(memory, {cell.width + 2, cell.height + 2});
-  widened.setTo(0);
+  std::fill_n(memory.begin(), widened.total(), std::uint8_t{0});
   const cv::Rect inside(1, 1, cell.width, cell.height);
   strengths(cell).copyTo(widened(inside));
   const std::size_t before = corners.size();
@@ -53,34 +74,31 @@ void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, 
 }
 
 // Looks again, with the lower threshold, into the cells that gave less than their share of the corners wanted.
-void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options,
-                       std::vector<Corner>& corners) {
+void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Memory& memory) {
+  std::vector<Corner>& corners = memory.corners;
   const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
-  std::vector<int> found(grid.size(), 0);
+  std::vector<int>& found = memory.found;
+  found.assign(grid.size(), 0);
   for (const Corner& corner : corners) ++found[grid.index_of(corner)];
-  std::vector<bool> poor(grid.size(), false);
+  std::vector<bool>& poor = memory.poor;
+  poor.assign(grid.size(), false);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
   }
   // Corners of poor cells are found again.
   std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, corners);
+    if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, memory.cell, corners);
   }
 }
 
-struct RankedCorner {
-  Corner corner;
-  int square = 0;
-  int rank = 0;  // within its square, strongest first
-};
-
-std::vector<RankedCorner> rank_in_squares(const std::vector<Corner>& corners, const cv::Size& size, int max_corners) {
+// Refills `ranked`.
+void rank_in_squares(const std::vector<Corner>& corners, const cv::Size& size, int max_corners,
+                     std::vector<RankedCorner>& ranked) {
   const double area = static_cast<double>(size.width) * size.height;
   const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
   const int columns = static_cast<int>(size.width / side) + 1;
-  std::vector<RankedCorner> ranked;
-  ranked.reserve(corners.size());
+  ranked.clear();
   for (const Corner& corner : corners) {
     ranked.push_back({corner, static_cast<int>(corner.y / side) * columns + static_cast<int>(corner.x / side), 0});
   }
@@ -91,7 +109,6 @@ std::vector<RankedCorner> rank_in_squares(const std::vector<Corner>& corners, co
   for (std::size_t i = 1; i < ranked.size(); ++i) {
     if (ranked[i].square == ranked[i - 1].square) ranked[i].rank = ranked[i - 1].rank + 1;
   }
-  return ranked;
 }
 
 }  // namespace
@@ -99,14 +116,15 @@ std::vector<RankedCorner> rank_in_squares(const std::vector<Corner>& corners, co
 std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
   if (std::min(area.width, area.height) <= 0) return {};
-  thread_local std::vector<std::uint8_t> memory;
-  cv::Mat strengths = scratch_image(memory, level.size());
+  Memory& memory = memory_of_thread();
+  cv::Mat strengths = scratch_image(memory.strengths, level.size());
   measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
-  std::vector<Corner> corners;
-  append_peaks(strengths, area, options.fast_threshold, corners);
-  search_poor_cells(strengths, max_corners, options, corners);
+  memory.corners.clear();
+  append_peaks(strengths, area, options.fast_threshold, memory.corners);
+  search_poor_cells(strengths, max_corners, options, memory);
 
-  std::vector<RankedCorner> ranked = rank_in_squares(corners, level.size(), max_corners);
+  std::vector<RankedCorner>& ranked = memory.ranked;
+  rank_in_squares(memory.corners, level.size(), max_corners, ranked);
   const std::size_t wanted = std::min(ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
   const auto by_rank = [](const RankedCorner& a, const RankedCorner& b) {
     return std::tuple(a.rank, -a.corner.response, a.square) < std::tuple(b.rank, -b.corner.response, b.square);

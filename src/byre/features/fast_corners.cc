@@ -148,6 +148,17 @@ bool is_peak(const std::uint8_t* strength, std::ptrdiff_t stride, int threshold)
   return true;
 }
 
+void clear_outside(const cv::Rect& area, cv::Mat& strengths) {
+  for (int y = 0; y < strengths.rows; ++y) {
+    std::uint8_t* const row = strengths.ptr<std::uint8_t>(y);
+    const bool is_beside = y >= area.y && y < area.y + area.height;
+    const int left = is_beside ? area.x : strengths.cols;
+    const int right = is_beside ? area.x + area.width : strengths.cols;
+    std::fill(row, row + left, std::uint8_t{0});
+    std::fill(row + right, row + strengths.cols, std::uint8_t{0});
+  }
+}
+
 }  // namespace
 
 void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int threshold, cv::Mat& strengths) {
@@ -155,13 +166,13 @@ void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int thre
   assert(area.x >= kFastRadius && area.x + area.width <= image.cols - kFastRadius);
   assert(area.y >= kFastRadius && area.y + area.height <= image.rows - kFastRadius);
   strengths.create(image.size(), CV_8U);
-  strengths.setTo(0);
   std::array<std::ptrdiff_t, 16> offsets;
   for (std::size_t i = 0; i < 16; ++i) {
     offsets[i] = kCirclePlaces[i][1] * static_cast<std::ptrdiff_t>(image.step) + kCirclePlaces[i][0];
   }
   const auto width = static_cast<std::size_t>(area.width);
   const bool is_narrow = width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)();
+  clear_outside(area, strengths);
   for (int y = area.y; y < area.y + area.height; ++y) {
     const std::uint8_t* const pixels = image.ptr<std::uint8_t>(y) + area.x;
     std::uint8_t* const row = strengths.ptr<std::uint8_t>(y) + area.x;

@@ -37,6 +37,7 @@ std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_fr
 
 std::vector<PointId> Mission::candidates(const std::vector<PointId>& around) const {
   std::vector<PointId> candidates;
+  candidates.reserve(around.size());
   std::ranges::copy_if(around, std::back_inserter(candidates),
                        [this](PointId id) { return !moved_points_.is_suspended(id); });
   return candidates;

@@ -101,6 +101,7 @@ std::vector<GuidedMatch> match_expected(const Features& features, const MapView&
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
   std::vector<GuidedMatch> matches;
+  matches.reserve(claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});

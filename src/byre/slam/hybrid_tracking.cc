@@ -34,6 +34,8 @@ struct ByMap {
 
 ByMap<std::vector<PointId>> split(const std::vector<PointId>& candidates) {
   ByMap<std::vector<PointId>> result;
+  result.offline.reserve(candidates.size());
+  result.online.reserve(candidates.size());
   for (const PointId id : candidates) (id.origin == Origin::offline ? result.offline : result.online).push_back(id);
   return result;
 }
@@ -271,6 +273,7 @@ void sort_by_feature(std::vector<TrackedFeature>& features) {
 // a corner that resembles it.
 void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
   std::vector<PointId> inliers;
+  inliers.reserve(result.tracked.features.size());
   for (const TrackedFeature& feature : result.tracked.features) {
     if (feature.point.origin == Origin::offline) inliers.push_back(feature.point);
   }

@@ -99,9 +99,18 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
 }
 
 SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features) {
+  constexpr std::size_t kUsualKeyframes = 64;
   SharedPoints shared;
+  shared.reserve(kUsualKeyframes);
   for (const TrackedFeature& feature : features) {
-    map.visit_observations(feature.point, [&](const Observation& observation) { ++shared[observation.keyframe]; });
+    map.visit_observations(feature.point, [&](const Observation& observation) {
+      const auto at = std::ranges::lower_bound(shared, observation.keyframe, {}, &std::pair<KeyframeId, int>::first);
+      if (at != shared.end() && at->first == observation.keyframe) {
+        ++at->second;
+      } else {
+        shared.insert(at, {observation.keyframe, 1});
+      }
+    });
   }
   return shared;
 }

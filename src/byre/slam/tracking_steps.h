@@ -4,8 +4,8 @@
 #include "byre/slam/measurement.h"
 #include "byre/slam/tracking.h"
 
-#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 // The steps that tracking on one map and on two have in common.
@@ -45,8 +45,8 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
                                const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
                                const TrackOptions& options);
 
-// How many of the points each keyframe sees.
-using SharedPoints = std::map<KeyframeId, int>;
+// How many of the points each keyframe sees, by keyframe.
+using SharedPoints = std::vector<std::pair<KeyframeId, int>>;
 SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features);
 
 // The keyframe that sees most of them; of one map only, unless origin is empty.
