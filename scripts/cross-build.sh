@@ -47,6 +47,8 @@ if [[ ! -e $BYRE_SYSROOT/complete ]]; then
     ln -sf "$name/lib$name.so" "$libraries/lib$name.so"
     ln -sf "$name/lib$name.so.3" "$libraries/lib$name.so.3"
   done
+  # Ceres names what its static library is linked with by where it would lie once installed.
+  sed -i "s#;/usr/lib/aarch64-linux-gnu/#;$libraries/#g" "$libraries/cmake/Ceres/CeresTargets.cmake"
   touch "$BYRE_SYSROOT/complete"
 fi
 

@@ -4,6 +4,7 @@
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/huber.h"
+#include "byre/optimise/pose_expansion.h"
 #include "byre/optimise/rotation_jacobian.h"
 #include "byre/optimise/squared_error.h"
 
@@ -26,35 +27,10 @@ struct Sighting {
   StereoPixel measured;
   Eigen::Matrix3d information;  // inverse covariance in pixels; without a disparity its third row and column are zero
   double weight;
-  double squared_error;   // squared sigmas; infinite at or behind the camera, or when not a number
-  double tolerant_error;  // squared sigmas, with the systematic sigma among them
+  double squared_error;  // squared sigmas; infinite at or behind the camera, or when not a number
+  bool tolerated;        // within the gate, with the systematic sigma among the others
   bool stereo;
   bool inlier;
-};
-
-// The weighted cost, and its expansion to second order in delta.
-struct Expansion {
-  double cost = 0.0;  // squared sigmas
-  Matrix6 normal_matrix = Matrix6::Zero();
-  Vector6 descent = Vector6::Zero();  // minus half the gradient
-
-  // Adds a term given by its derivatives by the point in the camera, which moves by translation + rotation x point.
-  void add(const Eigen::Matrix3d& camera_matrix, const Eigen::Vector3d& camera_descent,
-           const Eigen::Vector3d& point_in_camera) {
-    const Eigen::Matrix3d turned = -camera_matrix.colwise().cross(point_in_camera);
-    normal_matrix.topLeftCorner<3, 3>() += camera_matrix;
-    normal_matrix.bottomLeftCorner<3, 3>() += turned;
-    normal_matrix.bottomRightCorner<3, 3>() -= turned.rowwise().cross(point_in_camera.transpose());
-    descent.head<3>() += camera_descent;
-    descent.tail<3>() += point_in_camera.cross(camera_descent);
-  }
-
-  Expansion& operator+=(const Expansion& other) {
-    cost += other.cost;
-    normal_matrix += other.normal_matrix;
-    descent += other.descent;
-    return *this;
-  }
 };
 
 // A prior as the solver reads it.
@@ -69,7 +45,7 @@ std::optional<KnownPose> known_pose(const std::optional<PosePrior>& prior) {
 }
 
 // Its share of the cost: a residual of six numbers, log_pose(camera_from_world * world_from_camera).
-Expansion expand(const KnownPose& known, const Pose& camera_from_world) {
+PoseExpansion expand(const KnownPose& known, const Pose& camera_from_world) {
   const Vector6 error = log_pose(camera_from_world * known.world_from_camera);
   Matrix6 jacobian = Matrix6::Identity();
   jacobian.topRightCorner<3, 3>() = -skew(error.head<3>());
@@ -94,6 +70,11 @@ Eigen::Matrix3d information_of(const Eigen::Matrix3d& covariance, bool stereo) {
   return information;
 }
 
+// Squared sigmas.
+double gate_of(bool stereo) {
+  return stereo ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
+}
+
 Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& camera_from_world,
                const Eigen::Matrix3d& rotation, double systematic_sigma) {
   const bool stereo = observation.is_stereo();
@@ -104,7 +85,7 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
                     Eigen::Matrix3d::Zero(),
                     observation.weight,
                     kInfinity,
-                    kInfinity,
+                    false,
                     stereo,
                     false};
   if (!stereo) sighting.measured.z() = 0.0;
@@ -116,8 +97,11 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
   const double squared_error = error.dot(sighting.information * error);
   if (!std::isfinite(squared_error)) return sighting;
   sighting.squared_error = squared_error;
-  covariance.diagonal().array() += systematic_sigma * systematic_sigma;
-  sighting.tolerant_error = error.dot(information_of(covariance, stereo) * error);
+  sighting.tolerated = squared_error <= gate_of(stereo);
+  if (!sighting.tolerated) {
+    covariance.diagonal().array() += systematic_sigma * systematic_sigma;
+    sighting.tolerated = error.dot(information_of(covariance, stereo) * error) <= gate_of(stereo);
+  }
   sighting.inlier = true;
   return sighting;
 }
@@ -151,8 +135,7 @@ double variance_factor(const std::vector<Sighting>& sightings) {
 
 void choose_inliers(std::vector<Sighting>& sightings, double factor) {
   for (Sighting& sighting : sightings) {
-    const double gate = sighting.stereo ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
-    sighting.inlier = sighting.squared_error <= gate * factor || sighting.tolerant_error <= gate;
+    sighting.inlier = sighting.tolerated || sighting.squared_error <= gate_of(sighting.stereo) * factor;
   }
 }
 
@@ -160,50 +143,41 @@ int count_inliers(const std::vector<Sighting>& sightings) {
   return static_cast<int>(std::ranges::count(sightings, true, &Sighting::inlier));
 }
 
-// The inliers' share.
-Expansion expand(const std::vector<Sighting>& sightings, const Rig& rig, const Pose& camera_from_world,
-                 double huber_width) {
-  constexpr double kSquaredErrorBehind = 1e4;  // what a step that moves a point behind the camera pays for it
-  const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
-  Expansion sum;
+// Refills `points` with the inliers.
+void gather_inliers(const std::vector<Sighting>& sightings, WeighedPoints& points) {
+  points.clear();
+  points.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
-    if (!sighting.inlier) continue;
-    const Eigen::Vector3d point_in_camera = rotation * sighting.point_in_world + camera_from_world.translation;
-    if (point_in_camera.z() <= 0.0) {
-      sum.cost += sighting.weight * huber_cost(kSquaredErrorBehind, huber_width);
-      continue;
-    }
-    const Eigen::Vector3d error = sighting.measured - rig.project(point_in_camera);
-    const double squared_error = error.dot(sighting.information * error);
-    const double weight = sighting.weight * huber_weight(squared_error, huber_width);
-    const StereoJacobian by_camera = rig.projection_jacobian(point_in_camera);
-    const Eigen::Matrix3d gain = (weight * by_camera.transpose()) * sighting.information;
-    sum.cost += sighting.weight * huber_cost(squared_error, huber_width);
-    sum.add(gain * by_camera, gain * error, point_in_camera);
+    if (sighting.inlier)
+      points.add({sighting.point_in_world, sighting.measured, sighting.information, sighting.weight});
   }
-  sum.normal_matrix.topRightCorner<3, 3>() = sum.normal_matrix.bottomLeftCorner<3, 3>().transpose();
-  return sum;
 }
 
-Expansion expand(const std::vector<Sighting>& sightings, const std::optional<KnownPose>& known, const Rig& rig,
-                 const Pose& camera_from_world, double huber_width) {
-  Expansion sum = expand(sightings, rig, camera_from_world, huber_width);
-  if (known) sum += expand(*known, camera_from_world);
-  return sum;
-}
+// What a pose is to agree with.
+struct Evidence {
+  const Rig& rig;
+  const WeighedPoints& points;
+  const std::optional<KnownPose>& known;
+  double huber_width;
+
+  PoseExpansion expand_at(const Pose& camera_from_world) const {
+    PoseExpansion sum = points.expand(rig, camera_from_world, huber_width);
+    if (known) sum += expand(*known, camera_from_world);
+    return sum;
+  }
+};
 
 // Gauss-Newton, damped (Levenberg-Marquardt) after a step that led uphill.
-Pose descend(const std::vector<Sighting>& sightings, const std::optional<KnownPose>& known, const Rig& rig,
-             Pose camera_from_world, const PoseRefinementOptions& options, double huber_width) {
+Pose descend(const Evidence& evidence, Pose camera_from_world, int iterations) {
   constexpr double kConverged = 1e-4;  // squared sigmas
   double damping = 0.0;
-  Expansion here = expand(sightings, known, rig, camera_from_world, huber_width);
-  for (int i = 0; i < options.iterations_per_round; ++i) {
+  PoseExpansion here = evidence.expand_at(camera_from_world);
+  for (int i = 0; i < iterations; ++i) {
     Matrix6 damped = here.normal_matrix;
     damped.diagonal() *= 1.0 + damping;
     const Vector6 delta = damped.ldlt().solve(here.descent);
     const Pose candidate = exp_pose(delta) * camera_from_world;
-    const Expansion there = expand(sightings, known, rig, candidate, huber_width);
+    const PoseExpansion there = evidence.expand_at(candidate);
     if (!(there.cost <= here.cost)) {
       damping = std::max(10.0 * damping, 1e-2);
       continue;
@@ -226,15 +200,6 @@ std::optional<Matrix6> inverse_of(const Matrix6& normal_matrix) {
   if (!(values[0] > kSingular)) return std::nullopt;
   const Matrix6 scaled_inverse = vectors * values.cwiseInverse().asDiagonal() * vectors.transpose();
   return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
-}
-
-// Weights set priorities, they do not make measurements better: a weighted estimate's covariance is
-// inverse(N) M inverse(N), where M is the normal matrix with the weights squared.
-Matrix6 covariance_at(std::vector<Sighting> sightings, const Rig& rig, const Pose& camera_from_world,
-                      const Matrix6& inverse_normal_matrix, double huber_width) {
-  for (Sighting& sighting : sightings) sighting.weight *= sighting.weight;
-  const Matrix6 squared = expand(sightings, rig, camera_from_world, huber_width).normal_matrix;
-  return inverse_normal_matrix * squared * inverse_normal_matrix;
 }
 
 // What the inliers of a region of the image say together.
@@ -292,18 +257,24 @@ Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_nor
   return sigma * sigma * inverse_normal_matrix * pushes * inverse_normal_matrix;
 }
 
-// Empty where the inliers, and the prior, leave a direction open.
-std::optional<PoseRefinement> with_covariance(PoseRefinement refined, std::vector<Sighting> sightings,
+// Empty where the inliers, and the prior, leave a direction open. points: memory.
+std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std::vector<Sighting>& sightings,
                                               const std::optional<KnownPose>& known, const Rig& rig,
-                                              const PoseRefinementOptions& options) {
+                                              const PoseRefinementOptions& options, WeighedPoints& points) {
   const Pose& pose = refined.camera_from_world;
   const double huber_width = options.huber_width * std::sqrt(refined.variance_factor);
-  const std::optional<Matrix6> inverse = inverse_of(expand(sightings, known, rig, pose, huber_width).normal_matrix);
+  gather_inliers(sightings, points);
+  const Evidence evidence{rig, points, known, huber_width};
+  const std::optional<Matrix6> inverse = inverse_of(evidence.expand_at(pose).normal_matrix);
   if (!inverse) return std::nullopt;
-  const Regions regions = gather_regions(sightings, rig, pose, huber_width);
-  refined.covariance = refined.variance_factor * covariance_at(std::move(sightings), rig, pose, *inverse, huber_width);
-  if (known) refined.covariance += *inverse * expand(*known, pose).normal_matrix * *inverse;
+  // Weights set priorities, they do not make measurements better: a weighted estimate's covariance is
+  // inverse(N) M inverse(N), where M is the normal matrix with the weights squared.
+  points.square_weights();
+  Matrix6 squared = refined.variance_factor * points.expand(rig, pose, huber_width).normal_matrix;
+  if (known) squared += expand(*known, pose).normal_matrix;
+  refined.covariance = *inverse * squared * *inverse;
   if (options.systematic_sigma <= 0.0) return refined;
+  const Regions regions = gather_regions(sightings, rig, pose, huber_width);
   refined.systematic_sigma = systematic_sigma_of(regions, refined.variance_factor, options.systematic_sigma);
   refined.covariance += systematic_covariance(regions, *inverse, refined.systematic_sigma);
   return refined;
@@ -319,14 +290,16 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
   std::vector<Sighting> sightings = sight(observations, rig, predicted_camera_from_world, options.systematic_sigma);
+  WeighedPoints inliers;
   // Far from the solution all errors are large: gates and loss follow their median down, so that no minority that
   // happens to fit captures the pose.
   for (int round = 0; round < options.rounds; ++round) {
     const double factor = variance_factor(sightings);
     choose_inliers(sightings, factor);
     if (count_inliers(sightings) < kMinInliers) return std::nullopt;
-    result.camera_from_world =
-        descend(sightings, known, rig, result.camera_from_world, options, options.huber_width * std::sqrt(factor));
+    gather_inliers(sightings, inliers);
+    const Evidence evidence{rig, inliers, known, options.huber_width * std::sqrt(factor)};
+    result.camera_from_world = descend(evidence, result.camera_from_world, options.iterations_per_round);
     sightings = sight(observations, rig, result.camera_from_world, options.systematic_sigma, std::move(sightings));
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
@@ -335,7 +308,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   if (result.inlier_count < kMinInliers) return std::nullopt;
   result.inliers.reserve(sightings.size());
   for (const Sighting& sighting : sightings) result.inliers.push_back(sighting.inlier);
-  return with_covariance(std::move(result), std::move(sightings), known, rig, options);
+  return with_covariance(std::move(result), sightings, known, rig, options, inliers);
 }
 
 }  // namespace byre
