@@ -22,7 +22,7 @@ struct View {
   std::array<double, 3> translation;
   double focal, cx, cy, baseline;
   double huber_width;
-  double cost_behind;  // of a point at or behind the camera
+  double cost_behind;  // what a point at or behind the camera costs
 };
 
 // Terms added up, lane by lane so that the order does not depend on how many lanes a vector has. Symmetric matrices by

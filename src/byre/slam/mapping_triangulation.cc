@@ -16,7 +16,9 @@ constexpr double kMinAngle = 0.005;  // radians between the rays; the covariance
 
 struct FreeFeature {
   int index = 0;
-  Eigen::Vector3d ray;  // z = 1
+  int octave = 0;
+  float max_pixels_off = 0.0f;  // pixels from the epipolar line
+  Eigen::Vector3d ray;          // z = 1
 };
 
 std::vector<FreeFeature> free_features(const MapWindow& window, int keyframe) {
@@ -25,7 +27,9 @@ std::vector<FreeFeature> free_features(const MapWindow& window, int keyframe) {
   std::vector<FreeFeature> free;
   for (int i = 0; i < entry.keyframe.frame.features->size(); ++i) {
     if (entry.point_of_feature[static_cast<std::size_t>(i)] != kNoPoint) continue;
-    free.push_back({i, rig.ray(entry.keyframe.frame.features->keypoint(i).pixel.cast<double>())});
+    const Keypoint& keypoint = entry.keyframe.frame.features->keypoint(i);
+    free.push_back({i, keypoint.octave, kEpipolarSigmas * corner_measurement(keypoint).sigma,
+                    rig.ray(keypoint.pixel.cast<double>())});
   }
   return free;
 }
@@ -37,13 +41,11 @@ std::optional<int> match_along_epipolar_line(const CameraView& first, const Free
   const Eigen::Vector3d line = essential * feature.ray;
   const double inverse_norm = second.rig.focal / line.head<2>().norm();
   const Descriptor& descriptor = first.features.descriptor(feature.index);
-  const int octave = first.features.keypoint(feature.index).octave;
   int best = -1, best_distance = kMaxDistance + 1, second_distance = kMaxDistance + 1;
   for (const FreeFeature& candidate : candidates) {
-    const Keypoint& keypoint = second.features.keypoint(candidate.index);
-    if (std::abs(keypoint.octave - octave) > 2) continue;
+    if (std::abs(candidate.octave - feature.octave) > 2) continue;
     const double pixels_off = std::abs(line.dot(candidate.ray)) * inverse_norm;
-    if (pixels_off > kEpipolarSigmas * corner_measurement(keypoint).sigma) continue;
+    if (pixels_off > candidate.max_pixels_off) continue;
     const int distance = hamming_distance(descriptor, second.features.descriptor(candidate.index));
     if (distance < best_distance) {
       second_distance = best_distance;
