@@ -7,18 +7,18 @@ namespace {
 
 constexpr int kTemplateSize = 8;
 
-// The reference as it would look in the current view. Empty where the warped template leaves the patch.
-std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch& reference,
-                                                                     const Eigen::Vector2f& reference_pixel,
-                                                                     const Eigen::Matrix2f& reference_from_current) {
-  std::array<float, kTemplateSize * kTemplateSize> values;
+using Template = CentredTemplate<kTemplateSize>;
+
+// Refills the template with the reference as it would look in the current view. False where it leaves the patch.
+bool warp(const Patch& reference, const Eigen::Vector2f& reference_pixel, const Eigen::Matrix2f& reference_from_current,
+          Template& warped) {
   constexpr float kHalf = 0.5f * (kTemplateSize - 1);
   // The warped square lies inside when its corners do. Each coordinate by itself: minCoeff() may pass over a NaN.
   const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
   const Eigen::Array2f low = reference_pixel - reach;
   const Eigen::Array2f high = reference_pixel + reach;
   constexpr float kSlack = 0.01f;  // allowance for the rounding of the walk along a row
-  if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return std::nullopt;
+  if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return false;
   const Eigen::Vector2f along_row = reference_from_current.col(0);
   for (int y = 0; y < kTemplateSize; ++y) {
     Eigen::Vector2f at =
@@ -31,10 +31,11 @@ std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch
       const std::uint8_t* const p = reference.pixels.data() + row * Patch::kSize + column;
       const float upper = p[0] + fx * static_cast<float>(p[1] - p[0]);
       const float lower = p[Patch::kSize] + fx * static_cast<float>(p[Patch::kSize + 1] - p[Patch::kSize]);
-      values[static_cast<std::size_t>(y * kTemplateSize + x)] = upper + fy * (lower - upper);
+      warped.values[static_cast<std::size_t>(y * kTemplateSize + x)] = upper + fy * (lower - upper);
     }
   }
-  return values;
+  warped.centre();
+  return true;
 }
 
 }  // namespace
@@ -42,10 +43,10 @@ std::optional<std::array<float, kTemplateSize * kTemplateSize>> warp(const Patch
 std::optional<Alignment> align_patches(const Patch& reference, const Eigen::Vector2f& reference_pixel,
                                        const Patch& current, const Eigen::Matrix2f& reference_from_current,
                                        const Eigen::Vector2f& start, const AlignOptions& options) {
-  const auto grey = warp(reference, reference_pixel, reference_from_current);
-  if (!grey) return std::nullopt;
+  Template warped;
+  if (!warp(reference, reference_pixel, reference_from_current, warped)) return std::nullopt;
   const GreyWindow window{current.pixels.data(), Patch::kSize, Patch::kSize, Patch::kSize};
-  return align_window<kTemplateSize>(CentredTemplate<kTemplateSize>(*grey), window, start, options);
+  return align_window<kTemplateSize>(warped, window, start, options);
 }
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/align.h"
+#include "byre/features/align_sums.h"
 
 #include <algorithm>
 #include <array>
@@ -18,44 +19,37 @@ struct GreyWindow {
   int height = 0;
 };
 
-// Size x Size grey values, interpolated so that their middle lies at centre. Empty where they leave the window.
-template <int Size>
-std::optional<std::array<float, Size * Size>> sample(const GreyWindow& window, const Eigen::Vector2f& centre) {
+// Refills `values` with Size x Size grey values, interpolated so that their middle lies at centre. False where they
+// leave the window.
+template <int Size, std::size_t Count>
+bool sample(const GreyWindow& window, const Eigen::Vector2f& centre, std::array<float, Count>& values) {
+  static_assert(Count >= Size * Size);
   const float left = centre.x() - 0.5f * (Size - 1);
   const float top = centre.y() - 0.5f * (Size - 1);
   // Before the conversion to int, which is defined only for what fits.
-  if (!(left >= 0.0f && top >= 0.0f)) return std::nullopt;
-  if (!(left < static_cast<float>(window.width - Size) && top < static_cast<float>(window.height - Size))) {
-    return std::nullopt;
-  }
+  if (!(left >= 0.0f && top >= 0.0f)) return false;
+  if (!(left < static_cast<float>(window.width - Size) && top < static_cast<float>(window.height - Size))) return false;
   const int column = static_cast<int>(left);
   const int row = static_cast<int>(top);
-  const float fx = left - static_cast<float>(column);
-  const float fy = top - static_cast<float>(row);
-  const float w00 = (1.0f - fx) * (1.0f - fy), w01 = fx * (1.0f - fy), w10 = (1.0f - fx) * fy, w11 = fx * fy;
-  std::array<float, Size * Size> values;
-  for (int y = 0; y < Size; ++y) {
-    const std::uint8_t* const upper = window.pixels + (row + y) * window.stride + column;
-    const std::uint8_t* const lower = upper + window.stride;
-    float* const out = values.data() + y * Size;
-    for (int x = 0; x < Size; ++x) out[x] = w00 * upper[x] + w01 * upper[x + 1] + w10 * lower[x] + w11 * lower[x + 1];
-  }
-  return values;
+  interpolate_square(window.pixels + row * window.stride + column, window.stride, left - static_cast<float>(column),
+                     top - static_cast<float>(row), Size, values.data());
+  return true;
 }
 
-// A template without its mean.
+// A template, whose mean is taken out of it.
 template <int Size>
 struct CentredTemplate {
-  std::array<float, Size * Size> values;
+  std::array<float, padded(Size* Size)> values{};
   float sum_of_squares = 0.0f;
 
-  explicit CentredTemplate(const std::array<float, Size * Size>& grey) : values(grey) {
+  void centre() {
     float mean = 0.0f;
-    for (const float value : values) mean += value;
+    for (std::size_t i = 0; i < Size * Size; ++i) mean += values[i];
     mean /= Size * Size;
-    for (float& value : values) {
-      value -= mean;
-      sum_of_squares += value * value;
+    sum_of_squares = 0.0f;
+    for (std::size_t i = 0; i < Size * Size; ++i) {
+      values[i] -= mean;
+      sum_of_squares += values[i] * values[i];
     }
   }
 };
@@ -70,30 +64,12 @@ struct AlignStep {
 
 template <int Size>
 AlignStep align_step(const CentredTemplate<Size>& reference, const std::array<float, (Size + 2) * (Size + 2)>& around) {
-  constexpr int kStride = Size + 2;
-  using Values = Eigen::Array<float, Size * Size, 1>;
-  Values grey, gx, gy;
-  for (int y = 0; y < Size; ++y) {
-    const float* const row = around.data() + (y + 1) * kStride + 1;
-    for (int x = 0; x < Size; ++x) {
-      const int i = y * Size + x;
-      grey[i] = row[x];
-      gx[i] = 0.5f * (row[x + 1] - row[x - 1]);
-      gy[i] = 0.5f * (row[x + kStride] - row[x - kStride]);
-    }
-  }
-  const Eigen::Map<const Values> expected(reference.values.data());
-  grey -= grey.mean();
-  gx -= gx.mean();
-  gy -= gy.mean();
-  const float product = (grey * expected).sum();
-  const Values residual = grey - product / reference.sum_of_squares * expected;
-  const float xy = (gx * gy).sum();
+  const AlignSums sums = align_sums(reference.values.data(), reference.sum_of_squares, around.data(), Size);
   AlignStep step;
-  step.hessian << gx.square().sum(), xy, xy, gy.square().sum();
-  step.gradient << (gx * residual).sum(), (gy * residual).sum();
-  step.residual_squares = residual.square().sum();
-  step.similarity = product / std::sqrt(reference.sum_of_squares * std::max(1e-6f, grey.square().sum()));
+  step.hessian << sums.xx, sums.xy, sums.xy, sums.yy;
+  step.gradient << sums.x_residual, sums.y_residual;
+  step.residual_squares = sums.residual_squares;
+  step.similarity = sums.product / std::sqrt(reference.sum_of_squares * std::max(1e-6f, sums.squares));
   return step;
 }
 
@@ -114,10 +90,10 @@ std::optional<Alignment> align_window(const CentredTemplate<Size>& reference, co
   constexpr float kSettled = 0.02f;                  // octave pixels
   if (reference.sum_of_squares < kMinSquares) return std::nullopt;
   Eigen::Vector2f pixel = start;
+  std::array<float, (Size + 2) * (Size + 2)> around;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const auto around = sample<Size + 2>(window, pixel);
-    if (!around) return std::nullopt;
-    const AlignStep step = align_step<Size>(reference, *around);
+    if (!sample<Size + 2>(window, pixel, around)) return std::nullopt;
+    const AlignStep step = align_step<Size>(reference, around);
     const float determinant = step.hessian.determinant();
     if (!(determinant > 1e-4f * step.hessian.trace() * step.hessian.trace())) return std::nullopt;
     const Eigen::Vector2f change = -step.hessian.inverse() * step.gradient;

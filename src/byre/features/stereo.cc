@@ -121,14 +121,15 @@ struct OctaveMatch {
 std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& right, int x, int y, int right_x,
                                          const StereoOptions& options) {
   const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
-  const auto grey = sample<kAlignSize>(window_of(left), pixel);
-  if (!grey) return std::nullopt;
+  CentredTemplate<kAlignSize> reference;
+  if (!sample<kAlignSize>(window_of(left), pixel, reference.values)) return std::nullopt;
+  reference.centre();
   AlignOptions align;
   align.max_shift = 2.0f;
   align.min_similarity = options.min_similarity;
   align.min_sigma = options.min_sigma;
-  const auto aligned = align_window<kAlignSize>(CentredTemplate<kAlignSize>(*grey), window_of(right),
-                                                {static_cast<float>(right_x), pixel.y()}, align);
+  const auto aligned =
+      align_window<kAlignSize>(reference, window_of(right), {static_cast<float>(right_x), pixel.y()}, align);
   if (!aligned || std::abs(aligned->pixel.y() - pixel.y()) > options.max_vertical_error) return std::nullopt;
   return OctaveMatch{pixel.x() - aligned->pixel.x(), aligned->sigma, aligned->pixel.y() - pixel.y()};
 }
