@@ -204,6 +204,12 @@ std::vector<PointId> Map::point_ids() const {
   return ids;
 }
 
+void Map::visit_words(const std::function<void(KeyframeId, std::span<const Word>)>& visit) const {
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    if (keyframes_[i].keyframe) visit({origin_, i}, keyframes_[i].keyframe->words);
+  }
+}
+
 const std::vector<Observation>& Map::observations(PointId id) const {
   static const std::vector<Observation> kNone;
   if (id.origin == origin_) {

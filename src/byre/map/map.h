@@ -5,6 +5,7 @@
 #include "byre/map/ids.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -138,6 +139,8 @@ class Map {
   const MapPoint* find_point(PointId id) const;
   std::vector<KeyframeId> keyframe_ids() const;  // ascending
   std::vector<PointId> point_ids() const;        // ascending
+  // Calls visit with the words of each keyframe, none where they are not known, ascending by keyframe.
+  void visit_words(const std::function<void(KeyframeId, std::span<const Word>)>& visit) const;
   int keyframe_count() const { return keyframe_count_; }
   int point_count() const { return point_count_; }
 
