@@ -34,12 +34,13 @@ void put_at(MapBytes& bytes, std::size_t place, T value) {
   std::memcpy(bytes.data() + place, &value, sizeof(T));
 }
 
-inline constexpr std::uint32_t kNewestFormat = 5;
+inline constexpr std::uint32_t kNewestFormat = 6;
 
 // Precondition: the bytes are at least as many as the smallest header's. Bytes of no known format count as format 1.
 inline std::size_t section_count(const MapBytes& bytes) {
   const auto format = value_at<std::uint32_t>(bytes, kFormatAt);
-  return format >= 1 && format <= kNewestFormat ? 9 + format : 10;
+  if (format < 1 || format > kNewestFormat) return 10;
+  return format < 6 ? 9 + format : 10 + format;
 }
 inline std::size_t header_checksum_at(const MapBytes& bytes) {
   return kTableAt + section_count(bytes) * kTableEntrySize;

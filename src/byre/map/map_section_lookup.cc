@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -136,6 +138,11 @@ PartPlace read_place(ByteReader& reader, std::size_t& end) {
   return place;
 }
 
+void require_bytes(ByteReader reader, Bytes expected, std::string_view fault) {
+  if (!std::ranges::equal(reader.take(expected.size()), expected)) reader.fail(fault);
+  reader.require_end();
+}
+
 }  // namespace
 
 void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
@@ -146,16 +153,12 @@ void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& se
   lookup.write_bytes(covisible.bytes());
 }
 
-void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, const ByteReader& observers,
-                    const ByteReader& lookup) {
+void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
+                    ByteReader lookup) {
   ByteWriter expected_observers, expected_lookup;
   write_lookup(map, sizes, sections, expected_observers, expected_lookup);
-  if (!std::ranges::equal(observers.rest(), expected_observers.bytes())) {
-    observers.fail("does not tell who sees the points");
-  }
-  if (!std::ranges::equal(lookup.rest(), expected_lookup.bytes())) {
-    lookup.fail("does not tell where other sections have their parts");
-  }
+  require_bytes(std::move(observers), expected_observers.bytes(), "does not tell who sees the points");
+  require_bytes(std::move(lookup), expected_lookup.bytes(), "does not tell where other sections have their parts");
 }
 
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes) {

@@ -127,8 +127,8 @@ struct PartSections {
 void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
                   ByteWriter& lookup);
 // Fails for sections that do not tell what the others hold.
-void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, const ByteReader& observers,
-                    const ByteReader& lookup);
+void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
+                    ByteReader lookup);
 
 // Where a part lies in its section.
 struct PartPlace {
