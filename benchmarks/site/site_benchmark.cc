@@ -75,6 +75,7 @@ struct Use {
   Distribution frame_ms;      // wall time
   Distribution frame_cpu_ms;  // CPU time of the frame thread
   int with_pose = 0;
+  double mission_mb = 0.0;  // what the program has more after opening and the mission than before, with all it made
   double ground_seconds = 0.0;
   double stand_us = 0.0;
 };
@@ -218,11 +219,13 @@ void measure_ground(int keyframes, Use& use) {
 
 Use use_site(const Inputs& inputs, int keyframes, const fs::path& file) {
   Use use;
+  const double memory_before = resident_memory_mb();
   const auto offline = load_offline_map(file, inputs.vocabulary);
   const auto recording = open_recording(inputs.recording, {});
+  measure_frames(inputs, offline, *recording, use);
+  use.mission_mb = resident_memory_mb() - memory_before;
   measure_index(inputs, *offline, use);
   measure_places(*offline, *recording, use);
-  measure_frames(inputs, offline, *recording, use);
   measure_ground(keyframes, use);
   return use;
 }
@@ -240,6 +243,7 @@ std::vector<std::string> cells_of(int keyframes, const Writing& writing, const O
           formatted("%d of %d", use.localised, use.localise_ms.count),
           formatted("%.1f (%.1f)", use.frame_ms.mean, use.frame_ms.p99),
           formatted("%.1f (%.1f)", use.frame_cpu_ms.mean, use.frame_cpu_ms.p99),
+          formatted("%.0f", use.mission_mb),
           formatted("%d of %d", use.with_pose, use.frame_ms.count),
           formatted("%.3f, %.1f us", use.ground_seconds, use.stand_us)};
 }
@@ -247,7 +251,7 @@ std::vector<std::string> cells_of(int keyframes, const Writing& writing, const O
 void measure(const Inputs& inputs, const std::vector<int>& sizes) {
   MarkdownTable table({"keyframes", "points", "file, MB", "written, s", "opened, s (CPU)", "resident, MB", "index, s",
                        "place query, ms (max)", "from nothing, ms (max)", "found", "frame, ms (p99)",
-                       "frame's CPU, ms (p99)", "poses", "ground, s; a stand"});
+                       "frame's CPU, ms (p99)", "resident after it, MB", "poses", "ground, s; a stand"});
   const fs::path file = site_file();
   for (const int keyframes : sizes) {
     const auto writing = in_child<Writing>([&] { return write_site(inputs, keyframes, file); });

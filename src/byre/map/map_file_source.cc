@@ -1,5 +1,7 @@
 #include "byre/map/map_file_source.h"
 
+#include "byre/map/map_numbers.h"
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -54,31 +56,31 @@ std::string MapFileSource::place_of(std::string_view section) const {
   return file_.name + ": section " + std::string(section);
 }
 
-std::vector<std::byte> MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expected,
-                                                 const std::string& what) const {
+void MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expected,
+                               std::vector<std::byte>& bytes) const {
   std::size_t size = 0;
   for (const Part& part : parts) size += part.place.size;
-  std::vector<std::byte> bytes(size);
+  bytes.resize(size);
   std::size_t begin = 0;
   for (const Part& part : parts) {
     if (part.place.size == 0) continue;
     file_.read_at(part.section + part.place.begin, std::span(bytes).subspan(begin, part.place.size));
     begin += part.place.size;
   }
-  if (checksum(bytes) != expected) {
-    ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
-        .fail(what + " has a wrong checksum, here or in the sections that follow");
-  }
-  return bytes;
+  if (checksum(bytes) == expected) return;
+  ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
+      .fail("has a part with a wrong checksum, here or where the sections that follow have theirs");
 }
 
 Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare) const {
   const KeyframeParts& known = lookup_.keyframes[number];
   std::array<Part, kViewSections> parts;
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {file_.views[i], known.views[i], kViewNames[i]};
-  const std::vector<std::byte> bytes = read_parts(parts, known.checksum, "keyframe " + std::to_string(number));
+  thread_local std::vector<std::byte> bytes;  // kept, as a keyframe has many thousands of them
+  read_parts(parts, known.checksum, bytes);
   std::size_t begin = 0;
   std::vector<ByteReader> readers;
+  readers.reserve(parts.size());
   for (const auto& [section, place, name] : parts) {
     readers.emplace_back(Bytes(bytes).subspan(begin, place.size), place_of(name), section + place.begin);
     begin += place.size;
@@ -100,19 +102,23 @@ MapFileSource::Block MapFileSource::read_block(std::uint32_t number) const {
   const PointBlock& known = lookup_.blocks[number];
   const std::array<Part, 2> parts = {
       {{file_.points, known.points, "points"}, {file_.observers, known.observers, "observers"}}};
-  const std::uint32_t first = number * kPointsOfBlock;
-  const std::vector<std::byte> bytes = read_parts(parts, known.checksum, "the block of point " + std::to_string(first));
+  thread_local std::vector<std::byte> bytes;
+  read_parts(parts, known.checksum, bytes);
   ByteReader points(Bytes(bytes).first(known.points.size), place_of("points"), file_.points + known.points.begin);
   ByteReader observers(Bytes(bytes).subspan(known.points.size), place_of("observers"),
                        file_.observers + known.observers.begin);
-  const RoundedPoints read = read_block_of_points(points, first, std::min(kPointsOfBlock, file_.point_count - first));
-  Block block(read.points.size());
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    block[i].point = read.points[i];
-    block[i].observations = read_observers(observers, lookup_.keyframes);
-    if (read.references[i] >= block[i].observations.size()) points.fail("has a reference that does not see its point");
-    block[i].point.reference = block[i].observations[read.references[i]];
+  const std::uint32_t first = number * kPointsOfBlock;
+  Block block(std::min(kPointsOfBlock, file_.point_count - first));
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    auto& [point, observations] = block[i];
+    const std::uint32_t reference = read_rounded_point(points, first + i, point);
+    observations = read_observers(observers, lookup_.keyframes);
+    if (reference >= observations.size()) {
+      require_no_fault(points, "has a reference that does not see it", "point", first + i);
+    }
+    point.reference = observations[reference];
   }
+  points.require_end();
   observers.require_end();
   return block;
 }

@@ -42,8 +42,8 @@ class MapFileSource : public MapSource {
     std::string_view name;  // of the section
   };
 
-  // The parts, one behind the other. Fails where they have another checksum.
-  std::vector<std::byte> read_parts(std::span<const Part> parts, std::uint64_t expected, const std::string& what) const;
+  // Fills in the bytes of the parts, one behind the other. Fails where they have another checksum.
+  void read_parts(std::span<const Part> parts, std::uint64_t expected, std::vector<std::byte>& bytes) const;
   std::string place_of(std::string_view section) const;
   Keyframe read_keyframe(std::uint32_t number, const Keyframe& bare) const;
   Block read_block(std::uint32_t number) const;

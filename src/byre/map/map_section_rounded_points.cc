@@ -54,13 +54,6 @@ MapPoint read_point(ByteReader& reader, std::uint32_t number) {
   return point;
 }
 
-void append_points(ByteReader& reader, std::uint32_t first, std::uint32_t count, RoundedPoints& points) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    points.points.push_back(read_point(reader, first + i));
-    points.references.push_back(reader.read_varint());
-  }
-}
-
 }  // namespace
 
 void write_rounded_points(const Map& map, ByteWriter& writer, PartSizes& sizes) {
@@ -83,18 +76,18 @@ RoundedPoints read_rounded_points(ByteReader reader, PartSizes& sizes) {
   read.references.reserve(count);
   for (std::uint32_t first = 0; first < count; first += kPointsOfBlock) {
     const std::size_t before = reader.remaining();
-    append_points(reader, first, std::min(kPointsOfBlock, count - first), read);
+    for (std::uint32_t i = first; i < std::min(first + kPointsOfBlock, count); ++i) {
+      read.references.push_back(read_rounded_point(reader, i, read.points.emplace_back()));
+    }
     sizes.points.push_back(static_cast<std::uint32_t>(before - reader.remaining()));
   }
   reader.require_end();
   return read;
 }
 
-RoundedPoints read_block_of_points(ByteReader& reader, std::uint32_t first, std::uint32_t count) {
-  RoundedPoints read;
-  append_points(reader, first, count, read);
-  reader.require_end();
-  return read;
+std::uint32_t read_rounded_point(ByteReader& reader, std::uint32_t number, MapPoint& point) {
+  point = read_point(reader, number);
+  return reader.read_varint();
 }
 
 }  // namespace byre

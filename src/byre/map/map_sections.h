@@ -87,8 +87,8 @@ struct RoundedPoints {
   std::vector<std::uint32_t> references;  // which of its observations is the point's reference, counted from 0
 };
 RoundedPoints read_rounded_points(ByteReader reader, PartSizes& sizes);
-// Of those alone whose bytes follow, the first of which has this number.
-RoundedPoints read_block_of_points(ByteReader& reader, std::uint32_t first, std::uint32_t count);
+// The next point alone, but for its reference, which is given: which of its observations it is.
+std::uint32_t read_rounded_point(ByteReader& reader, std::uint32_t number, MapPoint& point);
 
 // What keyframes see of them; all sections have a part for each keyframe.
 struct ViewWriters {
