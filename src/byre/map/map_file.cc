@@ -329,6 +329,14 @@ PartSectionSizes part_section_sizes(const SectionOpener& open) {
   return sizes;
 }
 
+// Fails where the section of points, of which no more is read, begins with another number of them.
+void require_points(const Bring& bring, const SectionPlace& section, const MapSummary& summary,
+                    const std::string& name) {
+  constexpr std::size_t kHead = sizeof(std::uint32_t);
+  ByteReader reader(bring(section.offset, std::min(kHead, section.size)), name + ": section points", section.offset);
+  if (reader.read<std::uint32_t>() != summary.points) reader.fail("has not as many points as the summary tells");
+}
+
 // Where its sections lie.
 MapFileSource::File file_of(const SectionOpener& open, ReadFileAt read_at, const std::string& name) {
   MapFileSource::File file;
@@ -392,6 +400,7 @@ StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::strin
   if (summary.keyframes != parts.keyframes.size() || summary.points > std::numeric_limits<int>::max()) {
     open(kSummary).fail("does not tell what the other sections hold");
   }
+  require_points(bring, open.place_of(kPoints), summary, name);
   ByteReader words = open(kWords);
   const WordsHead head = read_words_head(words);
   stored.vocabulary_checksum = head.vocabulary_checksum;
