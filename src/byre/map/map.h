@@ -113,7 +113,7 @@ class Map {
   // All at once, which is many times faster than one by one. Preconditions: keyframes have a sighting per feature, see
   // no point twice, and come after their parents; ids are of this origin and within the parts.
   Map(Origin origin, MapParts parts);
-  // Of the origin offline. Keyframes are bare: without features, sightings and words.
+  // A map of the origin offline. Keyframes are bare: without features, sightings and words.
   Map(std::vector<Rig> rigs, std::vector<Keyframe> bare, int point_count, std::shared_ptr<const MapSource> source);
 
   Origin origin() const { return origin_; }

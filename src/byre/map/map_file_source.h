@@ -39,7 +39,7 @@ class MapFileSource : public MapSource {
   struct Part {
     std::size_t section;  // where it begins in the file
     PartPlace place;
-    std::string_view name;  // of the section
+    std::string_view name;  // the section's
   };
 
   // Fills in the bytes of the parts, one behind the other. Fails where they have another checksum.

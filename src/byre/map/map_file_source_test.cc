@@ -42,7 +42,7 @@ struct WatchedFile {
   std::atomic<std::size_t> read = 0;
 };
 
-MapBytes bytes_of(int keyframes, int features = 9) {
+MapBytes scene_of_size(int keyframes, int features = 9) {
   return write_map(StoredMapScene(keyframes, features).stored_with_plan());
 }
 
@@ -81,7 +81,7 @@ std::string fault_when_looked_at(MapBytes bytes) {
 
 TEST(MapFileSource, GivesWhatReadingAllGives) {
   for (const int keyframes : {1, 7, kHundreds}) {
-    WatchedFile file(bytes_of(keyframes));
+    WatchedFile file(scene_of_size(keyframes));
     const StoredMap opened = file.open();
     EXPECT_THAT(find_faults(opened), IsEmpty());
     EXPECT_EQ(write_map(opened), file.bytes);
@@ -90,7 +90,7 @@ TEST(MapFileSource, GivesWhatReadingAllGives) {
 }
 
 TEST(MapFileSource, GivesTheSameWords) {
-  WatchedFile file(bytes_of(7));
+  WatchedFile file(scene_of_size(7));
   const StoredMap opened = file.open();
   std::size_t visited = 0;
   opened.map.visit_words([&](KeyframeId id, std::span<const Word> words) {
@@ -106,7 +106,7 @@ TEST(MapFileSource, OpensAnEmptyMap) {
 }
 
 TEST(MapFileSource, ReadsOnlyWhatIsLookedAtAndThatOnce) {
-  WatchedFile file(bytes_of(kHundreds, 100));
+  WatchedFile file(scene_of_size(kHundreds, 100));
   const StoredMap opened = file.open();
   EXPECT_LT(file.read, file.bytes.size() / 5);
   const KeyframeId looked_at{Origin::offline, 150};
@@ -123,7 +123,7 @@ TEST(MapFileSource, ReadsOnlyWhatIsLookedAtAndThatOnce) {
 }
 
 TEST(MapFileSource, KnowsWhereKeyframesAreWithoutReadingThem) {
-  WatchedFile file(bytes_of(7));
+  WatchedFile file(scene_of_size(7));
   const StoredMap opened = file.open();
   const std::size_t before = file.read;
   for (const KeyframeId id : opened.map.keyframe_ids()) {
@@ -139,7 +139,7 @@ TEST(MapFileSource, KnowsWhereKeyframesAreWithoutReadingThem) {
 }
 
 TEST(MapFileSource, IsReadAsAWholeByTheFirstChange) {
-  WatchedFile file(bytes_of(7));
+  WatchedFile file(scene_of_size(7));
   const auto change = [](StoredMap& stored) {
     stored.map.remove_point({Origin::offline, 3});
     stored.map.move_keyframe({Origin::offline, 2}, {}, Matrix6::Identity());
@@ -157,7 +157,7 @@ TEST(MapFileSource, IsReadAsAWholeByTheFirstChange) {
 }
 
 TEST(MapFileSource, FindsEveryFlippedBitWhenItIsLookedAt) {
-  MapBytes bytes = bytes_of(5);
+  MapBytes bytes = scene_of_size(5);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::byte bit{static_cast<unsigned char>(1u << (i % 8))};
     bytes[i] ^= bit;
@@ -167,7 +167,7 @@ TEST(MapFileSource, FindsEveryFlippedBitWhenItIsLookedAt) {
 }
 
 TEST(MapFileSource, TellsWhereADamagedPartLies) {
-  MapBytes bytes = bytes_of(5);
+  MapBytes bytes = scene_of_size(5);
   const TableEntry section = section_of(bytes, "patches");
   bytes[section.offset + section.size - 1] ^= std::byte{1};
   WatchedFile file(bytes);
@@ -178,7 +178,7 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
 }
 
 TEST(MapFileSource, RefusesEveryShorterFile) {
-  const MapBytes bytes = bytes_of(3);
+  const MapBytes bytes = scene_of_size(3);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(size);
     EXPECT_NE(fault_when_looked_at(MapBytes(bytes.begin(), end)), "") << size << " bytes";
@@ -187,7 +187,7 @@ TEST(MapFileSource, RefusesEveryShorterFile) {
 
 // Whatever it holds with right checksums, looking at it ends well or in an error that tells where.
 TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
-  const MapBytes sound = bytes_of(12);
+  const MapBytes sound = scene_of_size(12);
   std::mt19937_64 random(1);
   int refused = 0;
   for (std::size_t i = 0; i < section_count(sound); ++i) {
@@ -208,7 +208,7 @@ TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
 // Bytes of the section observers: how many see the first point, then the keyframe and feature of each.
 TEST(MapFileSource, RefusesObserversThatAreNone) {
   const auto fault_with = [](std::size_t place, int value) {
-    MapBytes bytes = bytes_of(5);
+    MapBytes bytes = scene_of_size(5);
     bytes[section_of(bytes, "observers").offset + place] = static_cast<std::byte>(value);
     refresh_checksums(bytes);
     return fault_when_looked_at(bytes);
@@ -221,7 +221,7 @@ TEST(MapFileSource, RefusesObserversThatAreNone) {
 }
 
 TEST(MapFileSource, GivesAllThreadsTheSame) {
-  WatchedFile file(bytes_of(kHundreds));
+  WatchedFile file(scene_of_size(kHundreds));
   const StoredMap opened = file.open();
   constexpr std::size_t kThreads = 4;
   std::vector<std::vector<const void*>> seen(kThreads);
@@ -242,7 +242,7 @@ TEST(MapFileSource, GivesAllThreadsTheSame) {
 
 TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   const fs::path path = fs::path(testing::TempDir()) / ("map_source_" + std::to_string(getpid()) + ".byre");
-  const MapBytes bytes = bytes_of(7);
+  const MapBytes bytes = scene_of_size(7);
   write_file(path, bytes);
   const StoredMap opened = open_map(path), untouched = open_map(path);
   fs::remove(path);

@@ -14,8 +14,8 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-constexpr std::size_t kKeyframeBytes = (1 + kViewSections + 1) * sizeof(std::uint32_t) + sizeof(std::uint64_t);
-constexpr std::size_t kBlockBytes = 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
+constexpr std::size_t kKeyframePartsBytes = (1 + kViewSections + 1) * sizeof(std::uint32_t) + sizeof(std::uint64_t);
+constexpr std::size_t kPointBlockBytes = 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kPointsHeadBytes = sizeof(std::uint32_t);
 constexpr std::size_t kWordsHeadBytes = sizeof(std::uint64_t) + 1;
 
@@ -163,7 +163,7 @@ void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& 
 
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes) {
   const std::size_t blocks = block_count(summary.points);
-  if (summary.keyframes > reader.remaining() / kKeyframeBytes || blocks > reader.remaining() / kBlockBytes) {
+  if (summary.keyframes > reader.remaining() / kKeyframePartsBytes || blocks > reader.remaining() / kPointBlockBytes) {
     reader.fail("has not a place for each keyframe and point");
   }
   Lookup lookup;
@@ -189,7 +189,7 @@ Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSecti
   if (!is_used_up || features != summary.features || end_of_covisible != reader.remaining()) {
     reader.fail("does not tell where other sections have their parts");
   }
-  lookup.first_byte_of_covisible = kKeyframeBytes * summary.keyframes + kBlockBytes * blocks;
+  lookup.first_byte_of_covisible = kKeyframePartsBytes * summary.keyframes + kPointBlockBytes * blocks;
   lookup.covisible.assign(reader.rest().begin(), reader.rest().end());
   return lookup;
 }

@@ -219,7 +219,7 @@ std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartO
 
 using ViewSizes = std::array<std::uint32_t, kViewSections>;
 
-// Of the sections but that of words, which are kept elsewhere.
+// What is left of all sections but that of words, which is kept elsewhere.
 ViewSizes remaining(const ViewSections& sections) {
   ViewSizes sizes{};
   sizes[kFeaturesOfView] = static_cast<std::uint32_t>(sections.features.remaining());

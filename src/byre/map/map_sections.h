@@ -139,11 +139,11 @@ struct KeyframeParts {
   std::uint32_t features = 0;  // their number
   std::array<PartPlace, kViewSections> views;
   PartPlace covisible;         // in Lookup::covisible
-  std::uint64_t checksum = 0;  // of its parts in the order of sections, but not of what is covisible
+  std::uint64_t checksum = 0;  // XXH3 of its parts in the order of sections, but not of what is covisible
 };
 struct PointBlock {
   PartPlace points, observers;
-  std::uint64_t checksum = 0;  // of both
+  std::uint64_t checksum = 0;  // XXH3 of both
 };
 struct Lookup {
   std::vector<KeyframeParts> keyframes;

@@ -143,7 +143,7 @@ void PlaceIndex::add(KeyframeId id, std::span<const Word> words) {
 // Words of the keyframes of a map, one after the other.
 struct PlaceIndex::WordsOfMap {
   std::vector<KeyframeId> keyframes;
-  std::vector<std::size_t> ends;  // of each keyframe's words
+  std::vector<std::size_t> ends;  // where each keyframe's words end
   std::vector<Word> words;
 
   // Calls visit(slot, word) for each.
