@@ -332,9 +332,16 @@ PartSectionSizes part_section_sizes(const SectionOpener& open) {
 // Fails where the section of points, of which no more is read, begins with another number of them.
 void require_points(const Bring& bring, const SectionPlace& section, const MapSummary& summary,
                     const std::string& name) {
-  constexpr std::size_t kHead = sizeof(std::uint32_t);
-  ByteReader reader(bring(section.offset, std::min(kHead, section.size)), name + ": section points", section.offset);
+  const std::size_t size = std::min(sizeof(std::uint32_t), section.size);
+  ByteReader reader(bring(section.offset, size), name + ": section points", section.offset);
   if (reader.read<std::uint32_t>() != summary.points) reader.fail("has not as many points as the summary tells");
+}
+
+// No more is read of the section. Whoever reads all of it checks it.
+WordsHead words_head(const Bring& bring, const SectionPlace& section, const std::string& name) {
+  const std::size_t size = std::min(sizeof(std::uint64_t) + 1, section.size);
+  ByteReader reader(bring(section.offset, size), name + ": section words", section.offset);
+  return read_words_head(reader);
 }
 
 // Where its sections lie.
@@ -401,8 +408,7 @@ StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::strin
     open(kSummary).fail("does not tell what the other sections hold");
   }
   require_points(bring, open.place_of(kPoints), summary, name);
-  ByteReader words = open(kWords);
-  const WordsHead head = read_words_head(words);
+  const WordsHead head = words_head(bring, open.place_of(kWords), name);
   stored.vocabulary_checksum = head.vocabulary_checksum;
   Lookup lookup = read_lookup(open(kLookup), summary, part_section_sizes(open));
   MapFileSource::File file = file_of(open, read_at, name);

@@ -45,9 +45,9 @@ void MapFileSource::visit_words(const WordVisitor& visit) const {
   file_.read_at(file_.views[kWordsOfView], section);
   ByteReader reader(section, place_of("words"), file_.views[kWordsOfView]);
   if (checksum(section) != file_.words_checksum) reader.fail("has a wrong checksum");
-  const WordsHead head = read_words_head(reader);
+  read_words_head(reader);
   for (std::uint32_t number = 0; number < lookup_.keyframes.size(); ++number) {
-    visit({Origin::offline, number}, read_narrow_words_of(reader, head, lookup_.keyframes[number].features));
+    visit({Origin::offline, number}, read_narrow_words_of(reader, file_.words, lookup_.keyframes[number].features));
   }
   reader.require_end();
 }
