@@ -1,5 +1,6 @@
 // Reads whatever bytes it is given as a map file: it must be refused, or be a sound map that is written back the same;
-// of an older format, the same once it was written in the newest.
+// of an older format, the same once it was written in the newest. What is read as a whole can be read as it is looked
+// at.
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
@@ -10,10 +11,31 @@
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
+namespace {
+
+// Looks at all of a map that is read as it is looked at, as missions do. Whether it could be read.
+bool look_at_all(std::span<const std::byte> bytes) {
+  try {
+    const auto read_at = [bytes](std::size_t offset, std::span<std::byte> into) {
+      std::ranges::copy(bytes.subspan(offset, into.size()), into.begin());
+    };
+    const byre::StoredMap opened = byre::open_map(read_at, bytes.size(), "fuzz.byre");
+    byre::find_faults(opened);
+    opened.map.visit_words([](byre::KeyframeId, std::span<const byre::Word>) {});
+    return true;
+  } catch (const byre::InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
+  const bool can_be_looked_at = look_at_all(bytes);
   try {
     const byre::StoredMap map = byre::read_map(bytes, "fuzz.byre");
+    if (!can_be_looked_at) std::abort();
     if (!byre::find_faults(map).empty()) std::abort();
     const byre::MapBytes written = byre::write_map(map);
     const bool is_newest = byre::value_at<std::uint32_t>(written, byre::kFormatAt) ==

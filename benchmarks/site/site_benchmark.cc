@@ -227,7 +227,18 @@ Use use_site(const Inputs& inputs, int keyframes, const fs::path& file) {
   return use;
 }
 
-std::vector<std::string> cells_of(int keyframes, const Writing& writing, const Opening& opening, const Use& use) {
+// What the program has more after opening and the mission than before, with all that the mission makes.
+double memory_of_mission(const Inputs& inputs, const fs::path& file) {
+  const double before = resident_memory_mb();
+  const auto offline = load_offline_map(file, inputs.vocabulary);
+  const auto recording = open_recording(inputs.recording, {});
+  Use use;
+  measure_frames(inputs, offline, *recording, use);
+  return resident_memory_mb() - before;
+}
+
+std::vector<std::string> cells_of(int keyframes, const Writing& writing, const Opening& opening, const Use& use,
+                                  double mission_mb) {
   return {std::to_string(keyframes),
           std::to_string(writing.points),
           formatted("%.1f", writing.file_mb),
@@ -240,6 +251,7 @@ std::vector<std::string> cells_of(int keyframes, const Writing& writing, const O
           formatted("%d of %d", use.localised, use.localise_ms.count),
           formatted("%.1f (%.1f)", use.frame_ms.mean, use.frame_ms.p99),
           formatted("%.1f (%.1f)", use.frame_cpu_ms.mean, use.frame_cpu_ms.p99),
+          formatted("%.0f", mission_mb),
           formatted("%d of %d", use.with_pose, use.frame_ms.count),
           formatted("%.3f, %.1f us", use.ground_seconds, use.stand_us)};
 }
@@ -247,14 +259,15 @@ std::vector<std::string> cells_of(int keyframes, const Writing& writing, const O
 void measure(const Inputs& inputs, const std::vector<int>& sizes) {
   MarkdownTable table({"keyframes", "points", "file, MB", "written, s", "opened, s (CPU)", "resident, MB", "index, s",
                        "place query, ms (max)", "from nothing, ms (max)", "found", "frame, ms (p99)",
-                       "frame's CPU, ms (p99)", "poses", "ground, s; a stand"});
+                       "frame's CPU, ms (p99)", "resident after it, MB", "poses", "ground, s; a stand"});
   const fs::path file = site_file();
   for (const int keyframes : sizes) {
     const auto writing = in_child<Writing>([&] { return write_site(inputs, keyframes, file); });
     const auto opening = in_child<Opening>([&] { return open_site(inputs, file); });
     const auto use = in_child<Use>([&] { return use_site(inputs, keyframes, file); });
+    const auto mission_mb = in_child<double>([&] { return memory_of_mission(inputs, file); });
     fs::remove(file);
-    table.add(cells_of(keyframes, writing, opening, use));
+    table.add(cells_of(keyframes, writing, opening, use, mission_mb));
   }
   std::fputs(table.text().c_str(), stdout);
 }

@@ -116,7 +116,7 @@ TEST(DamagedMaps, AreReadAsSoundMapsOrRefused) {
   // Otherwise the mutants say nothing.
   for (const char* const section :
        {"summary", "notes", "provenance", "rigs", "keyframes", "features", "patches", "points", "observations", "words",
-        "plan", "calibrations", "shutters", "descriptors", "header"}) {
+        "plan", "calibrations", "shutters", "descriptors", "observers", "lookup", "header"}) {
     EXPECT_GT(tally.refusals[section], 0u) << section << " was never refused for more than its checksum";
   }
   EXPECT_GT(tally.read_with_right_checksums, count / 100);

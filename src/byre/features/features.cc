@@ -76,11 +76,11 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
                    std::vector<Patch> patches, std::vector<int> patch_of_keypoint)
     : patches_(std::make_shared<const std::vector<Patch>>(std::move(patches))) {
   if (keypoints.empty()) return;
-  const Cells cells(width, height, keypoints);
+  Cells cells(width, height, keypoints);
   cell_size_ = cells.size;
   columns_ = cells.columns;
   rows_ = cells.rows;
-  cell_begin_ = cells.begin;
+  cell_begin_ = std::move(cells.begin);
   keypoints_ = in_order(std::move(keypoints), cells.order);
   descriptors_ = in_order(std::move(descriptors), cells.order);
   if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_->size());

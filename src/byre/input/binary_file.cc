@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 }
 
 constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
+constexpr std::string_view kChangeRemedy = "put another file in its place rather than to change it while it is in use";
 constexpr std::string_view kWriteRemedy = "check that its folder exists, may be written to and has space";
 
 [[noreturn]] void fail_to_write(const fs::path& path) {
@@ -133,6 +134,31 @@ void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes) {
   OpenFile(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy).write_all(bytes);
+}
+
+PiecewiseFile::PiecewiseFile(const fs::path& path) : path_(path) {
+  refuse_pipe(path);
+  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const struct stat status = file.status();
+  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
+  size_ = static_cast<std::size_t>(status.st_size);
+  descriptor_ = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) fail(path, "cannot be kept open", "close other files, or raise their limit (ulimit -n)");
+}
+
+PiecewiseFile::~PiecewiseFile() {
+  close(descriptor_);
+}
+
+void PiecewiseFile::read(std::size_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path_, "cannot be read", kReadRemedy);
+    if (count == 0) throw InputError(path_.string(), "has become shorter since it was opened", kChangeRemedy);
+    offset += static_cast<std::size_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
 }
 
 MappedFile::MappedFile(const fs::path& path) {

@@ -23,6 +23,25 @@ std::filesystem::path folder_of(const std::filesystem::path& path);
 // the disk is full or the file larger than allowed.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
+// An open file, pieces of which are read as they are needed. Stays the same file when its path is given to another one.
+// Several threads may read at once.
+class PiecewiseFile {
+ public:
+  explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError when it cannot be opened
+  ~PiecewiseFile();
+  PiecewiseFile(const PiecewiseFile&) = delete;
+  PiecewiseFile& operator=(const PiecewiseFile&) = delete;
+
+  std::size_t size() const { return size_; }  // when it was opened, bytes
+  // Throws InputError when it cannot be read, or ends before.
+  void read(std::size_t offset, std::span<std::byte> bytes) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::size_t size_ = 0;
+};
+
 // A file as read-only memory, loaded page by page as it is looked at; for large files of our own that nobody writes to.
 class MappedFile {
  public:

@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 
+#include <array>
 #include <fstream>
 #include <string>
 
@@ -77,6 +78,34 @@ TEST_F(BinaryFile, IsMappedAsItIs) {
   EXPECT_EQ(text_of(MappedFile(folder_ / "file").bytes()), "mapped");
   replace_file(folder_ / "empty", {});
   EXPECT_TRUE(MappedFile(folder_ / "empty").bytes().empty());
+}
+
+TEST_F(BinaryFile, IsReadByPieces) {
+  replace_file(folder_ / "file", bytes_of("one two three"));
+  const PiecewiseFile file(folder_ / "file");
+  EXPECT_EQ(file.size(), 13u);
+  std::array<std::byte, 3> piece;
+  file.read(4, piece);
+  EXPECT_EQ(text_of(piece), "two");
+  replace_file(folder_ / "file", bytes_of("another"));
+  file.read(0, piece);
+  EXPECT_EQ(text_of(piece), "one") << "the file that was opened";
+  EXPECT_THROW(file.read(11, piece), InputError);
+  EXPECT_THROW(PiecewiseFile(folder_ / "absent"), InputError);
+  EXPECT_THROW(PiecewiseFile{folder_}, InputError);
+}
+
+TEST_F(BinaryFile, SaysThatItHasBecomeShorter) {
+  replace_file(folder_ / "file", bytes_of("one two three"));
+  const PiecewiseFile file(folder_ / "file");
+  fs::resize_file(folder_ / "file", 5);
+  std::array<std::byte, 3> piece;
+  try {
+    file.read(4, piece);
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("has become shorter since it was opened"));
+  }
 }
 
 TEST_F(BinaryFile, IsNeverAPipeOrALinkInACircle) {

@@ -4,6 +4,8 @@
 
 #include <cassert>
 #include <limits>
+#include <memory>
+#include <new>
 
 #include <xxhash.h>
 
@@ -17,6 +19,14 @@ constexpr std::uint8_t kVarintContinues = 1u << kVarintBits;
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::uint64_t checksum_of_pieces(std::span<const std::span<const std::byte>> pieces) {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
+  if (!state) throw std::bad_alloc();
+  XXH3_64bits_reset(state.get());
+  for (const std::span<const std::byte> piece : pieces) XXH3_64bits_update(state.get(), piece.data(), piece.size());
+  return XXH3_64bits_digest(state.get());
 }
 
 void ByteWriter::write_bytes(std::span<const std::byte> bytes) {

@@ -20,6 +20,8 @@ concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 // XXH3 (64 bits) of the bytes: tells damage, not malice.
 std::uint64_t checksum(std::span<const std::byte> bytes);
+// The same of several pieces, as if they lay one behind the other.
+std::uint64_t checksum_of_pieces(std::span<const std::span<const std::byte>> pieces);
 
 // Appends numbers to a growing piece of a file.
 class ByteWriter {

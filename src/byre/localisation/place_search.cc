@@ -42,7 +42,7 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
   const Pose camera_from_body = inverse(rig.body_from_camera);
   if (hint) {
     filter.is_excluded = [&map, &camera_from_body, around = surroundings_of(*hint)](KeyframeId id) {
-      return !is_near(around, inverse(map.find_keyframe(id)->camera_from_world) * camera_from_body);
+      return !is_near(around, inverse(map.find_bare_keyframe(id)->camera_from_world) * camera_from_body);
     };
   }
   Localisation& found = result.found;

@@ -98,7 +98,7 @@ std::optional<DrivenGround> DrivenGround::under(const Map& map) {
   const std::optional<DrivingPlane> whole = fit_driving_plane(map);
   if (!whole || whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength) return std::nullopt;
   std::vector<Pose> path;
-  for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.find_keyframe(id)));
+  for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.find_bare_keyframe(id)));
   DrivenGround ground(std::move(path));
   constexpr int kRounds = 2;
   Eigen::Vector3d up_in_body = Eigen::Vector3d::Zero();

@@ -52,6 +52,7 @@ int Map::add_rig(const Rig& rig) {
 }
 
 KeyframeId Map::add_keyframe(Keyframe keyframe) {
+  read_all();
   const KeyframeId id{origin_, static_cast<std::uint32_t>(keyframes_.size())};
   const int feature_count = keyframe.frame.features ? keyframe.frame.features->size() : 0;
   keyframe.sightings.resize(std::max(keyframe.sightings.size(), static_cast<std::size_t>(feature_count)));
@@ -69,6 +70,7 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
 }
 
 PointId Map::add_point(const MapPoint& point) {
+  read_all();
   const PointId id{origin_, static_cast<std::uint32_t>(place_of_point_.size())};
   if (empty_places_.empty()) {
     place_of_point_.push_back(static_cast<std::uint32_t>(points_.size()));
@@ -84,6 +86,7 @@ PointId Map::add_point(const MapPoint& point) {
 
 bool Map::add_observation(const Observation& observation, const Sighting& sighting) {
   assert(sighting.point);
+  read_all();
   Keyframe* keyframe = find_own_keyframe(observation.keyframe);
   std::vector<Observation>* observers = find_observations(*sighting.point);
   if (!keyframe || !observers) return false;
@@ -97,6 +100,7 @@ bool Map::add_observation(const Observation& observation, const Sighting& sighti
 }
 
 void Map::remove_observation(const Observation& observation) {
+  read_all();
   const std::optional<PointId> point = unlink(observation);
   if (!point || point->origin != origin_) return;
   if (observations(*point).empty()) {
@@ -128,6 +132,7 @@ void Map::remove_foreign_view(const Observation& observation) {
 }
 
 void Map::remove_point(PointId id) {
+  read_all();
   if (!find_point(id)) return;
   const std::vector<Observation> observers = observations(id);
   for (const Observation& observation : observers) unlink(observation);
@@ -138,6 +143,7 @@ void Map::remove_point(PointId id) {
 }
 
 void Map::remove_keyframe(KeyframeId id) {
+  read_all();
   const Keyframe* keyframe = find_keyframe(id);
   if (!keyframe || !keyframe->parent) return;
   const KeyframeId parent = *keyframe->parent;
@@ -152,6 +158,7 @@ void Map::remove_keyframe(KeyframeId id) {
 }
 
 void Map::set_words(KeyframeId id, std::vector<Word> words) {
+  read_all();
   Keyframe* keyframe = find_own_keyframe(id);
   if (!keyframe) return;
   assert(words.empty() || words.size() == keyframe->sightings.size());
@@ -159,6 +166,7 @@ void Map::set_words(KeyframeId id, std::vector<Word> words) {
 }
 
 void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
+  read_all();
   Keyframe* keyframe = find_own_keyframe(id);
   if (!keyframe) return;
   keyframe->camera_from_world = camera_from_world;
@@ -171,18 +179,24 @@ void Map::scale_removed_keyframe(KeyframeId id, double scale) {
 }
 
 void Map::update_point(PointId id, const MapPoint& point) {
+  read_all();
   if (!find_point(id)) return;
   slot(id).point = point;
   repair_reference(id);
 }
 
 const Keyframe* Map::find_keyframe(KeyframeId id) const {
+  const Keyframe* const bare = find_bare_keyframe(id);
+  return bare && source_ ? &source_->keyframe(id.number, *bare) : bare;
+}
+
+const Keyframe* Map::find_bare_keyframe(KeyframeId id) const {
   if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
 
 const MapPoint* Map::find_point(PointId id) const {
-  const PointSlot* const found = find_slot(id);
+  const ObservedPoint* const found = find_observed(id);
   return found ? &found->point : nullptr;
 }
 
@@ -198,16 +212,24 @@ std::vector<KeyframeId> Map::keyframe_ids() const {
 std::vector<PointId> Map::point_ids() const {
   std::vector<PointId> ids;
   ids.reserve(static_cast<std::size_t>(point_count_));
-  for (std::uint32_t i = 0; i < place_of_point_.size(); ++i) {
-    if (place_of_point_[i] != kGone) ids.push_back({origin_, i});
+  const auto given_out = source_ ? static_cast<std::size_t>(point_count_) : place_of_point_.size();
+  for (std::uint32_t i = 0; i < given_out; ++i) {
+    if (source_ || place_of_point_[i] != kGone) ids.push_back({origin_, i});
   }
   return ids;
+}
+
+void Map::visit_words(const MapSource::WordVisitor& visit) const {
+  if (source_) return source_->visit_words(visit);
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    if (keyframes_[i].keyframe) visit({origin_, i}, keyframes_[i].keyframe->words);
+  }
 }
 
 const std::vector<Observation>& Map::observations(PointId id) const {
   static const std::vector<Observation> kNone;
   if (id.origin == origin_) {
-    const PointSlot* const found = find_slot(id);
+    const ObservedPoint* const found = find_observed(id);
     return found ? found->observations : kNone;
   }
   return id.number < offline_observations_.size() ? offline_observations_[id.number] : kNone;
@@ -235,8 +257,8 @@ std::optional<PointId> Map::point_of_foreign_view(const Observation& observation
 }
 
 std::vector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
-  if (!find_keyframe(id)) return {};
-  std::vector<Covisible> covisible = slot(id).covisible;
+  if (!find_bare_keyframe(id)) return {};
+  std::vector<Covisible> covisible = source_ ? source_->covisible(id.number) : slot(id).covisible;
   const auto count = std::min(covisible.size(), static_cast<std::size_t>(std::max(max_count, 0)));
   std::ranges::partial_sort(covisible, covisible.begin() + static_cast<std::ptrdiff_t>(count), shares_more);
   covisible.resize(count);
@@ -266,6 +288,11 @@ bool Map::was_given_out(KeyframeId id) const {
 Keyframe* Map::find_own_keyframe(KeyframeId id) {
   if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
+}
+
+const ObservedPoint* Map::find_observed(PointId id) const {
+  if (!source_) return find_slot(id);
+  return id.origin == origin_ && std::cmp_less(id.number, point_count_) ? &source_->point(id.number) : nullptr;
 }
 
 const Map::PointSlot* Map::find_slot(PointId id) const {

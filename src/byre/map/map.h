@@ -5,6 +5,7 @@
 #include "byre/map/ids.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -44,6 +45,12 @@ struct ForeignView {
   Sighting sighting;        // what the feature has measured of a point of this map
 };
 
+// A point with the observations of it by keyframes of its map, ascending.
+struct ObservedPoint {
+  MapPoint point;
+  std::vector<Observation> observations;
+};
+
 using Word = std::uint32_t;  // a visual word of a vocabulary, see place/vocabulary.h
 
 struct Keyframe {
@@ -78,16 +85,36 @@ struct Covisible {
   int shared_points = 0;
 };
 
+// What a map leaves in its file until it is looked at. Several threads may look at once. What is handed out stays as
+// long as the source does. Everything throws InputError where the file is damaged there.
+class MapSource {
+ public:
+  using WordVisitor = std::function<void(KeyframeId, std::span<const Word>)>;
+
+  virtual ~MapSource() = default;
+  // bare: the same without what it sees.
+  virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const = 0;
+  virtual const ObservedPoint& point(std::uint32_t number) const = 0;
+  virtual std::vector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
+  virtual void visit_words(const WordVisitor& visit) const = 0;              // as Map does
+};
+
 // A plain value: copy it, change the copy, save it. Keeps both ends of every observation in step.
 // Dense containers indexed by id number; numbers are never used twice. Ids handed in must be of this map's origin
 // unless said otherwise. A look-up of a removed or foreign thing gives nullptr, and a change to one does nothing.
-// Pointers and references handed out are valid until the next change.
+// Pointers and references handed out are valid until the next change. Several threads may look at a map at once, while
+// none changes it.
+//
+// A map with a source reads what keyframes see, and points, from it when they are first looked at, and keeps it from
+// then on. Such a look throws InputError where the source is damaged. The first change reads all of it.
 class Map {
  public:
   explicit Map(Origin origin) : origin_(origin) {}
   // All at once, which is many times faster than one by one. Preconditions: keyframes have a sighting per feature, see
   // no point twice, and come after their parents; ids are of this origin and within the parts.
   Map(Origin origin, MapParts parts);
+  // A map of the origin offline. Keyframes are bare: without features, sightings and words.
+  Map(std::vector<Rig> rigs, std::vector<Keyframe> bare, int point_count, std::shared_ptr<const MapSource> source);
 
   Origin origin() const { return origin_; }
 
@@ -135,9 +162,13 @@ class Map {
   void update_point(PointId id, const MapPoint& point);
 
   const Keyframe* find_keyframe(KeyframeId id) const;
+  // The same for who looks neither at features nor at sightings and words, which are missing where a source has them.
+  const Keyframe* find_bare_keyframe(KeyframeId id) const;
   const MapPoint* find_point(PointId id) const;
   std::vector<KeyframeId> keyframe_ids() const;  // ascending
   std::vector<PointId> point_ids() const;        // ascending
+  // Calls visit with the words of each keyframe, none where they are not known, ascending by keyframe.
+  void visit_words(const MapSource::WordVisitor& visit) const;
   int keyframe_count() const { return keyframe_count_; }
   int point_count() const { return point_count_; }
 
@@ -165,9 +196,7 @@ class Map {
     std::vector<Covisible> covisible;  // ascending by keyframe
     std::vector<KeyframeId> children;  // ascending
   };
-  struct PointSlot {
-    MapPoint point;
-    std::vector<Observation> observations;   // ascending
+  struct PointSlot : ObservedPoint {
     std::vector<ForeignView> foreign_views;  // ascending by keyframe
   };
 
@@ -178,6 +207,8 @@ class Map {
   KeyframeSlot& slot(KeyframeId id) { return keyframes_[id.number]; }
   const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
   // nullptr for a point that is gone, and for one of another origin.
+  const ObservedPoint* find_observed(PointId id) const;
+  // The same, and nullptr for one that a source has.
   const PointSlot* find_slot(PointId id) const;
   PointSlot& slot(PointId id) { return points_[place_of_point_[id.number]]; }  // precondition: it is there
   // Where the observations of a point are kept, of an offline point too; nullptr for one that is gone.
@@ -190,11 +221,16 @@ class Map {
   void repair_reference(PointId id);
   void collect_observations();
   void count_covisible_keyframes();
+  void read_all() {
+    if (source_) read_from_source();
+  }
+  void read_from_source();
   void hand_children_to(KeyframeId id, KeyframeId parent);
 
   Origin origin_;
   std::vector<Rig> rigs_;
-  std::vector<KeyframeSlot> keyframes_;
+  std::shared_ptr<const MapSource> source_;  // nullptr when all is here
+  std::vector<KeyframeSlot> keyframes_;      // bare ones with a source
   // Points that are there, in any order, and empty places: most of the points that ever were do not last, and shall
   // not take up room for good.
   std::vector<PointSlot> points_;

@@ -26,6 +26,25 @@ Map::Map(Origin origin, MapParts parts)
   count_covisible_keyframes();
 }
 
+Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> bare, int point_count, std::shared_ptr<const MapSource> source)
+    : origin_(Origin::offline),
+      rigs_(std::move(rigs)),
+      source_(std::move(source)),
+      keyframes_(bare.size()),
+      keyframe_count_(static_cast<int>(bare.size())),
+      point_count_(point_count) {
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].keyframe = std::move(bare[i]);
+}
+
+void Map::read_from_source() {
+  MapParts parts{rigs_, {}, {}};
+  parts.keyframes.reserve(keyframes_.size());
+  parts.points.reserve(static_cast<std::size_t>(point_count_));
+  for (const KeyframeId id : keyframe_ids()) parts.keyframes.push_back(*find_keyframe(id));
+  for (const PointId id : point_ids()) parts.points.push_back(*find_point(id));
+  *this = Map(origin_, std::move(parts));
+}
+
 // Keyframes come in ascending order, so the observations of a point do too.
 void Map::collect_observations() {
   std::vector<std::size_t> observers(points_.size(), 0);

@@ -3,9 +3,12 @@
 #include "byre/input/byte_stream.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -34,12 +37,13 @@ void put_at(MapBytes& bytes, std::size_t place, T value) {
   std::memcpy(bytes.data() + place, &value, sizeof(T));
 }
 
-inline constexpr std::uint32_t kNewestFormat = 5;
+inline constexpr std::uint32_t kNewestFormat = 6;
 
 // Precondition: the bytes are at least as many as the smallest header's. Bytes of no known format count as format 1.
 inline std::size_t section_count(const MapBytes& bytes) {
   const auto format = value_at<std::uint32_t>(bytes, kFormatAt);
-  return format >= 1 && format <= kNewestFormat ? 9 + format : 10;
+  if (format < 1 || format > kNewestFormat) return 10;
+  return format < 6 ? 9 + format : 10 + format;
 }
 inline std::size_t header_checksum_at(const MapBytes& bytes) {
   return kTableAt + section_count(bytes) * kTableEntrySize;
@@ -75,10 +79,67 @@ inline TableEntry section_of(const MapBytes& bytes, std::string_view name) {
   return entry;
 }
 
+// A section of a sound table, or one without bytes.
+inline std::span<std::byte> section_bytes(MapBytes& bytes, std::string_view name) {
+  const TableEntry entry = section_of(bytes, name);
+  if (entry.name != name || entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) return {};
+  return std::span(bytes).subspan(entry.offset, entry.size);
+}
+
+// Takes parts of sections from their beginnings on. Gives back whether all of them were there.
+inline bool take_parts(std::vector<std::span<std::byte>>& sections, const std::byte* sizes, MapBytes& parts) {
+  parts.clear();
+  for (std::span<std::byte>& section : sections) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, sizes, sizeof(size));
+    sizes += sizeof(size);
+    if (size > section.size()) return false;
+    parts.insert(parts.end(), section.begin(), section.begin() + size);
+    section = section.subspan(size);
+  }
+  return true;
+}
+
+// Makes the checksums in the section lookup right again, as far as its sizes are. Precondition: as for sections.
+inline void refresh_part_checksums(MapBytes& bytes) {
+  constexpr std::size_t kKeyframeSize = 36, kBlockSize = 16, kPointsOfBlock = 32;
+  const auto sections_from = [&](std::initializer_list<std::pair<const char*, std::size_t>> names) {
+    std::vector<std::span<std::byte>> sections;
+    for (const auto& [name, head] : names) {
+      const std::span<std::byte> section = section_bytes(bytes, name);
+      sections.push_back(section.subspan(std::min(head, section.size())));
+    }
+    return sections;
+  };
+  const auto count_in = [&](const char* name) {
+    const std::span<std::byte> section = section_bytes(bytes, name);
+    std::uint32_t count = 0;
+    if (section.size() >= sizeof(count)) std::memcpy(&count, section.data(), sizeof(count));
+    return std::size_t{count};
+  };
+  std::span<std::byte> lookup = section_bytes(bytes, "lookup");
+  MapBytes parts;
+  const auto refresh = [&](std::vector<std::span<std::byte>> sections, std::size_t count, std::size_t size,
+                           std::size_t sizes_at) {
+    for (; count > 0 && lookup.size() >= size; --count, lookup = lookup.subspan(size)) {
+      if (!take_parts(sections, lookup.data() + sizes_at, parts)) return false;
+      const std::uint64_t sum = checksum(parts);
+      std::memcpy(lookup.data() + size - sizeof(sum), &sum, sizeof(sum));
+    }
+    return count == 0;
+  };
+  const auto views =
+      sections_from({{"features", 0}, {"patches", 0}, {"observations", 0}, {"descriptors", 0}, {"words", 9}});
+  if (!refresh(views, count_in("keyframes"), kKeyframeSize, 4)) return;
+  const std::size_t blocks = (count_in("points") + kPointsOfBlock - 1) / kPointsOfBlock;
+  refresh(sections_from({{"points", 4}, {"observers", 0}}), blocks, kBlockSize, 0);
+}
+
 // Makes all checksums right again, so that a change is found by nothing else. Leaves sections alone that the table
 // places outside the bytes, and bytes without a whole header.
 inline void refresh_checksums(MapBytes& bytes) {
   if (bytes.size() < kSmallestHeaderSize || bytes.size() < header_size(bytes)) return;
+  refresh_part_checksums(bytes);
   for (std::size_t i = 0; i < section_count(bytes); ++i) {
     const TableEntry entry = table_entry(bytes, i);
     if (entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) continue;

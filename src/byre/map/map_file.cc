@@ -2,21 +2,27 @@
 
 #include "byre/input/binary_file.h"
 #include "byre/input_error.h"
+#include "byre/map/map_file_source.h"
 #include "byre/map/map_sections.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 namespace byre {
 namespace {
 
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 5;              // the newest that is read, and the one that is written
+constexpr std::uint32_t kFormat = 6;              // the newest that is read, and the one that is written
 constexpr std::uint32_t kFirstFormat = 1;         // the oldest that is read
 constexpr std::uint32_t kFirstRoundedFormat = 5;  // from here on, what keyframes see and points are rounded to quanta
+constexpr std::uint32_t kFirstFormatWithLookup = 6;  // from here on, a keyframe or point can be read without the others
 
 enum Section : std::size_t {
   kSummary,
@@ -33,19 +39,21 @@ enum Section : std::size_t {
   kRefinedCalibrations,  // from format 3 on; later formats have it empty where nothing was refined
   kReadoutTimes,         // from format 4 on
   kDescriptors,          // from format 5 on
+  kObservers,            // from format 6 on, as the next one
+  kLookup,
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
-    "summary", "notes",        "provenance", "rigs", "keyframes",    "features", "patches",
-    "points",  "observations", "words",      "plan", "calibrations", "shutters", "descriptors"};
+    "summary",      "notes", "provenance", "rigs",         "keyframes", "features",    "patches",   "points",
+    "observations", "words", "plan",       "calibrations", "shutters",  "descriptors", "observers", "lookup"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
-// Each format has a section more than the one before.
+// Each format has a section more than the one before, the one with a lookup two.
 constexpr std::size_t section_count(std::uint32_t format) {
-  return kPlan + format - kFirstFormat;
+  return kPlan + format - kFirstFormat + (format >= kFirstFormatWithLookup ? 1 : 0);
 }
 static_assert(section_count(kFormat) == kSectionCount);
 
@@ -64,7 +72,8 @@ bool is_refined(const StoredMap& stored) {
                              [](const SourceRecording& recording) { return recording.refined.has_value(); });
 }
 
-void write_section(std::size_t section, const StoredMap& stored, const Keyframes& all, ByteWriter& writer) {
+void write_section(std::size_t section, const StoredMap& stored, const Keyframes& all, ByteWriter& writer,
+                   PartSizes& sizes) {
   switch (section) {
     case kSummary:
       return write_summary(summarise(stored.map), writer);
@@ -77,9 +86,9 @@ void write_section(std::size_t section, const StoredMap& stored, const Keyframes
     case kKeyframes:
       return write_keyframes(all, writer);
     case kPoints:
-      return write_rounded_points(stored.map, writer);
+      return write_rounded_points(stored.map, writer, sizes);
     case kWords:
-      return write_narrow_words(all, stored.vocabulary_checksum, writer);
+      return write_narrow_words(all, stored.vocabulary_checksum, writer, sizes);
     case kPlan:
       if (stored.plan) write_plan(*stored.plan, writer);
       return;
@@ -109,23 +118,46 @@ ByteWriter* view_section(std::size_t section, ViewWriters& views) {
   }
 }
 
+constexpr std::array<Section, kViewSections> kSectionsOfViews = {kFeatures, kPatches, kObservations, kDescriptors,
+                                                                 kWords};
+
+// section(number) gives the bytes of a section.
+template <typename SectionBytes>
+PartSections part_sections(SectionBytes section) {
+  PartSections sections;
+  for (std::size_t i = 0; i < kViewSections; ++i) sections.views[i] = section(kSectionsOfViews[i]);
+  sections.points = section(kPoints);
+  return sections;
+}
+
 // Behind what is in the file already.
 SectionEnds write_sections(const StoredMap& stored, std::vector<std::byte>& file) {
   const Keyframes all = keyframes_of(stored.map);
   ViewWriters views;
-  write_views(stored.map, all, views);
+  PartSizes sizes;
+  write_views(stored.map, all, views, sizes);
   const std::size_t begin = file.size();
   SectionEnds ends;
-  for (std::size_t section = 0; section < kSectionCount; ++section) {
+  const auto append = [&](const ByteWriter& writer) {
+    file.insert(file.end(), writer.bytes().begin(), writer.bytes().end());
+    ends.push_back(file.size() - begin);
+  };
+  for (std::size_t section = 0; section < kObservers; ++section) {
     ByteWriter writer;
     if (ByteWriter* const view = view_section(section, views)) {
       std::swap(writer, *view);
     } else {
-      write_section(section, stored, all, writer);
+      write_section(section, stored, all, writer, sizes);
     }
-    file.insert(file.end(), writer.bytes().begin(), writer.bytes().end());
-    ends.push_back(file.size() - begin);
+    append(writer);
   }
+  ByteWriter observers, lookup;
+  const auto written = [&](Section section) {
+    return Bytes(file).subspan(begin + ends[section - 1], ends[section] - ends[section - 1]);
+  };
+  write_lookup(stored.map, sizes, part_sections(written), observers, lookup);
+  append(observers);
+  append(lookup);
   return ends;
 }
 
@@ -190,7 +222,8 @@ SectionPlace read_place(ByteReader& header, std::string_view expected_name, std:
   return place;
 }
 
-SectionTable read_table(Bytes bytes, const std::string& name) {
+// bytes: the beginning of the file, with all of the header that there is.
+SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& name) {
   if (bytes.size() < kSignature.size() ||
       !std::ranges::equal(bytes.first(kSignature.size()), std::as_bytes(std::span(kSignature)))) {
     throw InputError(name, "is no map of byre: it does not begin as one", "name a file that byre has saved a map in");
@@ -200,36 +233,49 @@ SectionTable read_table(Bytes bytes, const std::string& name) {
   const std::size_t sections = section_count(read_format(header, name));
   const std::size_t header_size = header_bytes(sections);
   if (header.read<std::uint32_t>() != sections) header.fail("has not the sections of its format");
-  if (header.read<std::uint64_t>() != bytes.size()) {
-    header.fail("is of a file of another length than its " + std::to_string(bytes.size()) + " bytes");
+  if (header.read<std::uint64_t>() != file_size) {
+    header.fail("is of a file of another length than its " + std::to_string(file_size) + " bytes");
   }
   SectionTable table;
   std::size_t offset = header_size;
   for (std::size_t i = 0; i < sections; ++i) {
-    table.push_back(read_place(header, kSectionNames[i], offset, bytes.size()));
+    table.push_back(read_place(header, kSectionNames[i], offset, file_size));
     offset += table[i].size;
   }
   const std::uint64_t expected = checksum(bytes.first(header_size - sizeof(std::uint64_t)));
   if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
-  if (offset != bytes.size()) header.fail("leaves bytes to no section");
+  if (offset != file_size) header.fail("leaves bytes to no section");
   return table;
 }
+
+// Gives the bytes of a file from a place on, which stay as long as it does.
+using Bring = std::function<Bytes(std::size_t offset, std::size_t size)>;
 
 // Opens sections of a file whose table is known.
 class SectionOpener {
  public:
-  SectionOpener(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name), table_(read_table(bytes, name)) {}
+  SectionOpener(SectionTable table, Bring bring, const std::string& name)
+      : table_(std::move(table)), bring_(std::move(bring)), name_(name) {}
+  SectionOpener(Bytes bytes, const std::string& name)
+      : SectionOpener(
+            read_table(bytes, bytes.size(), name),
+            [bytes](std::size_t offset, std::size_t size) { return bytes.subspan(offset, size); }, name) {}
 
   bool is_rounded() const { return table_.size() >= section_count(kFirstRoundedFormat); }
+  bool has_lookup() const { return table_.size() >= section_count(kFirstFormatWithLookup); }
   bool has(Section section) const { return section < table_.size() && !is_left_empty(section); }
 
   ByteReader operator()(Section section) const {
     const auto& [offset, size, expected_checksum] = table_[section];
-    const Bytes content = bytes_.subspan(offset, size);
+    const Bytes content = bring_(offset, size);
     ByteReader reader(content, name_ + ": section " + std::string(kSectionNames[section]), offset);
     if (checksum(content) != expected_checksum) reader.fail("has a wrong checksum");
     return reader;
   }
+
+  // Not checked.
+  Bytes bytes_of(Section section) const { return bring_(table_[section].offset, table_[section].size); }
+  const SectionPlace& place_of(Section section) const { return table_[section]; }
 
  private:
   // Sections that not every map has, where others follow them.
@@ -238,9 +284,9 @@ class SectionOpener {
            table_[section].size == 0;
   }
 
-  Bytes bytes_;
-  const std::string& name_;
   SectionTable table_;
+  Bring bring_;
+  const std::string& name_;
 };
 
 // Points, and what keyframes see of them. Precondition: the keyframes are there without it.
@@ -249,11 +295,67 @@ void read_exact_parts(const SectionOpener& open, MapParts& parts) {
   parts.points = read_points(open(kPoints));
   read_observations(open(kObservations), parts.points, parts.keyframes);
 }
-void read_rounded_parts(const SectionOpener& open, MapParts& parts) {
-  RoundedPoints points = read_rounded_points(open(kPoints));
+void read_rounded_parts(const SectionOpener& open, MapParts& parts, PartSizes& sizes) {
+  RoundedPoints points = read_rounded_points(open(kPoints), sizes);
   read_views({open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors)}, points, parts.rigs,
-             parts.keyframes);
+             parts.keyframes, sizes);
   parts.points = std::move(points.points);
+}
+
+// All but what keyframes see, points, and what read_rest reads.
+MapParts read_about(const SectionOpener& open, StoredMap& stored) {
+  stored.notes = read_notes(open(kNotes));
+  Provenance provenance = read_provenance(open(kProvenance));
+  stored.scale = provenance.scale;
+  stored.pose_source = provenance.pose_source;
+  stored.recordings = std::move(provenance.recordings);
+  MapParts parts;
+  parts.rigs = read_rigs(open(kRigs));
+  parts.keyframes = read_keyframes(open(kKeyframes), parts.rigs.size(), stored.recordings.size());
+  return parts;
+}
+
+void read_rest(const SectionOpener& open, StoredMap& stored) {
+  if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
+  if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
+  if (open.has(kReadoutTimes)) read_readout_times(open(kReadoutTimes), stored.recordings);
+}
+
+PartSectionSizes part_section_sizes(const SectionOpener& open) {
+  PartSectionSizes sizes;
+  for (std::size_t i = 0; i < kViewSections; ++i) sizes.views[i] = open.place_of(kSectionsOfViews[i]).size;
+  sizes.points = open.place_of(kPoints).size;
+  sizes.observers = open.place_of(kObservers).size;
+  return sizes;
+}
+
+// Fails where the section of points, of which no more is read, begins with another number of them.
+void require_points(const Bring& bring, const SectionPlace& section, const MapSummary& summary,
+                    const std::string& name) {
+  const std::size_t size = std::min(sizeof(std::uint32_t), section.size);
+  ByteReader reader(bring(section.offset, size), name + ": section points", section.offset);
+  if (reader.read<std::uint32_t>() != summary.points) reader.fail("has not as many points as the summary tells");
+}
+
+// No more is read of the section. Whoever reads all of it checks it.
+WordsHead words_head(const Bring& bring, const SectionPlace& section, const std::string& name) {
+  const std::size_t size = std::min(sizeof(std::uint64_t) + 1, section.size);
+  ByteReader reader(bring(section.offset, size), name + ": section words", section.offset);
+  return read_words_head(reader);
+}
+
+// Where its sections lie.
+MapFileSource::File file_of(const SectionOpener& open, ReadFileAt read_at, const std::string& name) {
+  MapFileSource::File file;
+  file.read_at = std::move(read_at);
+  file.name = name;
+  for (std::size_t i = 0; i < kViewSections; ++i) file.views[i] = open.place_of(kSectionsOfViews[i]).offset;
+  file.words_size = open.place_of(kWords).size;
+  file.words_checksum = open.place_of(kWords).checksum;
+  file.points = open.place_of(kPoints).offset;
+  file.observers = open.place_of(kObservers).offset;
+  file.lookup = open.place_of(kLookup).offset;
+  return file;
 }
 
 }  // namespace
@@ -270,34 +372,57 @@ std::vector<std::byte> write_map(const StoredMap& stored) {
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   const SectionOpener open(bytes, name);
   StoredMap stored;
-  stored.notes = read_notes(open(kNotes));
-  Provenance provenance = read_provenance(open(kProvenance));
-  stored.scale = provenance.scale;
-  stored.pose_source = provenance.pose_source;
-  stored.recordings = std::move(provenance.recordings);
-
-  MapParts parts;
-  parts.rigs = read_rigs(open(kRigs));
-  parts.keyframes = read_keyframes(open(kKeyframes), parts.rigs.size(), stored.recordings.size());
+  MapParts parts = read_about(open, stored);
+  PartSizes sizes;
   if (open.is_rounded()) {
-    read_rounded_parts(open, parts);
-    stored.vocabulary_checksum = read_narrow_words(open(kWords), parts.keyframes);
+    read_rounded_parts(open, parts, sizes);
+    stored.vocabulary_checksum = read_narrow_words(open(kWords), parts.keyframes, sizes);
   } else {
     read_exact_parts(open, parts);
     stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
   }
   stored.map = Map(Origin::offline, std::move(parts));
-  if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
-  if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
-  if (open.has(kReadoutTimes)) read_readout_times(open(kReadoutTimes), stored.recordings);
+  read_rest(open, stored);
 
   ByteReader summary = open(kSummary);
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");
+  if (open.has_lookup()) {
+    const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
+    require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
+  }
+  return stored;
+}
+
+StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::string& name) {
+  std::vector<std::vector<std::byte>> pieces;
+  const Bring bring = [&](std::size_t offset, std::size_t bytes) {
+    read_at(offset, pieces.emplace_back(bytes));
+    return Bytes(pieces.back());
+  };
+  const SectionOpener open(read_table(bring(0, std::min(size, header_bytes(kSectionCount))), size, name), bring, name);
+  if (!open.has_lookup()) return read_map(bring(0, size), name);
+  StoredMap stored;
+  MapParts parts = read_about(open, stored);
+  const MapSummary summary = read_summary(open(kSummary));
+  if (summary.keyframes != parts.keyframes.size() || summary.points > std::numeric_limits<int>::max()) {
+    open(kSummary).fail("does not tell what the other sections hold");
+  }
+  require_points(bring, open.place_of(kPoints), summary, name);
+  const WordsHead head = words_head(bring, open.place_of(kWords), name);
+  stored.vocabulary_checksum = head.vocabulary_checksum;
+  Lookup lookup = read_lookup(open(kLookup), summary, part_section_sizes(open));
+  MapFileSource::File file = file_of(open, read_at, name);
+  file.point_count = static_cast<std::uint32_t>(summary.points);
+  file.rigs = parts.rigs;
+  file.words = head;
+  stored.map = Map(std::move(parts.rigs), std::move(parts.keyframes), static_cast<int>(summary.points),
+                   std::make_shared<const MapFileSource>(std::move(file), std::move(lookup)));
+  read_rest(open, stored);
   return stored;
 }
 
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
-  const SectionTable table = read_table(bytes, name);
+  const SectionTable table = read_table(bytes, bytes.size(), name);
   std::vector<SectionSize> sizes = {{"header", header_bytes(table.size())}};
   for (std::size_t i = 0; i < table.size(); ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
   return sizes;
@@ -305,6 +430,12 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 
 StoredMap load_map(const std::filesystem::path& path) {
   return read_map(read_file(path), path.string());
+}
+
+StoredMap open_map(const std::filesystem::path& path) {
+  const auto file = std::make_shared<const PiecewiseFile>(path);
+  const auto read_at = [file](std::size_t offset, std::span<std::byte> bytes) { file->read(offset, bytes); };
+  return open_map(read_at, file->size(), path.string());
 }
 
 std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -91,6 +92,13 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 // The same on files. Saving replaces a file as a whole, see replace_file, once the bytes have been read back: a map
 // that could not be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
+// As read_map and load_map, but for what keyframes see and points: these are read, and checked, when they are first
+// looked at (see Map), from a file that stays open. Nothing is checked of what is never looked at. A file of a format
+// before 6 is read as a whole. read_at fills in the bytes of a file from a place on, for several threads at once.
+using ReadFileAt = std::function<void(std::size_t offset, std::span<std::byte> bytes)>;
+StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::string& name);
+StoredMap open_map(const std::filesystem::path& path);
+
 // Where the map of a file lies on a floor plan, without reading the rest of it.
 std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path);
 void save_map(const StoredMap& stored, const std::filesystem::path& path);

@@ -145,8 +145,8 @@ TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
 }
 
 TEST(MapFile, IsOfTheNewestFormatWithAPlanAndWithout) {
-  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 5u);
-  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 5u);
+  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 6u);
+  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 6u);
   EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
 }
 
@@ -249,7 +249,8 @@ TEST(MapFile, TellsTheSizesOfItsSections) {
   }
   EXPECT_EQ(sum, bytes.size());
   EXPECT_THAT(names, ElementsAre("header", "summary", "notes", "provenance", "rigs", "keyframes", "features", "patches",
-                                 "points", "observations", "words", "plan", "calibrations", "shutters", "descriptors"));
+                                 "points", "observations", "words", "plan", "calibrations", "shutters", "descriptors",
+                                 "observers", "lookup"));
 }
 
 TEST(MapFile, RefusesWhatIsNoMap) {
@@ -260,10 +261,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{6});
+  put_at(bytes, kFormatAt, std::uint32_t{7});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 6, this program knows formats up to 5 "
+            "barn.byre: header: has format 7, this program knows formats up to 6 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 
@@ -320,7 +321,7 @@ TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
   EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("places the section summary wrong"));
   MapBytes bytes = sound;
   bytes[header_checksum_at(bytes)] ^= std::byte{1};
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 592: has a wrong checksum"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 672: has a wrong checksum"));
 }
 
 TEST(MapFile, RefusesBytesThatBelongToNoSection) {

@@ -18,6 +18,7 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change) {
 }  // namespace
 
 void Map::move_features(KeyframeId id, Features moved) {
+  read_all();
   Keyframe* const keyframe = find_own_keyframe(id);
   if (keyframe == nullptr) return;
   const Features& before = *keyframe->frame.features;
@@ -28,6 +29,7 @@ void Map::move_features(KeyframeId id, Features moved) {
 }
 
 void Map::keep_patches(KeyframeId id, std::span<const int> features) {
+  read_all();
   Keyframe* const keyframe = find_own_keyframe(id);
   if (keyframe == nullptr || !keyframe->frame.features) return;
   keyframe->frame.features = std::make_shared<const Features>(keyframe->frame.features->with_patches_of(features));
@@ -38,6 +40,7 @@ int Map::rig_of(KeyframeId id) const {
 }
 
 void Map::recalibrate(int rig, const RectifiedChange& change) {
+  read_all();
   const auto turn_of = [&](int other) { return other == rig ? change.after_from_before() : Pose{}; };
   for (KeyframeSlot& slot : keyframes_) {
     if (slot.keyframe && slot.keyframe->rig == rig) byre::recalibrate(*slot.keyframe, change);

@@ -46,9 +46,8 @@ Keyframe read_keyframe(ByteReader& reader, std::uint32_t number, std::size_t rig
   return keyframe;
 }
 
-void require_that_words_may_follow(const ByteReader& reader, const Keyframe& keyframe,
-                                   std::uint64_t vocabulary_checksum) {
-  if (keyframe.sightings.empty()) reader.fail("has words of a keyframe without features");
+void require_that_words_may_follow(const ByteReader& reader, std::size_t features, std::uint64_t vocabulary_checksum) {
+  if (features == 0) reader.fail("has words of a keyframe without features");
   if (vocabulary_checksum == 0) reader.fail("has words of no vocabulary");
 }
 
@@ -74,7 +73,8 @@ std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, s
   return keyframes;
 }
 
-void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer) {
+void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer,
+                        PartSizes& sizes) {
   Word greatest = 0;
   for (const Keyframe* const keyframe : keyframes) {
     for (const Word word : keyframe->words) greatest = std::max(greatest, word);
@@ -82,37 +82,53 @@ void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_che
   const std::size_t bytes_each = bytes_for_word(greatest);
   writer.write(vocabulary_checksum);
   writer.write(static_cast<std::uint8_t>(bytes_each));
-  for (const Keyframe* const keyframe : keyframes) {
-    writer.write(!keyframe->words.empty());
-    for (const Word word : keyframe->words) writer.write_low_bytes(word, bytes_each);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const std::size_t begin = writer.size();
+    writer.write(!keyframes[i]->words.empty());
+    for (const Word word : keyframes[i]->words) writer.write_low_bytes(word, bytes_each);
+    sizes.views[i][kWordsOfView] = static_cast<std::uint32_t>(writer.size() - begin);
   }
 }
 
-std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
-  const auto vocabulary_checksum = reader.read<std::uint64_t>();
-  const std::size_t bytes_each = reader.read<std::uint8_t>();
-  if (bytes_each < 1 || bytes_each > sizeof(Word)) reader.fail("has words of " + std::to_string(bytes_each) + " bytes");
-  Word greatest = 0;
-  for (Keyframe& keyframe : keyframes) {
-    if (!read_bool(reader)) continue;
-    require_that_words_may_follow(reader, keyframe, vocabulary_checksum);
-    ByteReader words(reader.take(keyframe.sightings.size() * bytes_each), "", 0);
-    keyframe.words.reserve(keyframe.sightings.size());
-    for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
-      keyframe.words.push_back(static_cast<Word>(words.read_low_bytes(bytes_each)));
-      greatest = std::max(greatest, keyframe.words.back());
-    }
+WordsHead read_words_head(ByteReader& reader) {
+  WordsHead head;
+  head.vocabulary_checksum = reader.read<std::uint64_t>();
+  head.bytes_each = reader.read<std::uint8_t>();
+  if (head.bytes_each < 1 || head.bytes_each > sizeof(Word)) {
+    reader.fail("has words of " + std::to_string(head.bytes_each) + " bytes");
   }
-  if (bytes_for_word(greatest) != bytes_each) reader.fail("has words of more bytes than they need");
+  return head;
+}
+
+std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head, std::size_t features) {
+  std::vector<Word> words;
+  if (!read_bool(reader)) return words;
+  require_that_words_may_follow(reader, features, head.vocabulary_checksum);
+  ByteReader part(reader.take(features * head.bytes_each), "", 0);
+  words.reserve(features);
+  for (std::size_t i = 0; i < features; ++i) words.push_back(static_cast<Word>(part.read_low_bytes(head.bytes_each)));
+  return words;
+}
+
+std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes) {
+  const WordsHead head = read_words_head(reader);
+  Word greatest = 0;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const std::size_t before = reader.remaining();
+    keyframes[i].words = read_narrow_words_of(reader, head, keyframes[i].sightings.size());
+    for (const Word word : keyframes[i].words) greatest = std::max(greatest, word);
+    sizes.views[i][kWordsOfView] = static_cast<std::uint32_t>(before - reader.remaining());
+  }
+  if (bytes_for_word(greatest) != head.bytes_each) reader.fail("has words of more bytes than they need");
   reader.require_end();
-  return vocabulary_checksum;
+  return head.vocabulary_checksum;
 }
 
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
   const auto vocabulary_checksum = reader.read<std::uint64_t>();
   for (Keyframe& keyframe : keyframes) {
     if (!read_bool(reader)) continue;
-    require_that_words_may_follow(reader, keyframe, vocabulary_checksum);
+    require_that_words_may_follow(reader, keyframe.sightings.size(), vocabulary_checksum);
     const std::span<const std::byte> bytes = reader.take(keyframe.sightings.size() * sizeof(Word));
     keyframe.words.resize(keyframe.sightings.size());
     std::memcpy(keyframe.words.data(), bytes.data(), bytes.size());

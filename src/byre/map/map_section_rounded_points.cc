@@ -56,27 +56,38 @@ MapPoint read_point(ByteReader& reader, std::uint32_t number) {
 
 }  // namespace
 
-void write_rounded_points(const Map& map, ByteWriter& writer) {
+void write_rounded_points(const Map& map, ByteWriter& writer, PartSizes& sizes) {
   writer.write(static_cast<std::uint32_t>(map.point_count()));
   for (const PointId id : map.point_ids()) {
+    const std::size_t begin = writer.size();
     const MapPoint& point = *map.find_point(id);
     const std::vector<Observation>& observations = map.observations(id);
     const auto reference = std::ranges::find(observations, point.reference);
     write_point(point, static_cast<std::uint32_t>(reference - observations.begin()), writer);
+    if (id.number % kPointsOfBlock == 0) sizes.points.push_back(0);
+    sizes.points.back() += static_cast<std::uint32_t>(writer.size() - begin);
   }
 }
 
-RoundedPoints read_rounded_points(ByteReader reader) {
+RoundedPoints read_rounded_points(ByteReader reader, PartSizes& sizes) {
   const std::uint32_t count = reader.read_count(kLeastPointBytes);
   RoundedPoints read;
   read.points.reserve(count);
   read.references.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    read.points.push_back(read_point(reader, i));
-    read.references.push_back(reader.read_varint());
+  for (std::uint32_t first = 0; first < count; first += kPointsOfBlock) {
+    const std::size_t before = reader.remaining();
+    for (std::uint32_t i = first; i < std::min(first + kPointsOfBlock, count); ++i) {
+      read.references.push_back(read_rounded_point(reader, i, read.points.emplace_back()));
+    }
+    sizes.points.push_back(static_cast<std::uint32_t>(before - reader.remaining()));
   }
   reader.require_end();
   return read;
+}
+
+std::uint32_t read_rounded_point(ByteReader& reader, std::uint32_t number, MapPoint& point) {
+  point = read_point(reader, number);
+  return reader.read_varint();
 }
 
 }  // namespace byre

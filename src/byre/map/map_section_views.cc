@@ -119,13 +119,11 @@ float read_offset(ByteReader& reader) {
   return offset_of(code);
 }
 
-Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32_t keyframe,
-                       PointObservers& observers) {
-  const auto point = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for(observers.point_count())));
-  if (point >= observers.point_count()) {
-    reader.fail("names point " + std::to_string(point) + " of " + std::to_string(observers.point_count()));
+Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32_t keyframe, std::size_t point_count) {
+  const auto point = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for(point_count)));
+  if (point >= point_count) {
+    reader.fail("names point " + std::to_string(point) + " of " + std::to_string(point_count));
   }
-  observers.add(reader, point, keyframe);
   const float u = read_offset(reader);
   const float v = read_offset(reader);
   const float sigma = sigma_of_code(reader.read<std::uint8_t>());
@@ -134,23 +132,28 @@ Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32
   return sighting;
 }
 
+// Calls check(point, feature) for each.
+template <typename Check>
 std::vector<Sighting> read_sightings(ByteReader& reader, const ReadKeypoints& of, std::uint32_t keyframe,
-                                     PointObservers& observers) {
+                                     std::size_t point_count, Check check) {
   std::vector<Sighting> sightings(of.keypoints.size());
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if ((of.bits[i] & kSeesPoint) == 0) continue;
-    sightings[i] = read_sighting(reader, of.keypoints[i], keyframe, observers);
+    sightings[i] = read_sighting(reader, of.keypoints[i], keyframe, point_count);
+    check(sightings[i].point->number, static_cast<int>(i));
   }
   return sightings;
 }
 
+// descriptor_of(number) gives that of a point.
+template <typename DescriptorOf>
 std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<Sighting>& sightings,
-                                         const std::vector<MapPoint>& points) {
+                                         DescriptorOf descriptor_of) {
   std::vector<Descriptor> descriptors(sightings.size());
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const std::optional<PointId>& point = sightings[i].point;
     if (point) {
-      descriptors[i] = read_difference(reader, points[point->number].descriptor);
+      descriptors[i] = read_difference(reader, descriptor_of(point->number));
     } else {
       reader.read_all<std::uint64_t>(descriptors[i]);
     }
@@ -214,25 +217,55 @@ std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartO
   return features;
 }
 
+using ViewSizes = std::array<std::uint32_t, kViewSections>;
+
+// What is left of all sections but that of words, which is kept elsewhere.
+ViewSizes remaining(const ViewSections& sections) {
+  ViewSizes sizes{};
+  sizes[kFeaturesOfView] = static_cast<std::uint32_t>(sections.features.remaining());
+  sizes[kPatchesOfView] = static_cast<std::uint32_t>(sections.patches.remaining());
+  sizes[kObservationsOfView] = static_cast<std::uint32_t>(sections.observations.remaining());
+  sizes[kDescriptorsOfView] = static_cast<std::uint32_t>(sections.descriptors.remaining());
+  return sizes;
+}
+
+ViewSizes written(const ViewWriters& sections) {
+  ViewSizes sizes{};
+  sizes[kFeaturesOfView] = static_cast<std::uint32_t>(sections.features.size());
+  sizes[kPatchesOfView] = static_cast<std::uint32_t>(sections.patches.size());
+  sizes[kObservationsOfView] = static_cast<std::uint32_t>(sections.observations.size());
+  sizes[kDescriptorsOfView] = static_cast<std::uint32_t>(sections.descriptors.size());
+  return sizes;
+}
+
+// Where bytes were left before and are now, of large sections modulo 2^32.
+void set_taken(const ViewSizes& before, const ViewSizes& after, ViewSizes& taken) {
+  for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += before[i] - after[i];
+}
+
 // Reads all that the keyframes see, from sections that each have a part for every keyframe.
 class ViewReader {
  public:
   ViewReader(ViewSections sections, const std::vector<MapPoint>& points)
       : sections_(std::move(sections)), points_(points), observers_(points.size()) {}
 
-  void read(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
+  void read(std::uint32_t number, const Rig& rig, Keyframe& keyframe, ViewSizes& sizes) {
+    const ViewSizes before = remaining(sections_);
     PartOfView part{read_keypoints(sections_.features, rig, number), {}};
-    keyframe.sightings = read_sightings(sections_.observations, part.keypoints, number, observers_);
-    std::vector<Descriptor> descriptors = read_descriptors(sections_.descriptors, keyframe.sightings, points_);
+    keyframe.sightings = read_observed(part.keypoints, number);
+    std::vector<Descriptor> descriptors =
+        read_descriptors(sections_.descriptors, keyframe.sightings,
+                         [this](std::uint32_t point) -> const Descriptor& { return points_[point].descriptor; });
     part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
     keyframe.frame.features =
         features_of_view(sections_.features, std::move(part), std::move(descriptors), rig, number);
+    set_taken(before, remaining(sections_), sizes);
   }
 
   // The same without descriptors.
   PartOfView read_part(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
     PartOfView part{read_keypoints(sections_.features, rig, number), {}};
-    keyframe.sightings = read_sightings(sections_.observations, part.keypoints, number, observers_);
+    keyframe.sightings = read_observed(part.keypoints, number);
     part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
     return part;
   }
@@ -246,6 +279,11 @@ class ViewReader {
   }
 
  private:
+  std::vector<Sighting> read_observed(const ReadKeypoints& of, std::uint32_t number) {
+    return read_sightings(sections_.observations, of, number, observers_.point_count(),
+                          [&](std::uint32_t point, int) { observers_.add(sections_.observations, point, number); });
+  }
+
   ViewSections sections_;
   const std::vector<MapPoint>& points_;
   PointObservers observers_;
@@ -277,11 +315,12 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
 class ViewsReader {
  public:
   ViewsReader(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
-              std::vector<Keyframe>& keyframes)
+              std::vector<Keyframe>& keyframes, PartSizes& sizes)
       : sections_(sections),
         points_(points),
         rigs_(rigs),
         keyframes_(keyframes),
+        sizes_(sizes.views),
         parts_(keyframes.size()),
         descriptors_(keyframes.size()) {}
 
@@ -309,8 +348,10 @@ class ViewsReader {
     ViewSections rest = sections_;
     for (std::size_t i = 0; i < keyframes_.size(); ++i) {
       if (i % length_of_runs_ == 0) runs_.push_back(rest);
+      const ViewSizes before = remaining(rest);
       const std::uint32_t count = rest.features.read_count(kLeastKeypointBytes);
       skip_view(count, rig_of(i), bytes_for(points_.size()), rest, [](const std::uint32_t*) {});
+      set_taken(before, remaining(rest), sizes_[i]);
     }
     rest.features.require_end();
     rest.patches.require_end();
@@ -331,6 +372,7 @@ class ViewsReader {
       std::vector<Descriptor>& descriptors = descriptors_[i];
       const std::uint32_t count = rest.features.read_count(kLeastKeypointBytes);
       descriptors.reserve(count);
+      const std::size_t before = reader.remaining();
       skip_view(count, rig_of(i), bytes_for(points_.size()), rest, [&](const std::uint32_t* point) {
         if (point == nullptr) {
           reader.read_all<std::uint64_t>(descriptors.emplace_back());
@@ -340,6 +382,7 @@ class ViewsReader {
           reader.fail("is of a point that is none");
         }
       });
+      sizes_[i][kDescriptorsOfView] = static_cast<std::uint32_t>(before - reader.remaining());
     }
     reader.require_end();
   }
@@ -356,6 +399,7 @@ class ViewsReader {
   const std::vector<MapPoint>& points_;
   const std::vector<Rig>& rigs_;
   std::vector<Keyframe>& keyframes_;
+  std::vector<ViewSizes>& sizes_;
   std::size_t length_of_runs_ = kShortestRun;  // keyframes
   std::vector<ViewSections> runs_;             // where each begins; descriptors at their beginning
   std::vector<PartOfView> parts_;
@@ -363,23 +407,23 @@ class ViewsReader {
 };
 
 void read_views_in_order(const ViewSections& sections, const std::vector<MapPoint>& points,
-                         const std::vector<Rig>& rigs, std::vector<Keyframe>& keyframes) {
+                         const std::vector<Rig>& rigs, std::vector<Keyframe>& keyframes, PartSizes& sizes) {
   ViewReader reader(sections, points);
   for (std::uint32_t i = 0; i < keyframes.size(); ++i) {
-    reader.read(i, rigs[static_cast<std::size_t>(keyframes[i].rig)], keyframes[i]);
+    reader.read(i, rigs[static_cast<std::size_t>(keyframes[i].rig)], keyframes[i], sizes.views[i]);
   }
   reader.require_end();
 }
 
 // Whether it could be done.
 bool try_to_read_views(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
-                       std::vector<Keyframe>& keyframes) {
+                       std::vector<Keyframe>& keyframes, PartSizes& sizes) {
   constexpr std::size_t kWorthThreads = 256;  // keyframes
   constexpr int kMostThreads = 8;
   const int threads = std::min(processor_count(), kMostThreads);
   if (threads < 2 || keyframes.size() < kWorthThreads) return false;
   try {
-    ViewsReader(sections, points, rigs, keyframes).read(threads);
+    ViewsReader(sections, points, rigs, keyframes, sizes).read(threads);
     return true;
   } catch (const InputError&) {
     return false;
@@ -407,8 +451,10 @@ void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyfr
 
 }  // namespace
 
-void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections) {
+void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes) {
+  sizes.views.reserve(keyframes.size());
   for (const Keyframe* const keyframe : keyframes) {
+    const ViewSizes before = written(sections);
     const Features& features = features_of(*keyframe);
     const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe->rig)];
     sections.features.write(static_cast<std::uint32_t>(features.size()));
@@ -423,19 +469,41 @@ void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sectio
       }
     }
     write_descriptors(map, *keyframe, sections.descriptors);
+    set_taken(written(sections), before, sizes.views.emplace_back());
   }
 }
 
 void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
-                std::vector<Keyframe>& keyframes) {
+                std::vector<Keyframe>& keyframes, PartSizes& sizes) {
   const ByteReader observations = sections.observations;
   // What is wrong is told by whoever reads one thing after the other, always the first of several.
-  if (!try_to_read_views(sections, points.points, rigs, keyframes)) {
-    read_views_in_order(sections, points.points, rigs, keyframes);
+  sizes.views.assign(keyframes.size(), {});
+  if (!try_to_read_views(sections, points.points, rigs, keyframes, sizes)) {
+    sizes.views.assign(keyframes.size(), {});
+    read_views_in_order(sections, points.points, rigs, keyframes, sizes);
   }
   set_references(observations, keyframes, points);
   if (has_too_many_covisible_keyframes(keyframes, points.points.size(), observations.remaining())) {
     observations.fail("has more keyframes that share points than a file of this size can hold");
+  }
+}
+
+void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::size_t point_count,
+               const std::function<const ObservedPoint&(std::uint32_t)>& find_point, Keyframe& keyframe) {
+  PartOfView part{read_keypoints(parts.features, rig, number), {}};
+  const auto require_seen = [&](std::uint32_t point, int feature) {
+    const Observation seen{{Origin::offline, number}, feature};
+    if (std::ranges::binary_search(find_point(point).observations, seen)) return;
+    require_no_fault(parts.observations, "does not know of a keyframe that sees it", "point", point);
+  };
+  keyframe.sightings = read_sightings(parts.observations, part.keypoints, number, point_count, require_seen);
+  std::vector<Descriptor> descriptors =
+      read_descriptors(parts.descriptors, keyframe.sightings,
+                       [&](std::uint32_t point) -> const Descriptor& { return find_point(point).point.descriptor; });
+  part.patches = read_rounded_patches(parts.patches, part.keypoints.bits, number);
+  keyframe.frame.features = features_of_view(parts.features, std::move(part), std::move(descriptors), rig, number);
+  for (const ByteReader* const read : {&parts.features, &parts.patches, &parts.observations, &parts.descriptors}) {
+    read->require_end();
   }
 }
 

@@ -12,6 +12,11 @@ const Keyframe* MapView::find_keyframe(KeyframeId id) const {
   return map ? map->find_keyframe(id) : nullptr;
 }
 
+const Keyframe* MapView::find_bare_keyframe(KeyframeId id) const {
+  const Map* map = of(id.origin);
+  return map ? map->find_bare_keyframe(id) : nullptr;
+}
+
 const Rig& MapView::rig_of(const Keyframe& keyframe, KeyframeId id) const {
   return of(id.origin)->rigs()[static_cast<std::size_t>(keyframe.rig)];
 }

@@ -17,8 +17,9 @@ class MapView {
   const Map* offline() const { return offline_; }
   const Map& online() const { return *online_; }
 
-  const MapPoint* find_point(PointId id) const;        // nullptr when it is gone
-  const Keyframe* find_keyframe(KeyframeId id) const;  // nullptr when it is gone
+  const MapPoint* find_point(PointId id) const;             // nullptr when it is gone
+  const Keyframe* find_keyframe(KeyframeId id) const;       // nullptr when it is gone
+  const Keyframe* find_bare_keyframe(KeyframeId id) const;  // as Map's
   const Rig& rig_of(const Keyframe& keyframe, KeyframeId id) const;
 
   // Calls visit(observation) for every keyframe, of both maps, that sees the point.

@@ -1,7 +1,5 @@
 #include "byre/place/place_index.h"
 
-#include "byre/workers/task_threads.h"
-
 #include <algorithm>
 #include <functional>
 #include <utility>
@@ -18,25 +16,12 @@ bool has_better_group(const PlaceCandidate& a, const PlaceCandidate& b) {
 }
 
 constexpr std::uint32_t kNoSlot = 0xFFFFFFFF;
-constexpr int kMostIndexers = 8;  // threads
 
 std::vector<Word> words_in(const BagOfWords& bag) {
   std::vector<Word> words;
   words.reserve(bag.size());
   for (const auto& [word, weight] : bag) words.push_back(word);
   return words;
-}
-
-// In how many keyframes each word is.
-std::vector<std::uint32_t> keyframes_of_words(const Map& map, int word_count) {
-  std::vector<std::uint32_t> counts(static_cast<std::size_t>(word_count), 0);
-  std::vector<std::uint32_t> last_with(counts.size(), kNoSlot);  // number of the last keyframe that was counted
-  for (const KeyframeId id : map.keyframe_ids()) {
-    for (const Word word : map.find_keyframe(id)->words) {
-      if (word < counts.size() && std::exchange(last_with[word], id.number) != id.number) ++counts[word];
-    }
-  }
-  return counts;
 }
 
 // The most that the rounded sum of so many scores can come to, none of which is greater.
@@ -127,10 +112,6 @@ class PlaceGrouping {
 PlaceIndex::PlaceIndex(Vocabulary vocabulary)
     : vocabulary_(std::move(vocabulary)), postings_(static_cast<std::size_t>(vocabulary_.word_count())) {}
 
-void PlaceIndex::reserve(std::span<const std::uint32_t> keyframes_of_words) {
-  for (std::size_t word = 0; word < postings_.size(); ++word) postings_[word].reserve(keyframes_of_words[word]);
-}
-
 std::optional<std::uint32_t> PlaceIndex::slot_of(KeyframeId id) const {
   const std::vector<std::uint32_t>& slots = slots_[static_cast<std::size_t>(id.origin)];
   if (id.number >= slots.size() || slots[id.number] == kNoSlot) return std::nullopt;
@@ -152,21 +133,70 @@ std::uint32_t PlaceIndex::take_slot(KeyframeId id) {
 }
 
 void PlaceIndex::add(KeyframeId id, std::span<const Word> words) {
-  add_bag(id, vocabulary_.bag_of(words));
-}
-
-void PlaceIndex::add_bag(KeyframeId id, const BagOfWords& bag) {
   remove(id);
+  const BagOfWords bag = vocabulary_.bag_of(words);
   const std::uint32_t slot = take_slot(id);
   entries_[slot] = {id, words_in(bag)};
   for (const auto& [word, weight] : bag) postings_[word].push_back({slot, weight});
 }
 
+// Words of the keyframes of a map, one after the other.
+struct PlaceIndex::WordsOfMap {
+  std::vector<KeyframeId> keyframes;
+  std::vector<std::size_t> ends;  // where each keyframe's words end
+  std::vector<Word> words;
+
+  // Calls visit(slot, word) for each.
+  template <typename Visitor>
+  void visit(Visitor visit) const {
+    std::size_t next = 0;
+    for (std::uint32_t slot = 0; slot < keyframes.size(); ++slot) {
+      for (; next < ends[slot]; ++next) visit(slot, words[next]);
+    }
+  }
+};
+
+// The same as add() for each, to the last bit: weights are summed in the order of words there too.
+void PlaceIndex::add_all(const WordsOfMap& map) {
+  for (const KeyframeId id : map.keyframes) entries_[take_slot(id)].keyframe = id;
+
+  std::vector<std::uint32_t> counts(postings_.size(), 0);
+  std::vector<std::uint32_t> last_with(postings_.size(), kNoSlot);  // the last slot that was counted
+  map.visit([&](std::uint32_t slot, Word word) {
+    if (word < counts.size() && std::exchange(last_with[word], slot) != slot) ++counts[word];
+  });
+  for (Word word = 0; word < postings_.size(); ++word) {
+    if (vocabulary_.weight_of(word) != 0.0f) postings_[word].reserve(counts[word]);
+  }
+  map.visit([&](std::uint32_t slot, Word word) {
+    const float weight = vocabulary_.weight_of(word);
+    if (weight == 0.0f) return;
+    std::vector<Posting>& postings = postings_[word];
+    if (!postings.empty() && postings.back().slot == slot) {
+      postings.back().weight += weight;
+    } else {
+      postings.push_back({slot, weight});
+    }
+  });
+  std::vector<float> sums(entries_.size(), 0.0f);
+  for (const std::vector<Posting>& postings : postings_) {
+    for (const Posting& posting : postings) sums[posting.slot] += posting.weight;
+  }
+  for (std::vector<Posting>& postings : postings_) {
+    for (Posting& posting : postings) posting.weight /= sums[posting.slot];
+  }
+}
+
 void PlaceIndex::remove(KeyframeId id) {
   const std::optional<std::uint32_t> slot = slot_of(id);
   if (!slot) return;
-  for (const Word word : entries_[*slot].words) {
-    std::erase_if(postings_[word], [&slot](const Posting& posting) { return posting.slot == *slot; });
+  const auto erase = [&](std::vector<Posting>& postings) {
+    std::erase_if(postings, [&](const Posting& posting) { return posting.slot == *slot; });
+  };
+  if (entries_[*slot].words.empty()) {
+    std::ranges::for_each(postings_, erase);
+  } else {
+    for (const Word word : entries_[*slot].words) erase(postings_[word]);
   }
   entries_[*slot] = {};
   free_slots_.push_back(*slot);
@@ -199,27 +229,21 @@ std::vector<PlaceMatch> PlaceIndex::query(const BagOfWords& query, int max_resul
   return matches;
 }
 
-// Bags are made by several threads, of some hundred keyframes at a time, so that few are there at once.
 PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary) {
-  constexpr std::size_t kAtOnce = 512;
-  constexpr std::size_t kOfTask = 32;
+  PlaceIndex::WordsOfMap all;
+  map.visit_words([&](KeyframeId id, std::span<const Word> known) {
+    std::vector<Word> found;
+    if (known.empty()) {
+      const Keyframe& keyframe = *map.find_keyframe(id);
+      if (keyframe.frame.features) found = vocabulary.words_of(*keyframe.frame.features);
+    }
+    const std::span<const Word> words = known.empty() ? std::span<const Word>(found) : known;
+    all.keyframes.push_back(id);
+    all.words.insert(all.words.end(), words.begin(), words.end());
+    all.ends.push_back(all.words.size());
+  });
   PlaceIndex index(vocabulary);
-  index.reserve(keyframes_of_words(map, vocabulary.word_count()));
-  const std::vector<KeyframeId> ids = map.keyframe_ids();
-  TaskThreads threads(ids.size() < kAtOnce ? 0 : std::min(processor_count(), kMostIndexers) - 1);
-  std::vector<BagOfWords> bags(std::min(kAtOnce, ids.size()));
-  for (std::size_t begin = 0; begin < ids.size(); begin += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, ids.size() - begin);
-    threads.run(static_cast<int>((count + kOfTask - 1) / kOfTask), [&](int task) {
-      const std::size_t first = kOfTask * static_cast<std::size_t>(task);
-      for (std::size_t i = first; i < std::min(first + kOfTask, count); ++i) {
-        const Keyframe& keyframe = *map.find_keyframe(ids[begin + i]);
-        bags[i] =
-            vocabulary.bag_of(keyframe.words.empty() ? vocabulary.words_of(*keyframe.frame.features) : keyframe.words);
-      }
-    });
-    for (std::size_t i = 0; i < count; ++i) index.add_bag(ids[begin + i], bags[i]);
-  }
+  index.add_all(all);
   return index;
 }
 

@@ -32,8 +32,8 @@ struct PlaceQueryOptions {
 };
 
 // An inverted file from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the words kept with keyframes
-// when a map is loaded, in some hundredths of a millisecond per keyframe; never saved. Keyframes are looked up by their
-// numbers, so these should be dense, as a map's are.
+// when a map is loaded, in some thousandths of a millisecond per keyframe; never saved. Keyframes are looked up by
+// their numbers, so these should be dense, as a map's are.
 class PlaceIndex {
  public:
   explicit PlaceIndex(Vocabulary vocabulary);
@@ -51,6 +51,7 @@ class PlaceIndex {
 
  private:
   friend class PlaceGrouping;
+  struct WordsOfMap;
   friend PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary);
 
   struct Posting {
@@ -59,14 +60,12 @@ class PlaceIndex {
   };
   struct Entry {
     KeyframeId keyframe;
-    std::vector<Word> words;  // words of the keyframe's bag; none in a free slot
+    std::vector<Word> words;  // words of the keyframe's bag, where it was added by itself; none in a free slot
   };
 
-  // Makes room for so many keyframes that have each word.
-  void reserve(std::span<const std::uint32_t> keyframes_of_words);
   std::optional<std::uint32_t> slot_of(KeyframeId id) const;
   std::uint32_t take_slot(KeyframeId id);
-  void add_bag(KeyframeId id, const BagOfWords& bag);
+  void add_all(const WordsOfMap& map);                          // precondition: the index holds no keyframes
   std::vector<float> scores_of(const BagOfWords& query) const;  // similarity of the keyframe in each slot
 
   Vocabulary vocabulary_;                       // constant after construction

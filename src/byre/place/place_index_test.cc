@@ -132,6 +132,37 @@ TEST_F(RandomIndex, DoesNotDependOnTheOrderKeyframesCameIn) {
   }
 }
 
+TEST_F(RandomIndex, OfAWholeMapIsTheSameToTheLastBit) {
+  Map map(Origin::offline);
+  map.add_rig({});
+  for (const auto& [id, keyframe_words] : words) {
+    Keyframe keyframe;
+    keyframe.sightings.resize(keyframe_words.size());
+    keyframe.words = keyframe_words;
+    keyframe.words.push_back(keyframe.words.front());  // a word that occurs twice, and one of no vocabulary
+    keyframe.words.push_back(1u << 30);
+    keyframe.sightings.resize(keyframe.words.size());
+    index.add(map.add_keyframe(keyframe), keyframe.words);
+  }
+  PlaceIndex whole = index_of(map, vocabulary);
+  const auto expect_equal = [&] {
+    const BagOfWords query = vocabulary.bag_of(random_words(vocabulary, random));
+    const std::vector<PlaceMatch> expected = index.query(query, kAll), matches = whole.query(query, kAll);
+    ASSERT_EQ(matches.size(), expected.size());
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      EXPECT_EQ(matches[i].keyframe, expected[i].keyframe);
+      EXPECT_EQ(matches[i].score, expected[i].score);
+    }
+  };
+  expect_equal();
+  for (PlaceIndex* const changed : {&index, &whole}) {
+    changed->remove(offline(3));
+    changed->add(offline(5), words[offline(7)]);
+  }
+  EXPECT_EQ(whole.size(), index.size());
+  expect_equal();
+}
+
 TEST_F(RandomIndex, LeavesOutExcludedKeyframesBeforeItCounts) {
   const BagOfWords query = vocabulary.bag_of(random_words(vocabulary, random));
   const std::vector<PlaceMatch> all = index.query(query, 3);

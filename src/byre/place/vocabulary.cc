@@ -105,6 +105,10 @@ std::vector<Word> Vocabulary::words_of(const Features& features) const {
   return words;
 }
 
+float Vocabulary::weight_of(Word word) const {
+  return word < data_->view.weights.size() ? data_->view.weights[word] : 0.0f;
+}
+
 BagOfWords Vocabulary::bag_of(std::span<const Word> words) const {
   std::vector<Word> sorted(words.begin(), words.end());
   std::ranges::sort(sorted);

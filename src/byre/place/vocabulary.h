@@ -52,6 +52,7 @@ class Vocabulary {
 
   Word word_of(const Descriptor& descriptor) const;
   std::vector<Word> words_of(const Features& features) const;
+  float weight_of(Word word) const;  // how rare it is; zero beyond word_count()
   // tf-idf weights. Words beyond word_count(), and those of no weight, are left out.
   BagOfWords bag_of(std::span<const Word> words) const;
 

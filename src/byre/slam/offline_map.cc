@@ -13,7 +13,7 @@ namespace {
 Matrix6 median_covariance(const Map& map) {
   std::vector<double> position_variances, rotation_variances;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Matrix6& covariance = map.find_keyframe(id)->covariance;
+    const Matrix6& covariance = map.find_bare_keyframe(id)->covariance;
     position_variances.push_back(covariance.topLeftCorner<3, 3>().trace() / 3.0);
     rotation_variances.push_back(covariance.bottomRightCorner<3, 3>().trace() / 3.0);
   }
@@ -53,7 +53,7 @@ OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<Source
       walls_(std::move(walls)),
       mounting_(mounting) {
   for (const KeyframeId id : map_.keyframe_ids()) {
-    const Pose world_from_camera = inverse(map_.find_keyframe(id)->camera_from_world);
+    const Pose world_from_camera = inverse(map_.find_bare_keyframe(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});
   }
 }

@@ -26,14 +26,8 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
   return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.image));
 }
 
-}  // namespace
-
-Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
-  return Vocabulary::load(path ? *path : default_vocabulary_path());
-}
-
-StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
-  StoredMap stored = load_map(path);
+// Throws for a map that nothing can be measured on, and adds words.
+StoredMap made_ready(StoredMap stored, const fs::path& path, const Vocabulary& vocabulary) {
   if (stored.scale != MapScale::metric) {
     throw InputError(path.string(), "has no metric scale, so nothing can be measured on it",
                      "give it one: byre scale, or --scale when importing a model");
@@ -43,9 +37,19 @@ StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
   return stored;
 }
 
+}  // namespace
+
+Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
+  return Vocabulary::load(path ? *path : default_vocabulary_path());
+}
+
+StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
+  return made_ready(load_map(path), path, vocabulary);
+}
+
 std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary,
                                                    const std::optional<DrawnFloorPlan>& plan) {
-  StoredMap stored = load_for_mapping(path, vocabulary);
+  StoredMap stored = made_ready(open_map(path), path, vocabulary);
   std::optional<PlacedWalls> walls;
   if (plan) walls = walls_of(stored, path, *plan);
   return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
@@ -55,7 +59,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
   std::vector<int> counts(recordings, 0);
   for (const KeyframeId id : map.keyframe_ids())
-    ++counts.at(static_cast<std::size_t>(map.find_keyframe(id)->recording));
+    ++counts.at(static_cast<std::size_t>(map.find_bare_keyframe(id)->recording));
   return counts;
 }
 

@@ -140,7 +140,7 @@ void write_found(const Work& work, const fs::path& path) {
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
   require_inputs(options.inputs);
   if (options.trajectory) require_writable(*options.trajectory);
-  StoredMap stored = load_map(options.map);
+  StoredMap stored = open_map(options.map);
   if (options.frame == PoseFrame::plan) require_plan(stored.plan, options.map);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   add_words(stored, vocabulary);

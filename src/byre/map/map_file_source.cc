@@ -1,0 +1,126 @@
+#include "byre/map/map_file_source.h"
+
+#include "byre/map/map_numbers.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace byre {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+constexpr std::array<std::string_view, kViewSections> kViewNames = {"features", "patches", "observations",
+                                                                    "descriptors", "words"};
+
+}  // namespace
+
+MapFileSource::MapFileSource(File file, Lookup lookup)
+    : file_(std::move(file)),
+      lookup_(std::move(lookup)),
+      keyframes_(lookup_.keyframes.size()),
+      blocks_(lookup_.blocks.size()) {}
+
+const Keyframe& MapFileSource::keyframe(std::uint32_t number, const Keyframe& bare) const {
+  return keyframes_.get(number, [&] { return read_keyframe(number, bare); });
+}
+
+const ObservedPoint& MapFileSource::point(std::uint32_t number) const {
+  const std::uint32_t block = number / kPointsOfBlock;
+  return blocks_.get(block, [&] { return read_block(block); })[number % kPointsOfBlock];
+}
+
+std::vector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
+  const PartPlace& place = lookup_.keyframes[number].covisible;
+  const std::size_t first_byte = file_.lookup + lookup_.first_byte_of_covisible + place.begin;
+  return read_covisible(
+      ByteReader(Bytes(lookup_.covisible).subspan(place.begin, place.size), place_of("lookup"), first_byte), number,
+      lookup_.keyframes.size());
+}
+
+void MapFileSource::visit_words(const WordVisitor& visit) const {
+  std::vector<std::byte> section(file_.words_size);
+  file_.read_at(file_.views[kWordsOfView], section);
+  ByteReader reader(section, place_of("words"), file_.views[kWordsOfView]);
+  if (checksum(section) != file_.words_checksum) reader.fail("has a wrong checksum");
+  read_words_head(reader);
+  for (std::uint32_t number = 0; number < lookup_.keyframes.size(); ++number) {
+    visit({Origin::offline, number}, read_narrow_words_of(reader, file_.words, lookup_.keyframes[number].features));
+  }
+  reader.require_end();
+}
+
+std::string MapFileSource::place_of(std::string_view section) const {
+  return file_.name + ": section " + std::string(section);
+}
+
+void MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expected,
+                               std::vector<std::byte>& bytes) const {
+  std::size_t size = 0;
+  for (const Part& part : parts) size += part.place.size;
+  bytes.resize(size);
+  std::size_t begin = 0;
+  for (const Part& part : parts) {
+    if (part.place.size == 0) continue;
+    file_.read_at(part.section + part.place.begin, std::span(bytes).subspan(begin, part.place.size));
+    begin += part.place.size;
+  }
+  if (checksum(bytes) == expected) return;
+  ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
+      .fail("has a part with a wrong checksum, here or where the sections that follow have theirs");
+}
+
+Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare) const {
+  const KeyframeParts& known = lookup_.keyframes[number];
+  std::array<Part, kViewSections> parts;
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {file_.views[i], known.views[i], kViewNames[i]};
+  thread_local std::vector<std::byte> bytes;  // kept, as a keyframe has many thousands of them
+  read_parts(parts, known.checksum, bytes);
+  std::size_t begin = 0;
+  std::vector<ByteReader> readers;
+  readers.reserve(parts.size());
+  for (const auto& [section, place, name] : parts) {
+    readers.emplace_back(Bytes(bytes).subspan(begin, place.size), place_of(name), section + place.begin);
+    begin += place.size;
+  }
+  Keyframe keyframe = bare;
+  read_view(
+      {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView]},
+      number, file_.rigs[static_cast<std::size_t>(bare.rig)], file_.point_count,
+      [this](std::uint32_t point_number) -> const ObservedPoint& { return point(point_number); }, keyframe);
+  if (keyframe.sightings.size() != known.features) {
+    readers[kFeaturesOfView].fail("has not as many features as the section lookup tells");
+  }
+  keyframe.words = read_narrow_words_of(readers[kWordsOfView], file_.words, known.features);
+  readers[kWordsOfView].require_end();
+  return keyframe;
+}
+
+MapFileSource::Block MapFileSource::read_block(std::uint32_t number) const {
+  const PointBlock& known = lookup_.blocks[number];
+  const std::array<Part, 2> parts = {
+      {{file_.points, known.points, "points"}, {file_.observers, known.observers, "observers"}}};
+  thread_local std::vector<std::byte> bytes;
+  read_parts(parts, known.checksum, bytes);
+  ByteReader points(Bytes(bytes).first(known.points.size), place_of("points"), file_.points + known.points.begin);
+  ByteReader observers(Bytes(bytes).subspan(known.points.size), place_of("observers"),
+                       file_.observers + known.observers.begin);
+  const std::uint32_t first = number * kPointsOfBlock;
+  Block block(std::min(kPointsOfBlock, file_.point_count - first));
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    auto& [point, observations] = block[i];
+    const std::uint32_t reference = read_rounded_point(points, first + i, point);
+    observations = read_observers(observers, lookup_.keyframes);
+    if (reference >= observations.size()) {
+      require_no_fault(points, "has a reference that does not see it", "point", first + i);
+    }
+    point.reference = observations[reference];
+  }
+  points.require_end();
+  observers.require_end();
+  return block;
+}
+
+}  // namespace byre

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+
+namespace byre {
+
+// Things that are made when they are first asked for, and stay. Several threads may ask at once, and none waits for
+// another: where two make the same thing, the first one to be done is kept.
+template <typename Thing>
+class MadeOnce {
+ public:
+  explicit MadeOnce(std::size_t count) : count_(count), things_(std::make_unique<std::atomic<const Thing*>[]>(count)) {}
+  ~MadeOnce() {
+    for (std::size_t i = 0; i < count_; ++i) delete things_[i].load(std::memory_order_acquire);
+  }
+  MadeOnce(const MadeOnce&) = delete;
+  MadeOnce& operator=(const MadeOnce&) = delete;
+
+  // make() gives the thing; what it throws goes to the caller, and the thing is made by who asks next.
+  template <typename Make>
+  const Thing& get(std::size_t index, Make make) const {
+    std::atomic<const Thing*>& place = things_[index];
+    if (const Thing* const known = place.load(std::memory_order_acquire)) return *known;
+    auto made = std::make_unique<const Thing>(make());
+    const Thing* known = nullptr;
+    if (!place.compare_exchange_strong(known, made.get(), std::memory_order_acq_rel)) return *known;
+    return *made.release();
+  }
+
+ private:
+  std::size_t count_;
+  std::unique_ptr<std::atomic<const Thing*>[]> things_;  // nullptr for what is not yet made
+};
+
+}  // namespace byre
