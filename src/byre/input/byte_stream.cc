@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <memory>
@@ -15,6 +16,20 @@ namespace {
 constexpr int kVarintBits = 7;
 constexpr std::uint8_t kVarintContinues = 1u << kVarintBits;
 
+class GrowingChecksum {
+ public:
+  GrowingChecksum() : state_(XXH3_createState(), &XXH3_freeState) {
+    if (!state_) throw std::bad_alloc();
+    XXH3_64bits_reset(state_.get());
+  }
+
+  void add(std::span<const std::byte> bytes) { XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
+  std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
+
+ private:
+  std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
+};
+
 }  // namespace
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
@@ -22,11 +37,21 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t checksum_of_pieces(std::span<const std::span<const std::byte>> pieces) {
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
-  if (!state) throw std::bad_alloc();
-  XXH3_64bits_reset(state.get());
-  for (const std::span<const std::byte> piece : pieces) XXH3_64bits_update(state.get(), piece.data(), piece.size());
-  return XXH3_64bits_digest(state.get());
+  GrowingChecksum sum;
+  for (const std::span<const std::byte> piece : pieces) sum.add(piece);
+  return sum.value();
+}
+
+std::uint64_t checksum_of_file(const ReadAt& read_at, std::size_t offset, std::size_t size) {
+  constexpr std::size_t kPiece = 1 << 18;  // bytes
+  std::vector<std::byte> memory(std::min(size, kPiece));
+  GrowingChecksum sum;
+  for (std::size_t begin = 0; begin < size; begin += kPiece) {
+    const std::span<std::byte> piece = std::span(memory).first(std::min(kPiece, size - begin));
+    read_at(offset + begin, piece);
+    sum.add(piece);
+  }
+  return sum.value();
 }
 
 void ByteWriter::write_bytes(std::span<const std::byte> bytes) {

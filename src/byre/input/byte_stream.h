@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,9 @@ concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 std::uint64_t checksum(std::span<const std::byte> bytes);
 // The same of several pieces, as if they lay one behind the other.
 std::uint64_t checksum_of_pieces(std::span<const std::span<const std::byte>> pieces);
+// The same of so many bytes, which read_at gives piece by piece, from a place among them on.
+using ReadAt = std::function<void(std::size_t offset, std::span<std::byte> bytes)>;
+std::uint64_t checksum_of_file(const ReadAt& read_at, std::size_t offset, std::size_t size);
 
 // Appends numbers to a growing piece of a file.
 class ByteWriter {

@@ -344,6 +344,16 @@ WordsHead words_head(const Bring& bring, const SectionPlace& section, const std:
   return read_words_head(reader);
 }
 
+void require_checksums(const ReadFileAt& read_at, std::size_t size, const std::string& name) {
+  std::vector<std::byte> header(std::min(size, header_bytes(kSectionCount)));
+  read_at(0, header);
+  const SectionTable table = read_table(header, size, name);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (checksum_of_file(read_at, table[i].offset, table[i].size) == table[i].checksum) continue;
+    ByteReader({}, name + ": section " + std::string(kSectionNames[i]), table[i].offset).fail("has a wrong checksum");
+  }
+}
+
 // Where its sections lie.
 MapFileSource::File file_of(const SectionOpener& open, ReadFileAt read_at, const std::string& name) {
   MapFileSource::File file;
@@ -433,8 +443,10 @@ StoredMap load_map(const std::filesystem::path& path) {
 }
 
 StoredMap open_map(const std::filesystem::path& path) {
+  constexpr std::size_t kCheckedAtOnce = 32 << 20;  // bytes, which take 10 ms
   const auto file = std::make_shared<const PiecewiseFile>(path);
   const auto read_at = [file](std::size_t offset, std::span<std::byte> bytes) { file->read(offset, bytes); };
+  if (file->size() <= kCheckedAtOnce) require_checksums(read_at, file->size(), path.string());
   return open_map(read_at, file->size(), path.string());
 }
 

@@ -93,9 +93,11 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 // that could not be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
 // As read_map and load_map, but for what keyframes see and points: these are read, and checked, when they are first
-// looked at (see Map), from a file that stays open. Nothing is checked of what is never looked at. A file of a format
-// before 6 is read as a whole. read_at fills in the bytes of a file from a place on, for several threads at once.
-using ReadFileAt = std::function<void(std::size_t offset, std::span<std::byte> bytes)>;
+// looked at (see Map), from a file that stays open. Nothing is checked of what is never looked at, but that all
+// checksums of a file of up to 32 MB, some thousand keyframes, are right. A file of a format before 6 is read as a
+// whole. read_at fills in the bytes of a file from a place on, for several threads at once; nothing is checked of these
+// beforehand.
+using ReadFileAt = ReadAt;
 StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::string& name);
 StoredMap open_map(const std::filesystem::path& path);
 

@@ -240,6 +240,27 @@ TEST(MapFileSource, GivesAllThreadsTheSame) {
   EXPECT_THAT(sums, Each(look_at_all(read_map(file.bytes, "").map)));
 }
 
+TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome) {
+  const fs::path path = fs::path(testing::TempDir()) / ("damaged_source_" + std::to_string(getpid()) + ".byre");
+  MapBytes bytes = scene_of_size(7);
+  const std::vector<SectionSize> sizes = section_sizes(bytes, "");
+  std::size_t begin = 0;
+  for (const SectionSize& section : sizes) {
+    if (section.name == "descriptors") break;
+    begin += section.bytes;
+  }
+  bytes[begin + 5] ^= std::byte{1};
+  write_file(path, bytes);
+  try {
+    open_map(path);
+    ADD_FAILURE() << "opened";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("section descriptors"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("wrong checksum"));
+  }
+  fs::remove(path);
+}
+
 TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   const fs::path path = fs::path(testing::TempDir()) / ("map_source_" + std::to_string(getpid()) + ".byre");
   const MapBytes bytes = scene_of_size(7);
