@@ -163,8 +163,21 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   if (fusing_will_do) {
     pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
   } else {
-    global_.close_loops(online_, loops());
+    bend();
   }
+}
+
+void Mapper::bend() {
+  global_.close_loops(online_, loops(), motions_between(online_.keyframe_ids()));
+}
+
+// Keyframes of submaps that lie in frames of their own say nothing of each other.
+std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
+  std::vector<KeyframeMotion> motions = told_motions(online_, keyframes, options_.recording, tell_);
+  std::erase_if(motions, [&](const KeyframeMotion& motion) {
+    return submaps_.frame(motion.earlier) != submaps_.frame(motion.later);
+  });
+  return motions;
 }
 
 std::optional<double> Mapper::collect() {
@@ -187,7 +200,7 @@ bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
   shutter.take_over(rig, online_);
   ++revision_;
   loop_closer_.forget_hypothesis();
-  if (!offline_ && online_.keyframe_count() > 1) global_.close_loops(online_, loops());
+  if (!offline_ && online_.keyframe_count() > 1) bend();
   return true;
 }
 
@@ -198,7 +211,7 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
     const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
     const RigTurn turn = recalibrate(*refined, rig);
-    if (is_large && global_.idle()) global_.close_loops(online_, loops());
+    if (is_large && global_.idle()) bend();
     return turn;
   }
   if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
@@ -252,6 +265,11 @@ void Mapper::start_job() {
   MapWindow window = cut_window(map(), pending_, options_.mapping.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
+  std::vector<KeyframeId> online;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (!is_offline(keyframe)) online.push_back(keyframe.id);
+  }
+  add_motions(window, motions_between(online));
   local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
 }
 
@@ -289,14 +307,16 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
-  FinishReport report = byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, {}}, hooks);
+  FinishReport report = byre::finish_map(
+      online_, *places_, {options_.loops, {options_.mapping}, motions_between(online_.keyframe_ids()), {}}, hooks);
   loop_closer_.follow(report.length_changes);
   return report;
 }
 
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
-  const MapWindow whole = whole_map(map());
+  MapWindow whole = whole_map(map());
+  add_motions(whole, motions_between(online_.keyframe_ids()));
   const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
   LengthChanges changes = apply_correction(adjusted, whole, online_);
   loop_closer_.follow(changes);

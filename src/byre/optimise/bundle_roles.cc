@@ -45,8 +45,10 @@ std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& 
 }  // namespace
 
 BundleRoles choose_roles(const BundleProblem& problem) {
-  BundleRoles roles{std::vector<bool>(problem.poses.size(), false), std::vector<bool>(problem.points.size(), false),
-                    observations_in_front(problem)};
+  BundleRoles roles{std::vector<bool>(problem.poses.size(), false),
+                    std::vector<bool>(problem.points.size(), false),
+                    observations_in_front(problem),
+                    {}};
   for (const int i : roles.observations) {
     const BundleObservation& observation = problem.observations[i];
     roles.pose_moves[observation.pose] = !problem.poses[observation.pose].fixed;
@@ -57,6 +59,13 @@ BundleRoles choose_roles(const BundleProblem& problem) {
     if (first != roles.pose_moves.end()) *first = false;
   }
   std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
+  for (int i = 0; i < static_cast<int>(problem.motions.size()); ++i) {
+    const BundleMotion& motion = problem.motions[static_cast<std::size_t>(i)];
+    if (roles.pose_moves[static_cast<std::size_t>(motion.earlier)] ||
+        roles.pose_moves[static_cast<std::size_t>(motion.later)]) {
+      roles.motions.push_back(i);
+    }
+  }
   // Points are eliminated one by one.
   std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
   return roles;
@@ -64,7 +73,7 @@ BundleRoles choose_roles(const BundleProblem& problem) {
 
 std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles) {
   const auto anchor = only_anchor(problem, roles);
-  if (!anchor) return std::nullopt;
+  if (!anchor || !roles.motions.empty()) return std::nullopt;
   HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (!roles.pose_moves[i]) continue;

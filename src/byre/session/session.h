@@ -50,6 +50,12 @@ class Session {
   Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {},
           std::shared_ptr<const OfflineMap> offline = nullptr);
 
+  // What wheels tell of the way between keyframes, and of how far the robot can be. Call it before the first frame.
+  void hear(TellMotion tell, TellReach reach) {
+    mapper_.hear(std::move(tell));
+    whereabouts_.hear(std::move(reach));
+  }
+
   // Goes on with a map made before, of another recording: the session is lost until it finds itself in it, and what it
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
   void continue_map(Map online);
@@ -127,7 +133,6 @@ class Session {
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
-  bool is_navigation_error(double seconds_without_pose) const;
 
   SessionOptions options_;  // constant after construction
 

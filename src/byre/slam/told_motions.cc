@@ -1,0 +1,61 @@
+#include "byre/slam/told_motions.h"
+
+#include "byre/slam/body_pose.h"
+#include "byre/slam/loop_closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace byre {
+namespace {
+
+constexpr Timestamp kLongest = std::chrono::seconds(10);
+
+// Sigmas of what is told and a share of the motion for what keyframes that are not adjusted yet err by.
+bool contradicts(const BodyMotion& told, const Pose& seen) {
+  constexpr double kSigmas = 5.0;
+  constexpr double kShare = 0.1;
+  const Vector6 error = log_pose(inverse(told.last_from_body) * seen);
+  const double way = std::sqrt(told.covariance.topLeftCorner<3, 3>().trace());
+  const double turn = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
+  return error.head<3>().norm() > kSigmas * way + kShare * seen.translation.norm() ||
+         error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
+}
+
+}  // namespace
+
+std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
+                                         const TellMotion& tell) {
+  std::vector<KeyframeMotion> motions;
+  if (!tell) return motions;
+  std::erase_if(keyframes, [&](KeyframeId id) {
+    const Keyframe* const keyframe = online.find_keyframe(id);
+    return keyframe == nullptr || keyframe->recording != recording;
+  });
+  std::ranges::sort(keyframes);
+  for (std::size_t i = 1; i < keyframes.size(); ++i) {
+    const Keyframe& earlier = *online.find_keyframe(keyframes[i - 1]);
+    const Keyframe& later = *online.find_keyframe(keyframes[i]);
+    if (later.frame.time - earlier.frame.time > kLongest) continue;
+    const auto told = tell(earlier.frame.time, later.frame.time);
+    if (!told) continue;
+    const Pose seen = inverse(body_pose(rig_of(online, earlier), earlier.camera_from_world)) *
+                      body_pose(rig_of(online, later), later.camera_from_world);
+    if (!contradicts(*told, seen)) motions.push_back({keyframes[i - 1], keyframes[i], *told});
+  }
+  return motions;
+}
+
+void add_motions(MapWindow& window, const std::vector<KeyframeMotion>& motions) {
+  if (motions.empty()) return;
+  std::map<KeyframeId, int> index_of;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) index_of[window.keyframes[i].id] = static_cast<int>(i);
+  for (const KeyframeMotion& motion : motions) {
+    const auto earlier = index_of.find(motion.earlier), later = index_of.find(motion.later);
+    if (earlier == index_of.end() || later == index_of.end()) continue;
+    window.motions.push_back({earlier->second, later->second, motion.motion});
+  }
+}
+
+}  // namespace byre
