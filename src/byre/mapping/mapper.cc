@@ -167,8 +167,12 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   }
 }
 
+std::vector<KeyframeMotion> Mapper::all_motions() const {
+  return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
+}
+
 void Mapper::bend() {
-  global_.close_loops(online_, loops(), motions_between(online_.keyframe_ids()));
+  global_.close_loops(online_, loops(), all_motions());
 }
 
 // Keyframes of submaps that lie in frames of their own say nothing of each other.
@@ -307,8 +311,8 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
-  FinishReport report = byre::finish_map(
-      online_, *places_, {options_.loops, {options_.mapping}, motions_between(online_.keyframe_ids()), {}}, hooks);
+  FinishReport report =
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}}, hooks);
   loop_closer_.follow(report.length_changes);
   return report;
 }
@@ -316,7 +320,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
   MapWindow whole = whole_map(map());
-  add_motions(whole, motions_between(online_.keyframe_ids()));
+  add_motions(whole, all_motions());
   const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
   LengthChanges changes = apply_correction(adjusted, whole, online_);
   loop_closer_.follow(changes);

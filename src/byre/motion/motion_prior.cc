@@ -161,6 +161,21 @@ void MotionPrior::look_for_mountings() {
   if (looks_ >= kLooksUntilTold || known_.wheels) unseen_.take_down(tell_base());
 }
 
+void MotionPrior::look_again(const Trajectory& seen) {
+  if (!mounting_ || seen.empty()) return;
+  std::vector<MotionPair> pairs;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    if (seen[i].time - seen[i - 1].time > kMaxFrameGap) begin = i;
+    if (seen[i].time - seen[begin].time < kStride) continue;
+    if (const auto base = base_between(seen[begin].time, seen[i].time)) {
+      pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
+    }
+    begin = i;
+  }
+  if (const auto found = find_wheel_mounting(pairs, known_.wheels)) mounting_ = found;
+}
+
 // Motions that tell the mounting by themselves are asked whether it is the known one.
 void MotionPrior::look_for_wheel_mounting() {
   constexpr int kLooks = 3;  // in a row that contradict it

@@ -44,6 +44,9 @@ class MotionPrior {
   // mounted.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
 
+  // After the last frame: the mounting that was known by what was seen as the map has it in the end.
+  void look_again(const Trajectory& seen);
+
   // The final poses of frames that were seen, with those of frames that wheels lead to from them.
   Trajectory completed(Trajectory seen) const;
 

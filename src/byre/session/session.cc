@@ -106,8 +106,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
     report.events.push_back(SessionEvent::place_refused);
   }
   const bool is_error = mission_ ? seconds_without >= options_.state.lost_after : state_ == State::lost;
-  const bool was_error_told = std::exchange(is_error_told_, is_error);
-  if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
+  if (!std::exchange(is_error_told_, is_error) && is_error) report.events.push_back(SessionEvent::navigation_error);
 
   whereabouts_.settle_overdue(map(), options_.track);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};

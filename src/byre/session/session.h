@@ -28,11 +28,8 @@ namespace byre {
 // map the second looks for places in that instead.
 struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
-  Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
-  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane)
-      : Lanes(std::move(local_lane), std::move(global_lane), make_inline_executor()) {}
-  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane,
-        std::unique_ptr<Executor> calibration_lane)
+  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane = make_inline_executor(),
+        std::unique_ptr<Executor> calibration_lane = make_inline_executor())
       : local(std::move(local_lane)), global(std::move(global_lane)), calibration(std::move(calibration_lane)) {}
 
   std::unique_ptr<Executor> local;

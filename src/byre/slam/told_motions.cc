@@ -1,5 +1,6 @@
 #include "byre/slam/told_motions.h"
 
+#include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/loop_closing.h"
 
@@ -23,6 +24,12 @@ bool contradicts(const BodyMotion& told, const Pose& seen) {
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
 }
 
+Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {
+  const Keyframe &from = *online.find_keyframe(earlier), &to = *online.find_keyframe(later);
+  return inverse(body_pose(rig_of(online, from), from.camera_from_world)) *
+         body_pose(rig_of(online, to), to.camera_from_world);
+}
+
 }  // namespace
 
 std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
@@ -40,9 +47,27 @@ std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<Keyframe
     if (later.frame.time - earlier.frame.time > kLongest) continue;
     const auto told = tell(earlier.frame.time, later.frame.time);
     if (!told) continue;
-    const Pose seen = inverse(body_pose(rig_of(online, earlier), earlier.camera_from_world)) *
-                      body_pose(rig_of(online, later), later.camera_from_world);
-    if (!contradicts(*told, seen)) motions.push_back({keyframes[i - 1], keyframes[i], *told});
+    if (!contradicts(*told, seen_between(online, keyframes[i - 1], keyframes[i])))
+      motions.push_back({keyframes[i - 1], keyframes[i], *told});
+  }
+  return motions;
+}
+
+std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions) {
+  constexpr std::size_t kMany = 20;
+  if (motions.size() < kMany) return motions;
+  double told_squared = 0.0, seen_by_told = 0.0;
+  for (const KeyframeMotion& motion : motions) {
+    const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
+    const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
+    told_squared += weight * told.squaredNorm();
+    seen_by_told += weight * seen_between(online, motion.earlier, motion.later).translation.dot(told);
+  }
+  if (!(seen_by_told > 0.0)) return motions;
+  const double factor = seen_by_told / told_squared;
+  for (KeyframeMotion& motion : motions) {
+    motion.motion = {scale_lengths(motion.motion.last_from_body, factor),
+                     scale_lengths(motion.motion.covariance, factor)};
   }
   return motions;
 }

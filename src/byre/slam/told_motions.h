@@ -29,6 +29,9 @@ struct KeyframeMotion {
 std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
                                          const TellMotion& tell);
 
+// The same in the lengths that the map has where many are told: wheels that are all too large are to bend nothing.
+std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions);
+
 // Gives the window those motions both of whose keyframes it has.
 void add_motions(MapWindow& window, const std::vector<KeyframeMotion>& motions);
 

@@ -134,6 +134,7 @@ Finishing Engine::finish_map(const FinishHooks& hooks) {
   const Stopwatch watch;
   Finishing finishing;
   finishing.report = session_.finish_map(hooks);
+  prior_.look_again(session_.final_trajectory());
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   return finishing;
