@@ -40,9 +40,6 @@ BundleObservation weighted_observation(const MapWindow& window, const WindowPoin
   return observation;
 }
 
-// A pair tells metres itself, and wheels err alike for long: they do not say as much as their covariance has it.
-constexpr double kSayBesideStereo = 0.25;
-
 BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
   const auto rig_at = [&](int keyframe) {
     return window.rig_of(window.keyframes[static_cast<std::size_t>(keyframe)]).body_from_camera;
@@ -52,9 +49,6 @@ BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
   motion.later_from_earlier =
       camera_from_body * inverse(told.motion.last_from_body) * inverse(earlier_camera_from_body);
   motion.information = move_covariance(told.motion.covariance, camera_from_body).inverse();
-  if (window.rig_of(window.keyframes[static_cast<std::size_t>(told.later)]).is_stereo()) {
-    motion.information *= kSayBesideStereo;
-  }
   return motion;
 }
 

@@ -44,7 +44,7 @@ std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<Keyframe
   for (std::size_t i = 1; i < keyframes.size(); ++i) {
     const Keyframe& earlier = *online.find_keyframe(keyframes[i - 1]);
     const Keyframe& later = *online.find_keyframe(keyframes[i]);
-    if (later.frame.time - earlier.frame.time > kLongest) continue;
+    if (rig_of(online, later).is_stereo() || later.frame.time - earlier.frame.time > kLongest) continue;
     const auto told = tell(earlier.frame.time, later.frame.time);
     if (!told) continue;
     if (!contradicts(*told, seen_between(online, keyframes[i - 1], keyframes[i])))

@@ -25,7 +25,8 @@ struct KeyframeMotion {
 };
 
 // What is told of the ways between these keyframes, of those that one recording brought: from each to the next. A
-// motion that contradicts what was seen is left out, as where a wheel spins.
+// motion that contradicts what was seen is left out, as where a wheel spins; and that of a pair of cameras, which knows
+// metres by itself: what wheels add there is not more than they err.
 std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
                                          const TellMotion& tell);
 

@@ -13,7 +13,16 @@ using ::testing::SizeIs;
 
 class MotionsOfATrueMap : public ::testing::Test {
  protected:
-  const SimulatedMission mission_ = quarter_circle({});
+  static SimulatedMission quarter_circle_of(Rig rig) {
+    return simulate_mission(rig, circling_trajectory(40, 10.0, 2.0, 0.25), {});
+  }
+  static Rig one_camera() {
+    Rig rig = simulated_rig();
+    rig.baseline = 0.0;
+    return rig;
+  }
+
+  const SimulatedMission mission_ = quarter_circle_of(one_camera());
   Map map_ = true_map(mission_, 4, Origin::online);
 
   // As wheels tell it that are so much too large, and spin from a time on.
@@ -36,6 +45,11 @@ TEST_F(MotionsOfATrueMap, LeadFromEachKeyframeToTheNext) {
   EXPECT_EQ(motions.front().later, motions[1].earlier);
   EXPECT_THAT(told_motions(map_, ids, 1, told()), IsEmpty()) << "of another recording";
   EXPECT_THAT(told_motions(map_, ids, 0, {}), IsEmpty());
+}
+
+TEST_F(MotionsOfATrueMap, AreNotAskedForBesideAPair) {
+  const Map map = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
+  EXPECT_THAT(told_motions(map, map.keyframe_ids(), 0, told()), IsEmpty());
 }
 
 TEST_F(MotionsOfATrueMap, LeaveOutWhatContradictsWhatWasSeen) {
