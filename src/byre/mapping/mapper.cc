@@ -167,21 +167,18 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   }
 }
 
+// A mission's lengths are held by the offline map, beside which nothing is gained.
+std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
+  if (offline_) return {};
+  return told_motions(online_, keyframes, options_.recording, tell_);
+}
+
 std::vector<KeyframeMotion> Mapper::all_motions() const {
   return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
 }
 
 void Mapper::bend() {
   global_.close_loops(online_, loops(), all_motions());
-}
-
-// Keyframes of submaps that lie in frames of their own say nothing of each other.
-std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
-  std::vector<KeyframeMotion> motions = told_motions(online_, keyframes, options_.recording, tell_);
-  std::erase_if(motions, [&](const KeyframeMotion& motion) {
-    return submaps_.frame(motion.earlier) != submaps_.frame(motion.later);
-  });
-  return motions;
 }
 
 std::optional<double> Mapper::collect() {
@@ -319,8 +316,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
 
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
-  MapWindow whole = whole_map(map());
-  add_motions(whole, all_motions());
+  const MapWindow whole = whole_map(map());
   const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
   LengthChanges changes = apply_correction(adjusted, whole, online_);
   loop_closer_.follow(changes);

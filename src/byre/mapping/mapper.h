@@ -106,7 +106,7 @@ class Mapper {
   Beginning begin_monocular(const Frame& frame, const Pose& camera_from_world, const AnchoredTrajectory& trajectory);
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
-  std::vector<KeyframeMotion> all_motions() const;  // of the whole map
+  std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
   void bend();                                      // the whole map in the background
   void take_over(const MapDelta& delta);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);

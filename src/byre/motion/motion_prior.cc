@@ -314,7 +314,7 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
 }
 
 std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
-  constexpr double kShare = 1.2;      // of what is told: wheels may slide
+  constexpr double kShare = 1.2;      // share of what is told: wheels may slide
   constexpr double kLeast = 0.5;      // metres
   constexpr double kUsualArm = 1.0;   // metres, while it is not known
   constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away

@@ -119,7 +119,7 @@ TEST(MotionPrior, ReachesNoFartherThanWheelsTurned) {
   const auto reach = prior.reach(from_seconds(30.0), from_seconds(36.0), false);
   ASSERT_TRUE(reach);
   EXPECT_GT(*reach, true_motion(drive, 30.0, 36.0).translation.norm());
-  EXPECT_LT(*reach * drive.metres_per_unit, 6.0);  // of 3 m
+  EXPECT_LT(*reach * drive.metres_per_unit, 6.0);  // metres; the base went 3 m
   EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "wheels were not heard";
 }
 

@@ -47,8 +47,8 @@ struct EngineOptions {
 
 // What was found out while a map was made, and is kept with it.
 struct KeptWithMap {
-  std::optional<RefinedCalibration> calibration;  // by which the map lies, where it was refined
-  KnownMounting mounting;                         // of wheels and a gyroscope
+  std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
+  KnownMounting mounting;                         // mounting of wheels and a gyroscope
 };
 
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
