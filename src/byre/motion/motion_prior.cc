@@ -316,6 +316,7 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
 std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
   constexpr double kShare = 1.2;      // share of what is told: wheels may slide
   constexpr double kLeast = 0.5;      // metres
+  constexpr double kUntold = 1.5;     // metres in the first second: dead encoders are to lose no frame that is tracked
   constexpr double kUsualArm = 1.0;   // metres, while it is not known
   constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away
   if (!mounting_ && !is_metric) return {};
@@ -323,7 +324,8 @@ std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, boo
   const auto distance = wheels_.distance(earlier + offset, later + offset);
   if (!distance) return {};
   const double arm = mounting_ ? mounting_->base_from_body.translation.norm() : kUsualArm;
-  const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast;
+  const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
+                        kUntold * std::clamp(to_seconds(later - earlier), 0.0, 1.0);
   return metres / (mounting_ ? mounting_->metres_per_unit : 1.0);
 }
 

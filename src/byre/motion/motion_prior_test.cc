@@ -119,7 +119,7 @@ TEST(MotionPrior, ReachesNoFartherThanWheelsTurned) {
   const auto reach = prior.reach(from_seconds(30.0), from_seconds(36.0), false);
   ASSERT_TRUE(reach);
   EXPECT_GT(*reach, true_motion(drive, 30.0, 36.0).translation.norm());
-  EXPECT_LT(*reach * drive.metres_per_unit, 6.0);  // metres; the base went 3 m
+  EXPECT_LT(*reach * drive.metres_per_unit, 7.0);  // metres; the base went 3 m
   EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "wheels were not heard";
 }
 
@@ -130,7 +130,7 @@ TEST(MotionPrior, ReachesAsFarAsWheelsTurnedBeforeItKnowsThemWhereLengthsAreMetr
   const auto reach = prior.reach(from_seconds(1.0), from_seconds(1.9), true);
   ASSERT_TRUE(reach);
   EXPECT_GT(*reach, 0.45);
-  EXPECT_LT(*reach, 2.0);
+  EXPECT_LT(*reach, 3.5);
 }
 
 // As after an adjustment of the whole map, by which one camera's unit is another.
