@@ -43,6 +43,21 @@ Matrix6 Whereabouts::carried_covariance() const {
   return move_covariance(carried_->covariance, inverse(odometry_.map_from_body()) * carried_->map_from_body);
 }
 
+bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig,
+                                  const MapView& map) const {
+  constexpr Timestamp kLongest = std::chrono::seconds(30);
+  constexpr double kSigmas = 5.0;
+  if (!reach_ || on_offline_map_ || trajectory_.empty()) return false;
+  const AnchoredPose& last = bridge_ ? trajectory_[bridge_begin_] : trajectory_.back();
+  if (frame.time - last.time > kLongest) return false;
+  const auto reach = reach_(last.time, frame.time);
+  if (!reach) return false;
+  const double carried = std::sqrt(carried_covariance().topLeftCorner<3, 3>().trace());
+  const Pose before = body_pose(rig, byre::camera_from_world(map, last));
+  const Pose now = body_pose(rig, track.tracked.camera_from_world);
+  return (now.translation - before.translation).norm() > *reach + kSigmas * carried;
+}
+
 // Every pose so far is believed, and the last one was seen.
 void Whereabouts::believe() {
   trajectory_.believe_all();

@@ -9,8 +9,10 @@
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/motion_model.h"
 #include "byre/slam/registration.h"
+#include "byre/slam/told_motions.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -34,6 +36,9 @@ class Whereabouts {
               const TrajectoryOptions& trajectory, bool on_offline_map)
       : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight, trajectory) {}
 
+  // Before the first frame.
+  void hear(TellReach reach) { reach_ = std::move(reach); }
+
   bool has_pose() const { return has_pose_; }  // in the last frame
   const Confirmation& confirmation() const { return confirmation_; }
   const AnchoredTrajectory& trajectory() const { return trajectory_; }
@@ -51,6 +56,9 @@ class Whereabouts {
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
+  // Wheels did not turn as much as they must have to lead there from where the robot was seen last: it is another place
+  // that looks alike. After half a minute the robot may have been carried.
+  bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
 
   // A frame later; motion is that of the body, where it is known.
   void tell(const std::optional<BodyMotion>& motion);
@@ -112,6 +120,7 @@ class Whereabouts {
   // Constant after construction.
   RegistrationOptions registration_;
   bool on_offline_map_;
+  TellReach reach_;  // empty: nothing is told
 
   AnchoredTrajectory trajectory_;
   MotionModel motion_;

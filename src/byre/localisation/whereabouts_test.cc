@@ -131,6 +131,23 @@ TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "nobody knows where a hundred metres of wheels end";
 }
 
+TEST_F(TrueWhereabouts, AreNotWhereWheelsCannotHaveLedTo) {
+  Whereabouts mapping({}, {}, {}, false);
+  const auto is_out_of_reach = [&](std::size_t frame, Timestamp later = {}) {
+    Frame seen = mission_.frames[frame];
+    seen.time += later;
+    return mapping.is_out_of_reach(seen, track_of(frame), mission_.rig, map_);
+  };
+  mapping.note({mission_.frames[0], track_of(0), true, true, 0}, mission_.rig, map_);
+  EXPECT_FALSE(is_out_of_reach(39)) << "nothing is told";
+  mapping.hear([](Timestamp, Timestamp) { return std::optional(0.5); });
+  EXPECT_FALSE(is_out_of_reach(1));
+  EXPECT_TRUE(is_out_of_reach(39));
+  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(60))) << "it may have been carried";
+  mapping.lose();
+  EXPECT_TRUE(is_out_of_reach(39));
+}
+
 TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();

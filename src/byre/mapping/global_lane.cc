@@ -5,9 +5,12 @@
 
 namespace byre {
 
-void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops) {
+void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops,
+                             const std::vector<KeyframeMotion>& motions) {
   assert(idle());
-  snapshot_ = std::make_shared<const MapWindow>(whole_map(map));
+  MapWindow whole = whole_map(map);
+  add_motions(whole, motions);
+  snapshot_ = std::make_shared<const MapWindow>(std::move(whole));
   worker_.start([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
     return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
   });

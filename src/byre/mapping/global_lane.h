@@ -2,6 +2,7 @@
 
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/self_calibration.h"
+#include "byre/slam/told_motions.h"
 #include "byre/workers/worker.h"
 
 #include <atomic>
@@ -27,8 +28,8 @@ class GlobalLane {
   bool idle() const { return worker_.idle() && !outcome_; }
   bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
 
-  // Bends the map to close these loops. Precondition: idle().
-  void close_loops(const Map& map, const std::vector<LoopEdge>& loops);
+  // Bends the map to close these loops; motions: see told_motions. Precondition: idle().
+  void close_loops(const Map& map, const std::vector<LoopEdge>& loops, const std::vector<KeyframeMotion>& motions);
 
   // Looks what the map says of the calibration of a rig of its. Precondition: idle().
   void calibrate(const MapView& map, const CalibrationState& state, int rig, const SelfCalibrationOptions& options);

@@ -163,8 +163,22 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   if (fusing_will_do) {
     pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
   } else {
-    global_.close_loops(online_, loops());
+    bend();
   }
+}
+
+// A mission's lengths are held by the offline map, beside which nothing is gained.
+std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
+  if (offline_) return {};
+  return told_motions(online_, keyframes, options_.recording, tell_);
+}
+
+std::vector<KeyframeMotion> Mapper::all_motions() const {
+  return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
+}
+
+void Mapper::bend() {
+  global_.close_loops(online_, loops(), all_motions());
 }
 
 std::optional<double> Mapper::collect() {
@@ -187,7 +201,7 @@ bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
   shutter.take_over(rig, online_);
   ++revision_;
   loop_closer_.forget_hypothesis();
-  if (!offline_ && online_.keyframe_count() > 1) global_.close_loops(online_, loops());
+  if (!offline_ && online_.keyframe_count() > 1) bend();
   return true;
 }
 
@@ -198,7 +212,7 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
     const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
     const RigTurn turn = recalibrate(*refined, rig);
-    if (is_large && global_.idle()) global_.close_loops(online_, loops());
+    if (is_large && global_.idle()) bend();
     return turn;
   }
   if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
@@ -252,6 +266,11 @@ void Mapper::start_job() {
   MapWindow window = cut_window(map(), pending_, options_.mapping.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
+  std::vector<KeyframeId> online;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (!is_offline(keyframe)) online.push_back(keyframe.id);
+  }
+  add_motions(window, motions_between(online));
   local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
 }
 
@@ -289,7 +308,8 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
-  FinishReport report = byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, {}}, hooks);
+  FinishReport report =
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}}, hooks);
   loop_closer_.follow(report.length_changes);
   return report;
 }

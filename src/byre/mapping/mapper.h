@@ -10,12 +10,14 @@
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/registration.h"
+#include "byre/slam/told_motions.h"
 #include "byre/workers/worker.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -53,7 +55,8 @@ class Mapper {
   int revision() const { return revision_; }                         // grows whenever points or keyframes change
   bool has_correction() const { return waiting_correction_.has_value(); }
 
-  // Before the first frame.
+  // Before the first frame. tell is asked by the calling thread for the ways between keyframes.
+  void hear(TellMotion tell) { tell_ = std::move(tell); }
   void continue_map(Map online);
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
@@ -102,6 +105,9 @@ class Mapper {
                          const AnchoredTrajectory& trajectory);
   Beginning begin_monocular(const Frame& frame, const Pose& camera_from_world, const AnchoredTrajectory& trajectory);
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
+  std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
+  std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
+  void bend();                                      // the whole map in the background
   void take_over(const MapDelta& delta);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
   void forget_patches();
@@ -113,6 +119,7 @@ class Mapper {
   // Constant after construction.
   MapperOptions options_;
   std::shared_ptr<const OfflineMap> offline_;
+  TellMotion tell_;  // empty: nothing is told
 
   Worker<MapDelta> local_;
   GlobalLane global_;

@@ -15,7 +15,7 @@ constexpr Timestamp kStride = 500ms;       // length of the motions that are com
 constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
-constexpr Timestamp kSamplesKept = 120s;
+constexpr Timestamp kSamplesKept = 1800s;
 constexpr Timestamp kMostKept = 1800s;   // time that samples are kept while it is not known how wheels are mounted
 constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
 constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
@@ -161,6 +161,21 @@ void MotionPrior::look_for_mountings() {
   if (looks_ >= kLooksUntilTold || known_.wheels) unseen_.take_down(tell_base());
 }
 
+void MotionPrior::look_again(const Trajectory& seen) {
+  if (!mounting_ || seen.empty()) return;
+  std::vector<MotionPair> pairs;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    if (seen[i].time - seen[i - 1].time > kMaxFrameGap) begin = i;
+    if (seen[i].time - seen[begin].time < kStride) continue;
+    if (const auto base = base_between(seen[begin].time, seen[i].time)) {
+      pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
+    }
+    begin = i;
+  }
+  if (const auto found = find_wheel_mounting(pairs, known_.wheels)) mounting_ = found;
+}
+
 // Motions that tell the mounting by themselves are asked whether it is the known one.
 void MotionPrior::look_for_wheel_mounting() {
   constexpr int kLooks = 3;  // in a row that contradict it
@@ -263,7 +278,7 @@ std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, T
 
 std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
                                                  const std::optional<Eigen::Quaterniond>& turn) const {
-  if (!mounting_ || is_slipping_) return {};
+  if (!mounting_) return {};
   const auto base = told_base(earlier, later, turn);
   if (!base) return {};
   const Pose body = body_motion(*mounting_, base->motion);
@@ -289,10 +304,36 @@ std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp lat
 std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp later) const {
   constexpr double kLeastTurn = 1e-4;  // radians
   const auto turn = turn_by_gyroscope(earlier, later);
-  auto motion = by_wheels(earlier, later, turn);
+  auto motion = is_slipping_ ? std::nullopt : by_wheels(earlier, later, turn);
   if (!turn) return motion;
   if (!motion && (motion = by_sight(earlier, later))) motion->last_from_body.rotation = *turn;
   if (!motion) return {};
+  const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
+  motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+  return motion;
+}
+
+std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
+  constexpr double kShare = 1.2;      // share of what is told: wheels may slide
+  constexpr double kLeast = 0.5;      // metres
+  constexpr double kUntold = 1.5;     // metres in the first second: dead encoders are to lose no frame that is tracked
+  constexpr double kUsualArm = 1.0;   // metres, while it is not known
+  constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away
+  if (!mounting_ && !is_metric) return {};
+  const Timestamp offset = from_seconds(time_offset());
+  const auto distance = wheels_.distance(earlier + offset, later + offset);
+  if (!distance) return {};
+  const double arm = mounting_ ? mounting_->base_from_body.translation.norm() : kUsualArm;
+  const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
+                        kUntold * std::clamp(to_seconds(later - earlier), 0.0, 1.0);
+  return metres / (mounting_ ? mounting_->metres_per_unit : 1.0);
+}
+
+std::optional<BodyMotion> MotionPrior::way_between(Timestamp earlier, Timestamp later) const {
+  constexpr double kLeastTurn = 1e-4;  // radians
+  const auto turn = turn_by_gyroscope(earlier, later);
+  auto motion = by_wheels(earlier, later, turn);
+  if (!motion || !turn) return motion;
   const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
   motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
   return motion;

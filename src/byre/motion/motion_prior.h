@@ -36,6 +36,17 @@ class MotionPrior {
   // on as it was seen, for a second at most. Empty where it is not known.
   std::optional<BodyMotion> between(Timestamp earlier, Timestamp later) const;
 
+  // The same of moments that may be long ago, by what is known now: by wheels alone, with the turn by the gyroscope.
+  std::optional<BodyMotion> way_between(Timestamp earlier, Timestamp later) const;
+
+  // How far the body can be, in the map's lengths, from where it was: no farther than wheels turned. Empty where that
+  // is not known; is_metric: the map's lengths are metres, so that wheels tell it before it is known how they are
+  // mounted.
+  std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
+
+  // After the last frame: the mounting that was known by what was seen as the map has it in the end.
+  void look_again(const Trajectory& seen);
+
   // The final poses of frames that were seen, with those of frames that wheels lead to from them.
   Trajectory completed(Trajectory seen) const;
 

@@ -103,6 +103,48 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
+TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  const MotionPrior prior = followed(drive, {.gyroscope = true}, 60.0, 60.0);
+  const auto told = prior.way_between(from_seconds(2.0), from_seconds(3.0));
+  ASSERT_TRUE(told);
+  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 2.0, 3.0));
+  EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.01);
+  EXPECT_LT(error.tail<3>().norm(), 0.01);
+}
+
+TEST(MotionPrior, ReachesNoFartherThanWheelsTurned) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  const MotionPrior prior = followed(drive, {}, 30.0, 40.0);
+  const auto reach = prior.reach(from_seconds(30.0), from_seconds(36.0), false);
+  ASSERT_TRUE(reach);
+  EXPECT_GT(*reach, true_motion(drive, 30.0, 36.0).translation.norm());
+  EXPECT_LT(*reach * drive.metres_per_unit, 7.0);  // metres; the base went 3 m
+  EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "wheels were not heard";
+}
+
+TEST(MotionPrior, ReachesAsFarAsWheelsTurnedBeforeItKnowsThemWhereLengthsAreMetres) {
+  const MotionPrior prior = followed({.base_from_body = camera_on_base()}, {}, 1.0, 2.0);
+  ASSERT_FALSE(prior.wheels());
+  EXPECT_FALSE(prior.reach(from_seconds(1.0), from_seconds(1.9), false));
+  const auto reach = prior.reach(from_seconds(1.0), from_seconds(1.9), true);
+  ASSERT_TRUE(reach);
+  EXPECT_GT(*reach, 0.45);
+  EXPECT_LT(*reach, 3.5);
+}
+
+// As after an adjustment of the whole map, by which one camera's unit is another.
+TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
+  Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  MotionPrior prior = followed(drive, {}, 60.0, 60.0);
+  drive.metres_per_unit = 0.38;
+  std::mt19937 random(7);
+  Trajectory seen;
+  for (int i = 0; i < 600; ++i) seen.push_back({from_seconds(0.1 * i), drive.seen(0.1 * i, random)});
+  prior.look_again(seen);
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.38, 0.001);
+}
+
 // Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
 TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};

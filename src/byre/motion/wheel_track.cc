@@ -1,5 +1,6 @@
 #include "byre/motion/wheel_track.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace byre {
@@ -34,6 +35,29 @@ std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {
 std::optional<Pose> WheelTrack::between(Timestamp earlier, Timestamp later) const {
   const auto from = pose_at(earlier), to = pose_at(later);
   return from && to ? std::optional(inverse(*from) * *to) : std::nullopt;
+}
+
+std::optional<WheelTrack::Distance> WheelTrack::distance(Timestamp earlier, Timestamp later) const {
+  const auto from = pose_at(earlier), to = pose_at(later);
+  if (!from || !to) return {};
+  Distance distance;
+  Timestamp time = earlier;
+  Pose last = *from;
+  const auto go_to = [&](const StampedPose& next) {
+    const Pose step = inverse(last) * next.world_from_body;
+    distance.metres += step.translation.norm();
+    distance.radians += rotation_log(step.rotation).norm();
+    time = next.time;
+    last = next.world_from_body;
+  };
+  for (auto sample = std::ranges::upper_bound(samples_, earlier, {}, &StampedPose::time);
+       sample != samples_.end() && sample->time < later; ++sample) {
+    if (sample->time - time > kMaxWheelGap) return {};
+    go_to(*sample);
+  }
+  if (later - time > kMaxWheelGap) return {};
+  go_to({later, *to});
+  return distance;
 }
 
 }  // namespace byre

@@ -22,6 +22,13 @@ class WheelTrack {
   // The base's motion, earlier_from_later; empty where either end is not known.
   std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
 
+  // How far the base went, and turned, to and fro counted; empty unless it was told all along.
+  struct Distance {
+    double metres = 0.0;
+    double radians = 0.0;
+  };
+  std::optional<Distance> distance(Timestamp earlier, Timestamp later) const;
+
  private:
   Trajectory samples_;
 };

@@ -41,12 +41,21 @@ struct BundleCalibration {
   CalibrationMatrix information = CalibrationMatrix::Identity();
 };
 
+// How one camera moved to where another one is, as wheels and a gyroscope tell it.
+struct BundleMotion {
+  int earlier = 0;  // indices into BundleProblem::poses
+  int later = 0;
+  Pose later_from_earlier;
+  Matrix6 information = Matrix6::Identity();  // inverse covariance of delta in exp_pose(delta) * later_from_earlier
+};
+
 // Everything the solver needs, by value; knows nothing of maps.
 struct BundleProblem {
   std::vector<Rig> rigs;
   std::vector<BundlePose> poses;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
+  std::vector<BundleMotion> motions;             // between poses that are observed
   std::optional<BundleCalibration> calibration;  // empty: the calibration is taken as it is
 };
 

@@ -1,5 +1,6 @@
 #include "byre/optimise/bundle_covariance.h"
 
+#include "byre/optimise/bundle_motion.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
 
@@ -88,6 +89,15 @@ class ReducedMatrix {
 
   void add(int slot, const Matrix6& information) { at(slot, slot) += information; }
 
+  // Between two poses; what both slots have in common is kept where it lies in the lower triangle.
+  void add(int row, int column, const Matrix6& information) {
+    if (column <= row) {
+      at(row, column) += information;
+    } else {
+      at(column, row) += information.transpose();
+    }
+  }
+
   // Subtracts what finding the point's position has used up.
   void eliminate(const std::vector<Block>& blocks, const Eigen::Matrix3d& point_covariance) {
     for (const Block& row : blocks) {
@@ -124,6 +134,20 @@ Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_wor
   Eigen::Matrix<double, 1, 6> by_pose;
   by_pose << by_camera, -by_camera * skew(place_in_camera);
   return by_pose.transpose() * by_pose;
+}
+
+// What told motions tell of poses.
+void add_motions(ReducedMatrix& reduced, const BundleProblem& solved, const std::vector<int>& slots) {
+  for (const BundleMotion& motion : solved.motions) {
+    const Pose& earlier = solved.poses[motion.earlier].camera_from_world;
+    const Pose& later = solved.poses[motion.later].camera_from_world;
+    const Matrix6 information = motion_error(motion, earlier, later).weight * motion.information;
+    const auto [by_earlier, by_later] = motion_slopes(earlier, later);
+    const int first = slots[motion.earlier], second = slots[motion.later];
+    if (first >= 0) reduced.add(first, by_earlier.transpose() * information * by_earlier);
+    if (second >= 0) reduced.add(second, by_later.transpose() * information * by_later);
+    if (first >= 0 && second >= 0) reduced.add(second, first, by_later.transpose() * information * by_earlier);
+  }
 }
 
 ReducedMatrix reduce_to_poses(const BundleProblem& solved, const std::vector<int>& observations,
@@ -178,6 +202,7 @@ std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const st
   if (scale && slots[scale->pose] >= 0) {
     reduced.add(slots[scale->pose], scale_information(*scale, solved.poses[scale->pose].camera_from_world));
   }
+  add_motions(reduced, solved, slots);
   return last_marginal(reduced.lower_triangle());
 }
 

@@ -42,13 +42,31 @@ std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& 
   return anchor;
 }
 
+// A pose that nothing is seen from stays where it is, which tells nothing.
+std::vector<int> motions_that_count(const BundleProblem& problem, const BundleRoles& roles,
+                                    const std::vector<bool>& is_observed) {
+  std::vector<int> indices;
+  for (int i = 0; i < static_cast<int>(problem.motions.size()); ++i) {
+    const BundleMotion& motion = problem.motions[i];
+    const bool is_between_observed = is_observed[motion.earlier] && is_observed[motion.later];
+    if (is_between_observed && (roles.pose_moves[motion.earlier] || roles.pose_moves[motion.later])) {
+      indices.push_back(i);
+    }
+  }
+  return indices;
+}
+
 }  // namespace
 
 BundleRoles choose_roles(const BundleProblem& problem) {
-  BundleRoles roles{std::vector<bool>(problem.poses.size(), false), std::vector<bool>(problem.points.size(), false),
-                    observations_in_front(problem)};
+  BundleRoles roles{std::vector<bool>(problem.poses.size(), false),
+                    std::vector<bool>(problem.points.size(), false),
+                    observations_in_front(problem),
+                    {}};
+  std::vector<bool> is_observed(problem.poses.size(), false);
   for (const int i : roles.observations) {
     const BundleObservation& observation = problem.observations[i];
+    is_observed[observation.pose] = true;
     roles.pose_moves[observation.pose] = !problem.poses[observation.pose].fixed;
     roles.point_moves[observation.point] = !problem.points[observation.point].fixed;
   }
@@ -57,6 +75,7 @@ BundleRoles choose_roles(const BundleProblem& problem) {
     if (first != roles.pose_moves.end()) *first = false;
   }
   std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
+  roles.motions = motions_that_count(problem, roles, is_observed);
   // Points are eliminated one by one.
   std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
   return roles;
@@ -64,7 +83,7 @@ BundleRoles choose_roles(const BundleProblem& problem) {
 
 std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles) {
   const auto anchor = only_anchor(problem, roles);
-  if (!anchor) return std::nullopt;
+  if (!anchor || !roles.motions.empty()) return std::nullopt;
   HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (!roles.pose_moves[i]) continue;

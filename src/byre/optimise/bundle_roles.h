@@ -13,6 +13,7 @@ struct BundleRoles {
   std::vector<bool> pose_moves;
   std::vector<bool> point_moves;
   std::vector<int> observations;  // indices: in front of the camera, and not between two fixed things; by point
+  std::vector<int> motions;       // indices: not between two fixed poses
 
   bool moves(const BundleObservation& observation) const {
     return pose_moves[observation.pose] || point_moves[observation.point];

@@ -1,5 +1,6 @@
 #include "byre/optimise/bundle_schur.h"
 
+#include "byre/optimise/bundle_motion.h"
 #include "byre/optimise/calibration_border.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reduced_system.h"
@@ -90,6 +91,7 @@ class SchurBundle {
     for (const BundlePose& pose : problem.poses) estimate_.poses.push_back(pose.camera_from_world);
     for (const BundlePoint& point : problem.points) estimate_.points.push_back(point.position_in_world);
     estimate_.update_rotations();
+    for (const int i : roles.motions) motions_.push_back(&problem.motions[static_cast<std::size_t>(i)]);
     for (const int i : roles.observations) {
       const BundleObservation& seen = problem.observations[static_cast<std::size_t>(i)];
       if (tracks_.empty() || tracks_.back().point != seen.point) {
@@ -125,13 +127,16 @@ class SchurBundle {
   void eliminate(std::size_t index);
   bool solve_poses(Step& step);
   void add_scale();
+  void add_motion(const BundleMotion& motion);
+  double cost_of_motions(const Estimate& estimate) const;
 
-  std::optional<HeldDistance> scale_;  // constant after construction, as are the next five
+  std::optional<HeldDistance> scale_;  // constant after construction, as are the next six
   double huber_width_ = 0.0;
   std::vector<int> slots_;  // one a pose
   int slot_count_ = 0;
   std::vector<Track> tracks_;
   std::vector<Term> terms_;
+  std::vector<const BundleMotion*> motions_;  // owned by the caller
 
   Estimate estimate_;
   // As linearise leaves them.
@@ -176,6 +181,14 @@ std::vector<std::vector<int>> SchurBundle::neighbours() const {
       }
     }
     std::ranges::sort(columns);
+  }
+  for (const BundleMotion* const motion : motions_) {
+    const auto [column, row] =
+        std::minmax(slots_[static_cast<std::size_t>(motion->earlier)], slots_[static_cast<std::size_t>(motion->later)]);
+    if (column < 0) continue;
+    std::vector<int>& columns = neighbours[static_cast<std::size_t>(row)];
+    const auto place = std::ranges::lower_bound(columns, column);
+    if (place == columns.end() || *place != column) columns.insert(place, column);
   }
   return neighbours;
 }
@@ -265,6 +278,40 @@ void SchurBundle::add_scale() {
   gradient_.segment<6>(6 * slot) += residual * by_pose.transpose();
 }
 
+void SchurBundle::add_motion(const BundleMotion& motion) {
+  const auto earlier = static_cast<std::size_t>(motion.earlier), later = static_cast<std::size_t>(motion.later);
+  const Pose& earlier_pose = estimate_.poses[earlier];
+  const Pose& later_pose = estimate_.poses[later];
+  const MotionError error = motion_error(motion, earlier_pose, later_pose);
+  const MotionSlopes slopes = motion_slopes(earlier_pose, later_pose);
+  const Matrix6 by_earlier = by_turn_and_translation(slopes.by_earlier, earlier_pose);
+  const Matrix6 by_later = by_turn_and_translation(slopes.by_later, later_pose);
+  const Matrix6 information = error.weight * motion.information;
+  const int earlier_slot = slots_[earlier], later_slot = slots_[later];
+  const auto add = [&](int slot, const Matrix6& slope) {
+    own_[static_cast<std::size_t>(slot)].noalias() += slope.transpose() * information * slope;
+    gradient_.segment<6>(6 * slot).noalias() += slope.transpose() * information * error.residual;
+  };
+  if (earlier_slot >= 0) add(earlier_slot, by_earlier);
+  if (later_slot >= 0) add(later_slot, by_later);
+  if (earlier_slot < 0 || later_slot < 0) return;
+  if (later_slot > earlier_slot) {
+    reduced_->at(later_slot, earlier_slot) += by_later.transpose() * information * by_earlier;
+  } else {
+    reduced_->at(earlier_slot, later_slot) += by_earlier.transpose() * information * by_later;
+  }
+}
+
+double SchurBundle::cost_of_motions(const Estimate& estimate) const {
+  double twice = 0.0;
+  for (const BundleMotion* const motion : motions_) {
+    twice += motion_error(*motion, estimate.poses[static_cast<std::size_t>(motion->earlier)],
+                          estimate.poses[static_cast<std::size_t>(motion->later)])
+                 .cost;
+  }
+  return twice;
+}
+
 double SchurBundle::linearise(double radius) {
   const Eigen::Index size = 6 * slot_count_;
   reduced_->set_zero();
@@ -275,6 +322,7 @@ double SchurBundle::linearise(double radius) {
   if (border_) border_->begin(estimate_.calibration);
   for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i, radius);
   if (scale_) add_scale();
+  for (const BundleMotion* const motion : motions_) add_motion(*motion);
   damping_.resize(size);
   for (int slot = 0; slot < slot_count_; ++slot) {
     const Matrix6& own = own_[static_cast<std::size_t>(slot)];
@@ -368,6 +416,7 @@ double SchurBundle::cost_of(const Estimate& estimate) const {
     }
   }
   if (border_) twice += 2.0 * border_->cost(estimate.calibration);
+  twice += cost_of_motions(estimate);
   if (!scale_) return 0.5 * twice;
   const Pose& pose = estimate.poses[static_cast<std::size_t>(scale_->pose)];
   const double residual = ((pose * scale_->place_in_world).norm() - scale_->distance) / scale_->sigma();

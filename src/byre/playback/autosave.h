@@ -1,12 +1,10 @@
 #pragma once
 
-#include "byre/geometry/calibration_change.h"
-#include "byre/map/map.h"
+#include "byre/system/engine.h"
 #include "byre/workers/stopwatch.h"
 
 #include <functional>
 #include <future>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +14,12 @@ namespace byre {
 // saving has a thread of its own, and a map that comes due meanwhile is passed over.
 class Autosave {
  public:
-  using Save = std::function<void(const Map& online, const std::optional<RefinedCalibration>& calibration)>;
+  using Save = std::function<void(const Map& online, const KeptWithMap& kept)>;
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
-  // After each frame; calibration: by which the map lies, where that was refined.
-  void offer(const Map& online, const std::optional<RefinedCalibration>& calibration = {});
-  void finish();  // waits for the thread
+  void offer(const Map& online, const KeptWithMap& kept);  // after each frame
+  void finish();                                           // waits for the thread
 
   int saved() const { return saved_; }                                    // how often it was
   const std::vector<std::string>& failures() const { return failures_; }  // why it was not

@@ -106,7 +106,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
     if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
     is_begun = is_begun || has_pose(run.frames.back());
-    if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.session().self_calibration());
+    if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.kept_with_map());
   }
   const std::size_t noted_jobs = engine.log().job_seconds.size();
   if (hooks.should_stop()) engine.hurry();

@@ -60,8 +60,8 @@ struct MapRunHooks {
   std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
   std::function<void(const RunView& view)> look;  // unless empty, after each frame that could be read; not in its time
-  std::function<void(const Map& online, const std::optional<RefinedCalibration>& calibration)>
-      offer_map;  // unless empty, after each frame from the first with a pose on
+  // Unless empty, after each frame from the first with a pose on.
+  std::function<void(const Map& online, const KeptWithMap& kept)> offer_map;
   std::function<void(const char* step)> before_finishing_step;
 };
 

@@ -11,6 +11,7 @@
 namespace byre {
 namespace {
 
+using testing::AllOf;
 using testing::Each;
 using testing::Gt;
 using testing::SizeIs;
@@ -154,6 +155,21 @@ TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));
   EXPECT_FALSE(mapped.finishing) << "no places were recognised";
+}
+
+TEST(RunMap, OffersHowWheelsAreMountedWithTheMap) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 2});
+  EngineOptions options;
+  options.mounting.wheels.emplace().metres_per_unit = 1.02;  // as when the map was made that is gone on with
+  MapRunHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const MappedFrame&) {};
+  std::vector<double> offered;
+  hooks.offer_map = [&offered](const Map&, const KeptWithMap& kept) {
+    offered.push_back(kept.mounting.wheels ? kept.mounting.wheels->metres_per_unit : 0.0);
+  };
+  run_map(*recording, options, hooks);
+  EXPECT_THAT(offered, AllOf(SizeIs(2), Each(1.02)));
 }
 
 TEST(RunMap, GoesOnPastImagesThatAreTornOrAbsent) {

@@ -105,8 +105,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   if (trusted_place_.is_news(report.refused_place, report.health.verdict)) {
     report.events.push_back(SessionEvent::place_refused);
   }
-  const bool was_error_told = std::exchange(is_error_told_, is_navigation_error(seconds_without));
-  if (is_error_told_ && !was_error_told) report.events.push_back(SessionEvent::navigation_error);
+  const bool is_error = mission_ ? seconds_without >= options_.state.lost_after : state_ == State::lost;
+  if (!std::exchange(is_error_told_, is_error) && is_error) report.events.push_back(SessionEvent::navigation_error);
 
   whereabouts_.settle_overdue(map(), options_.track);
   seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
@@ -119,10 +119,6 @@ void Session::note_quality(const FrameReport& report) {
   if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.confirmation().is_believed()) return;
   whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
   if (mission_ && report.health.verdict == Verdict::trusted) trusted_place_.note({report.time, *report.map_from_body});
-}
-
-bool Session::is_navigation_error(double seconds_without_pose) const {
-  return mission_ ? seconds_without_pose >= options_.state.lost_after : state_ == State::lost;
 }
 
 void Session::take_over_results(FrameReport& report) {
@@ -217,13 +213,16 @@ Session::Located Session::locate(const InputFrame& input) {
         tracker_.track(frame, scene, {last.time, camera_from_world(map(), last), last.keyframe}, whereabouts_.motion());
   }
   if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
-  if (located.track && !whereabouts_.confirmation().is_believed() && tracker_.is_doubtful(*located.track, scene)) {
+  const auto is_out_of_reach = [&] { return whereabouts_.is_out_of_reach(frame, *located.track, rig_, map()); };
+  const bool is_sure = whereabouts_.confirmation().is_believed();
+  if (located.track && (is_out_of_reach() || (!is_sure && tracker_.is_doubtful(*located.track, scene)))) {
     located.track.reset();
   }
   located.from_nothing = located.track && is_led_back;
   if (!located.track && can_search) {
     Tracker::Find find = tracker_.find(frame, scene);
     located.track = std::move(find.track);
+    if (located.track && is_out_of_reach()) located.track.reset();
     located.refused = find.refused;
     located.from_nothing = located.track.has_value();
     located.is_by_hint = located.from_nothing && hint_.get();

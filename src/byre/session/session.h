@@ -28,11 +28,8 @@ namespace byre {
 // map the second looks for places in that instead.
 struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
-  Lanes(std::unique_ptr<Executor> local_lane) : Lanes(std::move(local_lane), make_inline_executor()) {}
-  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane)
-      : Lanes(std::move(local_lane), std::move(global_lane), make_inline_executor()) {}
-  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane,
-        std::unique_ptr<Executor> calibration_lane)
+  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane = make_inline_executor(),
+        std::unique_ptr<Executor> calibration_lane = make_inline_executor())
       : local(std::move(local_lane)), global(std::move(global_lane)), calibration(std::move(calibration_lane)) {}
 
   std::unique_ptr<Executor> local;
@@ -49,6 +46,12 @@ class Session {
   // With an offline map it is a mission on that: it finds itself in it, and its poses are in the map's frame.
   Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {},
           std::shared_ptr<const OfflineMap> offline = nullptr);
+
+  // What wheels tell of the way between keyframes, and of how far the robot can be. Call it before the first frame.
+  void hear(TellMotion tell, TellReach reach) {
+    mapper_.hear(std::move(tell));
+    whereabouts_.hear(std::move(reach));
+  }
 
   // Goes on with a map made before, of another recording: the session is lost until it finds itself in it, and what it
   // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
@@ -127,7 +130,6 @@ class Session {
   bool look_for_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
-  bool is_navigation_error(double seconds_without_pose) const;
 
   SessionOptions options_;  // constant after construction
 

@@ -144,6 +144,19 @@ TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
   }
 }
 
+TEST(ToldMotion, RefusesAPlaceThatWheelsCannotHaveLedTo) {
+  const SimulatedMission mission = lap();
+  for (const bool is_told : {true, false}) {
+    Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+    if (is_told) session.hear({}, [](Timestamp, Timestamp) { return std::optional(0.5); });
+    for (std::size_t i = 0; i < kDark; ++i) EXPECT_TRUE(session.process(mission.frames[i]).map_from_body) << i;
+    Frame elsewhere = mission.frames[2];
+    elsewhere.time = mission.frames[kDark].time;
+    EXPECT_EQ(session.process(elsewhere).map_from_body.has_value(), !is_told);
+    EXPECT_TRUE(session.process(mission.frames[kDark + 1]).map_from_body);
+  }
+}
+
 // How long the map's unit is by the frames so far.
 double metres_per_unit(const std::vector<FrameReport>& reports, const SimulatedMission& mission) {
   double seen = 0.0, true_way = 0.0;

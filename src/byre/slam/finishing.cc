@@ -37,7 +37,8 @@ std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypoth
 
 LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
                       const FinishHooks& hooks) {
-  const MapWindow whole = whole_map(online);
+  MapWindow whole = whole_map(online);
+  add_motions(whole, options.motions);
   return apply_correction(adjust_map(whole, edges, options.global, hooks.should_stop), whole, online);
 }
 

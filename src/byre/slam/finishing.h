@@ -2,6 +2,7 @@
 
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/loop_closing.h"
+#include "byre/slam/told_motions.h"
 
 #include <functional>
 #include <vector>
@@ -11,7 +12,8 @@ namespace byre {
 struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
-  PlaceNoise noise;  // noise put on the places that the search for loops is given
+  std::vector<KeyframeMotion> motions;  // see told_motions
+  PlaceNoise noise;                     // noise put on the places that the search for loops is given
 };
 
 // How sound a map is by what can be known without any truth.

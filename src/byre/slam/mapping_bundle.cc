@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace byre {
 namespace {
 
@@ -38,6 +40,18 @@ BundleObservation weighted_observation(const MapWindow& window, const WindowPoin
   return observation;
 }
 
+BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
+  const auto rig_at = [&](int keyframe) {
+    return window.rig_of(window.keyframes[static_cast<std::size_t>(keyframe)]).body_from_camera;
+  };
+  const Pose earlier_camera_from_body = inverse(rig_at(told.earlier)), camera_from_body = inverse(rig_at(told.later));
+  BundleMotion motion{told.earlier, told.later};
+  motion.later_from_earlier =
+      camera_from_body * inverse(told.motion.last_from_body) * inverse(earlier_camera_from_body);
+  motion.information = move_covariance(told.motion.covariance, camera_from_body).inverse();
+  return motion;
+}
+
 // An anchor that sees an offline point has nothing to tell.
 WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
@@ -45,6 +59,7 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   for (const WindowKeyframe& keyframe : window.keyframes) {
     bundle.problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, !keyframe.movable});
   }
+  for (const WindowMotion& told : window.motions) bundle.problem.motions.push_back(bundle_motion(window, told));
   for (std::size_t p = 0; p < window.points.size(); ++p) {
     const WindowPoint& point = window.points[p];
     bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/map/map_view.h"
 
 #include <optional>
@@ -34,11 +35,19 @@ struct WindowPoint {
   int foreign_views_elsewhere = 0;  // by offline keyframes outside the window, of an online point
 };
 
+// How the body moved between two keyframes by what else than the cameras tells it, in the map's lengths.
+struct WindowMotion {
+  int earlier = 0;  // indices into MapWindow::keyframes
+  int later = 0;
+  BodyMotion motion;
+};
+
 // A bounded copy of the maps around the newest keyframes: all that mapping may read.
 struct MapWindow {
   std::vector<Rig> rigs;                  // the online map's, then the offline one's
   std::vector<WindowKeyframe> keyframes;  // the newest first, then by shared points, then offline and online anchors
   std::vector<WindowPoint> points;
+  std::vector<WindowMotion> motions;
 
   const Rig& rig_of(const WindowKeyframe& keyframe) const {
     return rigs[static_cast<std::size_t>(keyframe.keyframe.rig)];

@@ -77,6 +77,10 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
       session_(extractor_.rig(), session_options(given, options),
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
   prior_.begin_with(mounting_before(given, options));
+  session_.hear([this](Timestamp earlier, Timestamp later) { return prior_.way_between(earlier, later); },
+                [this, is_metric = given.tells_metres()](Timestamp earlier, Timestamp later) {
+                  return prior_.reach(earlier, later, is_metric);
+                });
   if (options.self_calibrate) refine_calibration(given, options, before.has_value());
   if (before) session_.continue_map(std::move(*before));
 }
@@ -130,6 +134,7 @@ Finishing Engine::finish_map(const FinishHooks& hooks) {
   const Stopwatch watch;
   Finishing finishing;
   finishing.report = session_.finish_map(hooks);
+  prior_.look_again(session_.final_trajectory());
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   return finishing;

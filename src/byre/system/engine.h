@@ -45,6 +45,12 @@ struct EngineOptions {
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
 
+// What was found out while a map was made, and is kept with it.
+struct KeptWithMap {
+  std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
+  KnownMounting mounting;                         // mounting of wheels and a gyroscope
+};
+
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
 struct StageSeconds {
   double decode = 0.0;  // decoding ahead, in a thread of its own; not in total
@@ -76,7 +82,7 @@ class Engine {
   // given: by which the cameras were said to see. before: the map that is gone on with, an online copy; it needs the
   // vocabulary's words, and options a vocabulary. Throws InputError when the calibration cannot be rectified.
   Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before = {});
-  Engine(const Engine&) = delete;  // executors know where its log is
+  Engine(const Engine&) = delete;  // executors know where its log is, and the session its prior
   Engine& operator=(const Engine&) = delete;
 
   // What wheels and a gyroscope tell, each in order of time, before the frames that it leads to.
@@ -104,6 +110,7 @@ class Engine {
   Trajectory trajectory() const { return prior_.completed(session_.final_trajectory()); }
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
+  KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep()}; }
   // What is kept of the map by now.
   Map kept_map() const;
 

@@ -33,12 +33,7 @@ struct MapRecord {
   fs::path path;
 };
 
-struct KeptOfRun {
-  std::optional<RefinedCalibration> calibration;
-  KnownMounting mounting{};
-};
-
-void save(Map offline, const KeptOfRun& kept, const MapRecord& record) {
+void save(Map offline, const KeptWithMap& kept, const MapRecord& record) {
   const auto& [calibration, mounting] = kept;
   StoredMap stored = record.about;
   note_mounting(mounting, stored.notes);
@@ -50,19 +45,16 @@ void save(Map offline, const KeptOfRun& kept, const MapRecord& record) {
 MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, RecordFile& messages,
                         const InterruptCatcher& interrupt) {
-  Autosave autosave(options.autosave_s.value_or(0.0),
-                    [&record](const Map& online, const std::optional<RefinedCalibration>& calibration) {
-                      save(offline_copy(online), {calibration}, record);
-                    });
+  Autosave autosave(options.autosave_s.value_or(0.0), [&record](const Map& online, const KeptWithMap& kept) {
+    save(offline_copy(online), kept, record);
+  });
   MapRunHooks hooks;
   if (messages.is_wanted()) hooks.look = [&messages](const RunView& view) { messages.note(view); };
   hooks.after_frame = [&messages](int, const MappedFrame& frame) {
     if (!frame.report) messages.note_unread(frame);
   };
   if (options.autosave_s) {
-    hooks.offer_map = [&autosave](const Map& online, const std::optional<RefinedCalibration>& calibration) {
-      autosave.offer(online, calibration);
-    };
+    hooks.offer_map = [&autosave](const Map& online, const KeptWithMap& kept) { autosave.offer(online, kept); };
   }
   MapRun run = input.run(run_options, hooks, interrupt, std::move(before));
   autosave.finish();

@@ -122,6 +122,7 @@ void save_online_map(const MapRun& run, const RunOptions& options, const RunInpu
   stored.recordings = {input.source()};
   input.note_times(run, stored.recordings.back());
   stored.recordings.back().refined = run.calibration;
+  note_mounting(run.told.to_keep, stored.notes);
   stored.scale = input.scaled().is_metric ? MapScale::metric : MapScale::unknown;
   save_for_use(std::move(stored), vocabulary, "", *options.online_map);
 }

@@ -5,6 +5,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input/formatted.h"
 #include "byre/map/scaled_copy.h"
+#include "byre/motion/known_mounting.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/slam/state.h"
 #include "byre/trajectory_file.h"
@@ -264,6 +265,17 @@ TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
   EXPECT_EQ(run("validate online.byre").exit_code, 0);
   const Outcome found = run("localise online.byre " + rendered_room() + " --frames 20:");
   EXPECT_THAT(found.output, HasSubstr("found        4 of 4 frames"));
+}
+
+TEST_F(MissionProgram, NotesInTheMapThatItSavesHowWheelsAreMounted) {
+  ASSERT_EQ(run("map " + rendered_room() + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
+  StoredMap stored = load_map(folder_ / "corner.byre");
+  KnownMounting known;
+  known.wheels.emplace().metres_per_unit = 1.02;
+  note_mounting(known, stored.notes);
+  save_map(stored, folder_ / "corner.byre");
+  ASSERT_EQ(run_room("--map corner.byre --frames 3: --save-online online.byre").exit_code, 0);
+  EXPECT_EQ(load_map(folder_ / "online.byre").notes, stored.notes);
 }
 
 TEST_F(MissionProgram, FailsInAnotherRoomAndStillSaysWhatItSaw) {

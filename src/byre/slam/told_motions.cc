@@ -1,0 +1,86 @@
+#include "byre/slam/told_motions.h"
+
+#include "byre/alignment.h"
+#include "byre/slam/body_pose.h"
+#include "byre/slam/loop_closing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace byre {
+namespace {
+
+constexpr Timestamp kLongest = std::chrono::seconds(10);
+
+// Sigmas of what is told and a share of the motion for what keyframes that are not adjusted yet err by.
+bool contradicts(const BodyMotion& told, const Pose& seen) {
+  constexpr double kSigmas = 5.0;
+  constexpr double kShare = 0.1;
+  const Vector6 error = log_pose(inverse(told.last_from_body) * seen);
+  const double way = std::sqrt(told.covariance.topLeftCorner<3, 3>().trace());
+  const double turn = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
+  return error.head<3>().norm() > kSigmas * way + kShare * seen.translation.norm() ||
+         error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
+}
+
+Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {
+  const Keyframe &from = *online.find_keyframe(earlier), &to = *online.find_keyframe(later);
+  return inverse(body_pose(rig_of(online, from), from.camera_from_world)) *
+         body_pose(rig_of(online, to), to.camera_from_world);
+}
+
+}  // namespace
+
+std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
+                                         const TellMotion& tell) {
+  std::vector<KeyframeMotion> motions;
+  if (!tell) return motions;
+  std::erase_if(keyframes, [&](KeyframeId id) {
+    const Keyframe* const keyframe = online.find_keyframe(id);
+    return keyframe == nullptr || keyframe->recording != recording;
+  });
+  std::ranges::sort(keyframes);
+  for (std::size_t i = 1; i < keyframes.size(); ++i) {
+    const Keyframe& earlier = *online.find_keyframe(keyframes[i - 1]);
+    const Keyframe& later = *online.find_keyframe(keyframes[i]);
+    if (rig_of(online, later).is_stereo() || later.frame.time - earlier.frame.time > kLongest) continue;
+    const auto told = tell(earlier.frame.time, later.frame.time);
+    if (!told) continue;
+    if (!contradicts(*told, seen_between(online, keyframes[i - 1], keyframes[i])))
+      motions.push_back({keyframes[i - 1], keyframes[i], *told});
+  }
+  return motions;
+}
+
+std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions) {
+  constexpr std::size_t kMany = 20;
+  if (motions.size() < kMany) return motions;
+  double told_squared = 0.0, seen_by_told = 0.0;
+  for (const KeyframeMotion& motion : motions) {
+    const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
+    const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
+    told_squared += weight * told.squaredNorm();
+    seen_by_told += weight * seen_between(online, motion.earlier, motion.later).translation.dot(told);
+  }
+  if (!(seen_by_told > 0.0)) return motions;
+  const double factor = seen_by_told / told_squared;
+  for (KeyframeMotion& motion : motions) {
+    motion.motion = {scale_lengths(motion.motion.last_from_body, factor),
+                     scale_lengths(motion.motion.covariance, factor)};
+  }
+  return motions;
+}
+
+void add_motions(MapWindow& window, const std::vector<KeyframeMotion>& motions) {
+  if (motions.empty()) return;
+  std::map<KeyframeId, int> index_of;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) index_of[window.keyframes[i].id] = static_cast<int>(i);
+  for (const KeyframeMotion& motion : motions) {
+    const auto earlier = index_of.find(motion.earlier), later = index_of.find(motion.later);
+    if (earlier == index_of.end() || later == index_of.end()) continue;
+    window.motions.push_back({earlier->second, later->second, motion.motion});
+  }
+}
+
+}  // namespace byre

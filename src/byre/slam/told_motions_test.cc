@@ -1,0 +1,82 @@
+#include "byre/slam/told_motions.h"
+
+#include "byre/slam/mission_scene.h"
+#include "byre/trajectory.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class MotionsOfATrueMap : public ::testing::Test {
+ protected:
+  static SimulatedMission quarter_circle_of(Rig rig) {
+    return simulate_mission(rig, circling_trajectory(40, 10.0, 2.0, 0.25), {});
+  }
+  static Rig one_camera() {
+    Rig rig = simulated_rig();
+    rig.baseline = 0.0;
+    return rig;
+  }
+
+  const SimulatedMission mission_ = quarter_circle_of(one_camera());
+  Map map_ = true_map(mission_, 4, Origin::online);
+
+  // As wheels tell it that are so much too large, and spin from a time on.
+  TellMotion told(double scale = 1.0, Timestamp spinning = Timestamp::max()) const {
+    return [this, scale, spinning](Timestamp earlier, Timestamp later) -> std::optional<BodyMotion> {
+      const Timestamp gap = std::chrono::seconds(1);
+      Pose motion = inverse(*pose_at(mission_.truth, earlier, gap)) * *pose_at(mission_.truth, later, gap);
+      motion.translation *= later > spinning ? 3.0 * scale : scale;
+      return motion;
+    };
+  }
+};
+
+TEST_F(MotionsOfATrueMap, LeadFromEachKeyframeToTheNext) {
+  std::vector<KeyframeId> ids = map_.keyframe_ids();
+  const std::size_t ways = ids.size() - 1;
+  std::ranges::reverse(ids);
+  const auto motions = told_motions(map_, ids, 0, told());
+  ASSERT_THAT(motions, SizeIs(ways));
+  EXPECT_EQ(motions.front().later, motions[1].earlier);
+  EXPECT_THAT(told_motions(map_, ids, 1, told()), IsEmpty()) << "of another recording";
+  EXPECT_THAT(told_motions(map_, ids, 0, {}), IsEmpty());
+}
+
+TEST_F(MotionsOfATrueMap, AreNotAskedForBesideAPair) {
+  const Map map = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
+  EXPECT_THAT(told_motions(map, map.keyframe_ids(), 0, told()), IsEmpty());
+}
+
+TEST_F(MotionsOfATrueMap, LeaveOutWhatContradictsWhatWasSeen) {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  const Timestamp spinning = map_.find_keyframe(ids[ids.size() - 4])->frame.time;
+  EXPECT_THAT(told_motions(map_, ids, 0, told(1.0, spinning)), SizeIs(ids.size() - 4));
+}
+
+TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
+  const Map map = true_map(mission_, 1, Origin::online);
+  const auto motions = in_lengths_of(map, told_motions(map, map.keyframe_ids(), 0, told(1.03)));
+  const auto exact = told_motions(map, map.keyframe_ids(), 0, told());
+  ASSERT_THAT(motions, SizeIs(exact.size()));
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Eigen::Vector3d& way = exact[i].motion.last_from_body.translation;
+    EXPECT_LT((motions[i].motion.last_from_body.translation - way).norm(), 1e-3 * way.norm());
+  }
+}
+
+TEST_F(MotionsOfATrueMap, GoToAWindowThatHasBothKeyframes) {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  MapWindow window = window_of(map_, {ids[2], ids[1], ids[5]});
+  add_motions(window, told_motions(map_, ids, 0, told()));
+  ASSERT_THAT(window.motions, SizeIs(1));
+  EXPECT_EQ(window.keyframes[static_cast<std::size_t>(window.motions[0].earlier)].id, ids[1]);
+  EXPECT_EQ(window.keyframes[static_cast<std::size_t>(window.motions[0].later)].id, ids[2]);
+}
+
+}  // namespace
+}  // namespace byre
