@@ -42,7 +42,7 @@ BundleScene scene_of_one_camera(int moving_poses, int points) {
                                      .start_position = 0.01,
                                      .start_rotation = 0.005});
   for (int i = 1; i < static_cast<int>(scene.truth.poses.size()); ++i) {
-    BundleMotion told{i - 1, i};
+    BundleMotion told{.earlier = i - 1, .later = i, .later_from_earlier = {}};
     told.later_from_earlier =
         scene.truth.poses[i].camera_from_world * inverse(scene.truth.poses[i - 1].camera_from_world);
     told.information = 1e4 * Matrix6::Identity();
@@ -81,7 +81,7 @@ TEST(ToldMotions, PullOnNothingFromWhereNothingIsSeen) {
   away.x() = 0.3;
   scene.problem.poses.push_back({exp_pose(away) * scene.problem.poses[2].camera_from_world});
   scene.truth.poses.push_back(scene.problem.poses.back());
-  BundleMotion told{2, 5};
+  BundleMotion told{.earlier = 2, .later = 5, .later_from_earlier = {}};
   told.information = 1e4 * Matrix6::Identity();
   scene.problem.motions.push_back(told);
   EXPECT_LT(worst_error(scene), 1e-5);

@@ -45,11 +45,9 @@ BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
     return window.rig_of(window.keyframes[static_cast<std::size_t>(keyframe)]).body_from_camera;
   };
   const Pose earlier_camera_from_body = inverse(rig_at(told.earlier)), camera_from_body = inverse(rig_at(told.later));
-  BundleMotion motion{told.earlier, told.later};
-  motion.later_from_earlier =
-      camera_from_body * inverse(told.motion.last_from_body) * inverse(earlier_camera_from_body);
-  motion.information = move_covariance(told.motion.covariance, camera_from_body).inverse();
-  return motion;
+  return {told.earlier, told.later,
+          camera_from_body * inverse(told.motion.last_from_body) * inverse(earlier_camera_from_body),
+          move_covariance(told.motion.covariance, camera_from_body).inverse()};
 }
 
 // An anchor that sees an offline point has nothing to tell.
