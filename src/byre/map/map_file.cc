@@ -344,7 +344,7 @@ WordsHead words_head(const Bring& bring, const SectionPlace& section, const std:
   return read_words_head(reader);
 }
 
-void require_checksums(const ReadFileAt& read_at, std::size_t size, const std::string& name) {
+void require_checksums(const ReadAt& read_at, std::size_t size, const std::string& name) {
   std::vector<std::byte> header(std::min(size, header_bytes(kSectionCount)));
   read_at(0, header);
   const SectionTable table = read_table(header, size, name);
@@ -355,7 +355,7 @@ void require_checksums(const ReadFileAt& read_at, std::size_t size, const std::s
 }
 
 // Where its sections lie.
-MapFileSource::File file_of(const SectionOpener& open, ReadFileAt read_at, const std::string& name) {
+MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std::string& name) {
   MapFileSource::File file;
   file.read_at = std::move(read_at);
   file.name = name;
@@ -403,7 +403,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   return stored;
 }
 
-StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::string& name) {
+StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name) {
   std::vector<std::vector<std::byte>> pieces;
   const Bring bring = [&](std::size_t offset, std::size_t bytes) {
     read_at(offset, pieces.emplace_back(bytes));

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -98,8 +97,7 @@ StoredMap load_map(const std::filesystem::path& path);
 // checksums of a file of up to 32 MB, some thousand keyframes, are right. A file of a format before 6 is read as a
 // whole. read_at fills in the bytes of a file from a place on, for several threads at once; nothing is checked of these
 // beforehand.
-using ReadFileAt = ReadAt;
-StoredMap open_map(const ReadFileAt& read_at, std::size_t size, const std::string& name);
+StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name);
 StoredMap open_map(const std::filesystem::path& path);
 
 // Where the map of a file lies on a floor plan, without reading the rest of it.

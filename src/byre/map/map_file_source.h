@@ -16,7 +16,7 @@ namespace byre {
 class MapFileSource : public MapSource {
  public:
   struct File {
-    ReadFileAt read_at;
+    ReadAt read_at;
     std::string name;                                // for messages
     std::array<std::size_t, kViewSections> views{};  // where sections begin
     std::size_t words_size = 0;                      // bytes

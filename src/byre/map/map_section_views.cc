@@ -1,4 +1,4 @@
-// What the keyframes see, as format 5 has it: keypoints, descriptors, patches and sightings, rounded to quanta.
+// Reads what the keyframes see, as format 5 has it: keypoints, descriptors, patches and sightings, rounded to quanta.
 
 #include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
@@ -7,55 +7,15 @@
 #include "byre/map/map_quanta.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
+#include "byre/map/map_view_layout.h"
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
-#include <bit>
 #include <memory>
 #include <utility>
 
 namespace byre {
 namespace {
-
-// What a keypoint's first byte tells; its lowest bits are the octave.
-constexpr std::uint8_t kOctaveBits = 7;
-constexpr std::uint8_t kHasDisparity = 8;
-constexpr std::uint8_t kHasPatch = 16;
-constexpr std::uint8_t kSeesPoint = 32;
-constexpr std::uint8_t kNoOctave = 64;  // no sound map has a keypoint with this bit
-constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSeesPoint;
-
-constexpr std::size_t kLeastKeypointBytes = 1 + 2;
-constexpr std::size_t kDisparityBytes = 3;
-constexpr std::size_t kRoundedPatchBytes = 2 + sizeof(PatchCode::centre) + sizeof(PatchCode::steps);
-
-// Bytes that hold all numbers below count.
-std::size_t bytes_for(std::uint64_t count) {
-  return count <= 1 ? 1 : (static_cast<std::size_t>(std::bit_width(count - 1)) + 7) / 8;
-}
-
-std::size_t bytes_for_pixels(int size) {
-  return bytes_for(std::uint64_t{pixel_codes(size)} + 1);
-}
-
-std::uint32_t disparity_code(const Keypoint& keypoint) {
-  return keypoint.has_disparity() ? float24_code(keypoint.disparity) : 0;
-}
-
-std::uint8_t bits_of(const Keypoint& keypoint, bool has_patch, bool sees_point) {
-  return static_cast<std::uint8_t>((keypoint.octave < kOctaves ? keypoint.octave : kNoOctave) |
-                                   (disparity_code(keypoint) != 0 ? kHasDisparity : 0) | (has_patch ? kHasPatch : 0) |
-                                   (sees_point ? kSeesPoint : 0));
-}
-
-void write_keypoint(const Keypoint& keypoint, std::uint8_t bits, const Rig& rig, ByteWriter& writer) {
-  writer.write(bits);
-  writer.write_low_bytes(pixel_code(keypoint.pixel.x(), rig.width), bytes_for_pixels(rig.width));
-  writer.write_low_bytes(pixel_code(keypoint.pixel.y(), rig.height), bytes_for_pixels(rig.height));
-  if ((bits & kHasDisparity) == 0) return;
-  writer.write_low_bytes(disparity_code(keypoint), kDisparityBytes);
-  writer.write(sigma_code(keypoint.disparity_sigma));
-}
 
 float read_coordinate(ByteReader& reader, int size) {
   const auto code = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for_pixels(size)));
@@ -67,18 +27,6 @@ void read_disparity(ByteReader& reader, Keypoint& keypoint) {
   keypoint.disparity = float_of_24(static_cast<std::uint32_t>(reader.read_low_bytes(kDisparityBytes)));
   keypoint.disparity_sigma = sigma_of_code(reader.read<std::uint8_t>());
   if (!(keypoint.disparity > 0.0f)) reader.fail("has a disparity that is none");
-}
-
-void write_descriptors(const Map& map, const Keyframe& keyframe, ByteWriter& writer) {
-  const std::vector<Descriptor>& descriptors = features_of(keyframe).descriptors();
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    const std::optional<PointId>& point = keyframe.sightings[i].point;
-    if (point) {
-      write_difference(descriptors[i], map.find_point(*point)->descriptor, writer);
-    } else {
-      writer.write_all<std::uint64_t>(descriptors[i]);
-    }
-  }
 }
 
 // Keypoints of one keyframe, with the first byte of each.
@@ -101,16 +49,6 @@ ReadKeypoints read_keypoints(ByteReader& reader, const Rig& rig, std::size_t key
     require_no_fault(reader, fault_in(keypoint, rig), "keyframe", keyframe);
   }
   return read;
-}
-
-void write_sighting(const Sighting& sighting, const Keypoint& keypoint, const Rig& rig, std::size_t point_count,
-                    ByteWriter& writer) {
-  writer.write_low_bytes(sighting.point->number, bytes_for(point_count));
-  const Eigen::Vector2f rounded(coordinate_of(pixel_code(keypoint.pixel.x(), rig.width)),
-                                coordinate_of(pixel_code(keypoint.pixel.y(), rig.height)));
-  writer.write_varint(offset_code(sighting.pixel.x() - rounded.x()));
-  writer.write_varint(offset_code(sighting.pixel.y() - rounded.y()));
-  writer.write(sigma_code(sighting.pixel_sigma));
 }
 
 float read_offset(ByteReader& reader) {
@@ -161,14 +99,6 @@ std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<S
   return descriptors;
 }
 
-void write_patch(const Patch& patch, ByteWriter& writer) {
-  const PatchCode code = patch_code(patch);
-  writer.write(code.darkest);
-  writer.write(code.brightest);
-  writer.write_all<std::uint16_t>(code.centre);
-  writer.write_all<std::uint8_t>(code.steps);
-}
-
 Patch read_patch(ByteReader& reader, std::size_t keyframe) {
   PatchCode code;
   code.darkest = reader.read<std::uint8_t>();
@@ -217,8 +147,6 @@ std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartO
   return features;
 }
 
-using ViewSizes = std::array<std::uint32_t, kViewSections>;
-
 // What is left of all sections but that of words, which is kept elsewhere.
 ViewSizes remaining(const ViewSections& sections) {
   ViewSizes sizes{};
@@ -227,20 +155,6 @@ ViewSizes remaining(const ViewSections& sections) {
   sizes[kObservationsOfView] = static_cast<std::uint32_t>(sections.observations.remaining());
   sizes[kDescriptorsOfView] = static_cast<std::uint32_t>(sections.descriptors.remaining());
   return sizes;
-}
-
-ViewSizes written(const ViewWriters& sections) {
-  ViewSizes sizes{};
-  sizes[kFeaturesOfView] = static_cast<std::uint32_t>(sections.features.size());
-  sizes[kPatchesOfView] = static_cast<std::uint32_t>(sections.patches.size());
-  sizes[kObservationsOfView] = static_cast<std::uint32_t>(sections.observations.size());
-  sizes[kDescriptorsOfView] = static_cast<std::uint32_t>(sections.descriptors.size());
-  return sizes;
-}
-
-// Where bytes were left before and are now, of large sections modulo 2^32.
-void set_taken(const ViewSizes& before, const ViewSizes& after, ViewSizes& taken) {
-  for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += before[i] - after[i];
 }
 
 // Reads all that the keyframes see, from sections that each have a part for every keyframe.
@@ -450,28 +364,6 @@ void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyfr
 }
 
 }  // namespace
-
-void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes) {
-  sizes.views.reserve(keyframes.size());
-  for (const Keyframe* const keyframe : keyframes) {
-    const ViewSizes before = written(sections);
-    const Features& features = features_of(*keyframe);
-    const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe->rig)];
-    sections.features.write(static_cast<std::uint32_t>(features.size()));
-    for (int i = 0; i < features.size(); ++i) {
-      const Keypoint& keypoint = features.keypoint(i);
-      const Sighting& sighting = keyframe->sightings[static_cast<std::size_t>(i)];
-      const Patch* const patch = features.find_patch(i);
-      write_keypoint(keypoint, bits_of(keypoint, patch != nullptr, sighting.point.has_value()), rig, sections.features);
-      if (patch) write_patch(*patch, sections.patches);
-      if (sighting.point) {
-        write_sighting(sighting, keypoint, rig, static_cast<std::size_t>(map.point_count()), sections.observations);
-      }
-    }
-    write_descriptors(map, *keyframe, sections.descriptors);
-    set_taken(written(sections), before, sizes.views.emplace_back());
-  }
-}
 
 void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes, PartSizes& sizes) {

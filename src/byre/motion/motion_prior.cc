@@ -15,8 +15,6 @@ constexpr Timestamp kStride = 500ms;       // length of the motions that are com
 constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
-constexpr Timestamp kSamplesKept = 1800s;
-constexpr Timestamp kMostKept = 1800s;   // time that samples are kept while it is not known how wheels are mounted
 constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
 constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
 constexpr double kUnprovenFactor = 9.0;  // factor of the covariance until kBorneOut
@@ -117,7 +115,7 @@ void MotionPrior::forget_old_samples() {
   if (!unseen_.last()) return;
   const Timestamp now = *unseen_.last();
   const Timestamp untold = wheels_.empty() ? now : unseen_.first_untold().value_or(now);
-  const Timestamp oldest = std::max(std::min(now - kSamplesKept, untold - 1s), now - kMostKept);
+  const Timestamp oldest = std::max(std::min(now - samples_kept_, untold - 1s), now - kMostKept);
   wheels_.forget_before(oldest);
   rates_.forget_before(oldest);
 }

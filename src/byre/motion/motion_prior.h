@@ -10,6 +10,7 @@
 #include "byre/motion/wheel_track.h"
 #include "byre/trajectory.h"
 
+#include <chrono>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -24,6 +25,8 @@ class MotionPrior {
   // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
   // it, it is dropped. Call it before anything is told.
   void begin_with(const KnownMounting& known);
+  // Ways of up to half an hour ago will be asked for, not two minutes.
+  void keep_long() { samples_kept_ = kMostKept; }
 
   void add(const StampedPose& wheels);
   void add(const AngularRate& rate);
@@ -61,6 +64,9 @@ class MotionPrior {
   KnownMounting to_keep() const;
 
  private:
+  static constexpr Timestamp kUsuallyKept = std::chrono::minutes(2);
+  static constexpr Timestamp kMostKept = std::chrono::minutes(30);  // while the mounting is not known, too
+
   void forget_old_samples();
   void look_for_mountings();
   void look_for_wheel_mounting();
@@ -84,6 +90,7 @@ class MotionPrior {
 
   WheelTrack wheels_;
   RateTrack rates_;
+  Timestamp samples_kept_ = kUsuallyKept;
   UnseenWay unseen_;
   std::deque<SeenMotion> seen_;       // motions of the last minutes, half a second each
   std::optional<StampedPose> begin_;  // begin of the motion that is being seen

@@ -21,7 +21,7 @@ void WheelTrack::add(const StampedPose& sample) {
 
 void WheelTrack::forget_before(Timestamp time) {
   if (samples_.empty() || samples_.front().time + kKeptLonger >= time) return;
-  std::erase_if(samples_, [time](const StampedPose& old) { return old.time < time; });
+  samples_.erase(samples_.begin(), std::ranges::lower_bound(samples_, time, {}, &StampedPose::time));
 }
 
 std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {
