@@ -108,6 +108,7 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
   seen_.push_back(motion);
   if (seen_.size() > kMostMotions) seen_.pop_front();
   if (++unlooked_ >= kMotionsPerLook) look_for_mountings();
+  presume_mounting();
 }
 
 // What was told of frames in which nothing was seen is kept until it is known how wheels are mounted.
@@ -187,6 +188,19 @@ void MotionPrior::look_for_wheel_mounting() {
   if (found) mounting_ = found;
 }
 
+// By the first seconds, and anew with each motion until it is found.
+void MotionPrior::presume_mounting() {
+  constexpr std::size_t kLeastMotions = 2;
+  presumed_.reset();
+  if (mounting_ || !up_in_body_ || seen_.size() < kLeastMotions) return;
+  presumed_ = presume_wheel_mounting(pairs(), *up_in_body_);
+}
+
+const WheelMounting* MotionPrior::used_mounting() const {
+  if (mounting_) return &*mounting_;
+  return presumed_ ? &*presumed_ : nullptr;
+}
+
 // One that all motions contradict from the start is another mounting. Wheels that slip do not do so for as long.
 void MotionPrior::check_known(double disagreement, const SeenMotion& motion) {
   constexpr double kTellingWay = 0.1;   // metres
@@ -218,7 +232,7 @@ KnownMounting MotionPrior::to_keep() const {
   return keep;
 }
 
-// Precondition: it is known how wheels are mounted.
+// Precondition: it is known or presumed how wheels are mounted.
 UnseenWay::Tell MotionPrior::tell_base() const {
   return [this](Timestamp earlier, Timestamp later) {
     const auto told = told_base(earlier, later, turn_by_gyroscope(earlier, later));
@@ -227,10 +241,11 @@ UnseenWay::Tell MotionPrior::tell_base() const {
 }
 
 Trajectory MotionPrior::completed(Trajectory seen) const {
-  if (!mounting_) return seen;
+  const WheelMounting* const mounting = used_mounting();
+  if (mounting == nullptr) return seen;
   UnseenWay unseen = unseen_;
   unseen.take_down(tell_base());
-  return unseen.completed(std::move(seen), [this](const Pose& base) { return body_motion(*mounting_, base); });
+  return unseen.completed(std::move(seen), [&](const Pose& base) { return body_motion(*mounting, base); });
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {
@@ -258,15 +273,15 @@ std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earli
   return gyroscope_->body_from_gyroscope * *told * gyroscope_->body_from_gyroscope.conjugate();
 }
 
-// turn: the body's by the gyroscope, which replaces the one that wheels tell. Precondition: it is known how wheels are
-// mounted.
+// turn: the body's by the gyroscope, which replaces the one that wheels tell. Precondition: it is known or presumed how
+// wheels are mounted.
 std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, Timestamp later,
                                                             const std::optional<Eigen::Quaterniond>& turn) const {
   const auto told = base_between(earlier, later);
   if (!told) return {};
-  ToldBase base{without_turn_errors(mounting_->turn_errors, *told)};
+  ToldBase base{without_turn_errors(used_mounting()->turn_errors, *told)};
   if (turn) {
-    const Eigen::Quaterniond& base_from_body = mounting_->base_from_body.rotation;
+    const Eigen::Quaterniond& base_from_body = used_mounting()->base_from_body.rotation;
     const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
     base.is_way_known = !is_slip(base.motion.rotation, base_turn, to_seconds(later - earlier));
     base.motion.rotation = base_turn;
@@ -276,11 +291,12 @@ std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, T
 
 std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp later,
                                                  const std::optional<Eigen::Quaterniond>& turn) const {
-  if (!mounting_) return {};
+  const WheelMounting* const mounting = used_mounting();
+  if (mounting == nullptr) return {};
   const auto base = told_base(earlier, later, turn);
   if (!base) return {};
-  const Pose body = body_motion(*mounting_, base->motion);
-  BodyMotion motion{body, covariance_of(body, *mounting_)};
+  const Pose body = body_motion(*mounting, base->motion);
+  BodyMotion motion{body, covariance_of(body, *mounting)};
   if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
   return motion;
@@ -317,14 +333,15 @@ std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, boo
   constexpr double kUntold = 1.5;     // metres in the first second: dead encoders are to lose no frame that is tracked
   constexpr double kUsualArm = 1.0;   // metres, while it is not known
   constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away
-  if (!mounting_ && !is_metric) return {};
+  const WheelMounting* const mounting = used_mounting();
+  if (mounting == nullptr && !is_metric) return {};
   const Timestamp offset = from_seconds(time_offset());
   const auto distance = wheels_.distance(earlier + offset, later + offset);
   if (!distance) return {};
   const double arm = mounting_ ? mounting_->base_from_body.translation.norm() : kUsualArm;
   const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
                         kUntold * std::clamp(to_seconds(later - earlier), 0.0, 1.0);
-  return metres / (mounting_ ? mounting_->metres_per_unit : 1.0);
+  return metres / (mounting != nullptr ? mounting->metres_per_unit : 1.0);
 }
 
 std::optional<BodyMotion> MotionPrior::way_between(Timestamp earlier, Timestamp later) const {

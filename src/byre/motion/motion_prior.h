@@ -18,13 +18,16 @@
 namespace byre {
 
 // What wheels and a gyroscope tell of the body's motion. How they are mounted, their scale, bias and delay are found by
-// comparing them with what is seen, and followed while that goes on. Nothing is told before they are known. Where
-// wheels do not move as is seen they are left out, until they do again. Call it from one thread.
+// comparing them with what is seen, and followed while that goes on. Nothing is told before they are known, or can be
+// presumed. Where wheels do not move as is seen they are left out, until they do again. Call it from one thread.
 class MotionPrior {
  public:
   // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
   // it, it is dropped. Call it before anything is told.
   void begin_with(const KnownMounting& known);
+  // Which axis of the body points up, about: by that the mounting is guessed from the first motions, until they tell
+  // it. Without it nothing is told before. Call it before anything is told.
+  void presume_upright(const Eigen::Vector3d& up_in_body) { up_in_body_ = up_in_body; }
   // Ways of up to half an hour ago will be asked for, not two minutes.
   void keep_long() { samples_kept_ = kMostKept; }
 
@@ -70,6 +73,8 @@ class MotionPrior {
   void forget_old_samples();
   void look_for_mountings();
   void look_for_wheel_mounting();
+  void presume_mounting();
+  const WheelMounting* used_mounting() const;  // nullptr where nothing is known or presumed
   void watch_for_slip(const SeenMotion& motion);
   void check_known(double disagreement, const SeenMotion& motion);
   void drop_known_wheels();
@@ -99,6 +104,8 @@ class MotionPrior {
   int unlooked_ = 0;                  // motions seen since mountings were looked for
   int looks_ = 0;                     // looks by which the mounting of wheels was known
   std::optional<WheelMounting> mounting_;
+  std::optional<Eigen::Vector3d> up_in_body_;
+  std::optional<WheelMounting> presumed_;  // while mounting_ is not known
   std::optional<GyroscopeMounting> gyroscope_;
   std::optional<double> time_offset_;
   bool is_slipping_ = false;

@@ -253,6 +253,32 @@ TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
   }
 }
 
+// A gap in sight before the motions tell how wheels are mounted.
+TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  const auto last_told = [&](double dark, bool is_upright) {
+    MotionPrior prior;
+    if (is_upright) prior.presume_upright(-Eigen::Vector3d::UnitY());
+    std::mt19937 random(5);
+    for (int i = 0; i <= 60; ++i) {
+      const double t = 0.05 * i;
+      prior.add(drive.wheels(t));
+      prior.note(from_seconds(t), t < dark ? std::optional(drive.seen(t, random)) : std::nullopt);
+    }
+    EXPECT_FALSE(prior.wheels());
+    EXPECT_FALSE(prior.to_keep().wheels);
+    return prior.between(from_seconds(dark), from_seconds(3.0));
+  };
+  EXPECT_FALSE(last_told(1.5, false));
+  EXPECT_FALSE(last_told(0.4, true));
+  const auto told = last_told(1.5, true);
+  ASSERT_TRUE(told);
+  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 1.5, 3.0));
+  EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.1);  // metres, of 0.75
+  EXPECT_LT(error.tail<3>().norm(), 0.1);
+  EXPECT_LT(error.transpose() * told->covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
 TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();

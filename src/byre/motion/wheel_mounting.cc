@@ -12,12 +12,11 @@
 namespace byre {
 namespace {
 
-constexpr double kLeastTurn = 0.8;           // radians, all turns together; the deviations decide
-constexpr double kLeastWay = 1.0;            // metres, all ways together
-constexpr double kMaxAxisError = 0.35;       // radians, median angle between the axes of turns that were seen
-constexpr double kMaxScaleSigma = 0.05;      // share
-constexpr double kMaxDirectionSigma = 0.05;  // radians
-constexpr int kRounds = 8;                   // rounds of weighting again
+constexpr double kLeastTurn = 0.8;      // radians, all turns together; the deviations decide
+constexpr double kLeastWay = 1.0;       // metres, all ways together
+constexpr double kMaxAxisError = 0.35;  // radians, median angle between the axes of turns that were seen
+constexpr double kMaxSigma = 0.05;      // share of the scale, and radians of the direction
+constexpr int kRounds = 8;              // rounds of weighting again
 
 using Vector4 = Eigen::Vector4d;
 
@@ -160,6 +159,23 @@ std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const Kn
   return solution;
 }
 
+// The axis nearest to the one that is presumed about which the body turns, and along which it does not drive.
+std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body) {
+  constexpr double kPresumed = 0.05;  // sum of squared turns that the presumption counts for
+  constexpr double kTurning = 0.1;    // radians, of a motion whose way tells badly what is ahead
+  constexpr double kLeast = 0.3;      // length of what is left of an axis
+  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), turned = kPresumed * up_in_body.normalized();
+  for (const MotionPair& motion : motions) {
+    const double yaw = yaw_of(motion.base);
+    ahead += motion.base.translation.x() * motion.body.translation / (1.0 + std::pow(yaw / kTurning, 2));
+    turned += yaw * rotation_log(motion.body.rotation);
+  }
+  if (!(ahead.norm() > 0.0)) return {};
+  ahead.normalize();
+  const Eigen::Vector3d up = turned - ahead * ahead.dot(turned);
+  return up.norm() > kLeast * turned.norm() ? std::optional(up.normalized()) : std::nullopt;
+}
+
 double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up) {
   constexpr double kSmall = 0.05;  // radians
   std::vector<double> errors;
@@ -168,6 +184,28 @@ double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Ve
     if (std::abs(yaw) > kSmall) errors.push_back(std::abs(rotation_log(motion.body.rotation).dot(up) / yaw - 1.0));
   }
   return median_or(std::move(errors), 0.0);
+}
+
+// Without what turns tell. Empty where scale or direction are known worse than max_sigma, a share and radians.
+std::optional<WheelMounting> mounting_of(const Solution& solved, const Eigen::Quaterniond& level_from_body,
+                                         double max_sigma) {
+  const double scale = solved.unknowns.head<2>().norm();
+  if (!(scale > 0.0)) return {};
+  const Eigen::Vector2d along = solved.unknowns.head<2>() / scale, across(-along.y(), along.x());
+  const Eigen::Matrix2d covariance = solved.covariance.topLeftCorner<2, 2>() / (scale * scale);
+  const double scale_sigma = std::sqrt(along.dot(covariance * along));
+  const double direction_sigma = std::sqrt(across.dot(covariance * across));
+  if (!(scale_sigma < max_sigma) || !(direction_sigma < max_sigma)) return {};
+  const double angle = std::atan2(along.y(), along.x());
+  WheelMounting mounting;
+  mounting.base_from_body.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())) * level_from_body;
+  mounting.base_from_body.translation = {solved.unknowns[2], solved.unknowns[3], 0.0};
+  mounting.metres_per_unit = scale;
+  mounting.scale_sigma = scale_sigma;
+  mounting.way_error = solved.way_error;
+  mounting.covariance = solved.covariance;
+  return mounting;
 }
 
 }  // namespace
@@ -203,25 +241,38 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   if (way < kLeastWay && !known) return {};
   const auto solved = solve(planar_motions, known_unknowns(known, *up));
   if (!solved) return {};
-  const double scale = solved->unknowns.head<2>().norm();
-  if (!(scale > 0.0)) return {};
-  const Eigen::Vector2d along = solved->unknowns.head<2>() / scale, across(-along.y(), along.x());
-  const Eigen::Matrix2d covariance = solved->covariance.topLeftCorner<2, 2>() / (scale * scale);
-  const double scale_sigma = std::sqrt(along.dot(covariance * along));
-  const double direction_sigma = std::sqrt(across.dot(covariance * across));
-  if (!(scale_sigma < kMaxScaleSigma) || !(direction_sigma < kMaxDirectionSigma)) return {};
-  const double angle = std::atan2(along.y(), along.x());
-  WheelMounting mounting;
-  mounting.base_from_body.rotation =
-      Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())) * level_from_body;
-  mounting.base_from_body.translation = {solved->unknowns[2], solved->unknowns[3], 0.0};
-  mounting.metres_per_unit = scale;
-  mounting.scale_sigma = scale_sigma;
-  mounting.way_error = solved->way_error;
-  mounting.turn_error = median_turn_error(motions, *up);
-  mounting.turn_errors = turn_errors;
-  mounting.covariance = solved->covariance;
+  auto mounting = mounting_of(*solved, level_from_body, kMaxSigma);
+  if (!mounting) return {};
+  mounting->turn_error = median_turn_error(motions, *up);
+  mounting->turn_errors = turn_errors;
   return mounting;
+}
+
+std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
+                                                    const Eigen::Vector3d& up_in_body) {
+  constexpr double kArm = 0.3;         // metres, standard deviation
+  constexpr double kLeastWay = 0.3;    // metres, all ways together
+  constexpr double kMaxSigma = 0.2;    // share of the scale, and radians
+  constexpr double kLeastError = 0.1;  // share of ways and turns
+  const auto up = presumed_up(motions, up_in_body);
+  if (!up) return {};
+  const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
+  std::vector<PlanarMotion> planar_motions;
+  double way = 0.0;
+  for (const MotionPair& motion : motions) {
+    planar_motions.push_back(planar(motion, level_from_body));
+    way += planar_motions.back().way;
+  }
+  KnownUnknowns presumed;
+  presumed.information.diagonal().tail<2>().setConstant(1.0 / (kArm * kArm));
+  const auto solved = solve(planar_motions, presumed);
+  if (way < kLeastWay || !solved) return {};
+  const auto mounting = mounting_of(*solved, level_from_body, kMaxSigma);
+  if (!mounting) return {};
+  WheelMounting result = *mounting;
+  result.way_error = std::max(result.way_error, kLeastError);
+  result.turn_error = std::max(median_turn_error(motions, *up), kLeastError);
+  return result;
 }
 
 Pose without_turn_errors(const TurnErrors& errors, const Pose& base) {

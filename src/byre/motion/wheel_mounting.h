@@ -50,6 +50,12 @@ Eigen::Matrix4d usual_change(const WheelMounting& mounting);
 std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions,
                                                  const std::optional<WheelMounting>& known = {});
 
+// A guess while the motions leave it open, by little more than a metre of way: the body is upright as far as they do
+// not say otherwise, its lever arm is short, and it looks to where they say that is ahead. up_in_body: about, the axis
+// that points up. Empty where they do not tell what is ahead.
+std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
+                                                    const Eigen::Vector3d& up_in_body);
+
 // The body's motion, in the map's lengths, by that of the base as it was.
 Pose body_motion(const WheelMounting& mounting, const Pose& base);
 

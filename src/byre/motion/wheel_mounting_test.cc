@@ -69,5 +69,35 @@ TEST(WheelMounting, StaysOpenWithoutDriving) {
   EXPECT_FALSE(find_wheel_mounting(pairs));
 }
 
+TEST(WheelMounting, IsPresumedByASecondOfWay) {
+  for (const double metres_per_unit : {1.0, 0.37, 12.0}) {
+    Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = metres_per_unit, .noise = 0.001};
+    drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.3, 0.0, 0.0});  // looks down
+    const std::vector<MotionPair> pairs = pairs_of(drive, 1.5);
+    EXPECT_FALSE(find_wheel_mounting(pairs));
+    const auto mounting = presume_wheel_mounting(pairs, -Eigen::Vector3d::UnitY());
+    ASSERT_TRUE(mounting);
+    EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.15);
+    EXPECT_NEAR(mounting->metres_per_unit, metres_per_unit, 0.05 * metres_per_unit);
+    EXPECT_GE(mounting->way_error, 0.1);
+  }
+}
+
+// Turns tell the axis in the end, whatever was presumed of it.
+TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
+  Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});  // lies on its side
+  const auto mounting = presume_wheel_mounting(pairs_of(drive, 8.0), -Eigen::Vector3d::UnitY());
+  ASSERT_TRUE(mounting);
+  EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.1);
+}
+
+TEST(WheelMounting, IsNotPresumedByTurningOnTheSpot) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  std::vector<MotionPair> pairs = pairs_of(drive, 3.0);
+  for (MotionPair& pair : pairs) pair.base.translation.setZero();
+  EXPECT_FALSE(presume_wheel_mounting(pairs, -Eigen::Vector3d::UnitY()));
+}
+
 }  // namespace
 }  // namespace byre
