@@ -41,8 +41,9 @@ Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
   constexpr double kLeastTurn = 5e-4;  // radians
   const double way = motion.translation.norm();
   const double turn = rotation_log(motion.rotation).norm();
+  const double arm_sigma = std::sqrt(mounting.covariance.bottomRightCorner<2, 2>().trace());  // metres
   const double way_sigma = way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
-                           kLeastMetres / mounting.metres_per_unit;
+                           (turn * arm_sigma + kLeastMetres) / mounting.metres_per_unit;
   const double turn_sigma =
       turn * std::max(kLeastShare, mounting.turn_error) + kTurnPerMetre * way * mounting.metres_per_unit + kLeastTurn;
   Matrix6 covariance = Matrix6::Zero();
@@ -245,7 +246,8 @@ Trajectory MotionPrior::completed(Trajectory seen) const {
   if (mounting == nullptr) return seen;
   UnseenWay unseen = unseen_;
   unseen.take_down(tell_base());
-  return unseen.completed(std::move(seen), [&](const Pose& base) { return body_motion(*mounting, base); });
+  const auto body_motion_of = [&](const Pose& base) { return body_motion(*mounting, base); };
+  return unseen.completed(std::move(seen), body_motion_of, old_poses_);
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {

@@ -28,8 +28,12 @@ class MotionPrior {
   // Which axis of the body points up, about: by that the mounting is guessed from the first motions, until they tell
   // it. Without it nothing is told before. Call it before anything is told.
   void presume_upright(const Eigen::Vector3d& up_in_body) { up_in_body_ = up_in_body; }
-  // Ways of up to half an hour ago will be asked for, not two minutes.
-  void keep_long() { samples_kept_ = kMostKept; }
+  // A map is made: ways of up to half an hour ago will be asked for, not two minutes, and in the end poses of frames
+  // that were not seen are made anew by what is known then.
+  void serve_mapping() {
+    samples_kept_ = kMostKept;
+    old_poses_ = UnseenWay::OldPoses::made_anew;
+  }
 
   void add(const StampedPose& wheels);
   void add(const AngularRate& rate);
@@ -97,6 +101,7 @@ class MotionPrior {
   RateTrack rates_;
   Timestamp samples_kept_ = kUsuallyKept;
   UnseenWay unseen_;
+  UnseenWay::OldPoses old_poses_ = UnseenWay::OldPoses::kept;
   std::deque<SeenMotion> seen_;       // motions of the last minutes, half a second each
   std::optional<StampedPose> begin_;  // begin of the motion that is being seen
   std::optional<StampedPose> last_;   // the last frame, where it was seen

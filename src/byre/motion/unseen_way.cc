@@ -57,7 +57,7 @@ void add_poses(const Chain& chain, Trajectory& added) {
 }  // namespace
 
 void UnseenWay::note(Timestamp time, bool is_seen) {
-  if (last_ && !(is_seen && was_seen_)) untold_.push_back({*last_, time});
+  if (last_ && !(is_seen && was_seen_)) untold_.push_back({*last_, time, is_seen});
   if (untold_.size() > kMostUntold) untold_.pop_front();
   last_ = time;
   was_seen_ = is_seen;
@@ -73,7 +73,7 @@ void UnseenWay::take_down(const Tell& tell) {
   while (steps_.size() > kMostSteps) steps_.pop_front();
 }
 
-Trajectory UnseenWay::completed(Trajectory trajectory, const BodyMotionOf& body_motion_of) const {
+Trajectory UnseenWay::completed(Trajectory trajectory, const BodyMotionOf& body_motion_of, OldPoses old) const {
   Trajectory added;
   Chain chain;
   const auto begin_at = [&](Timestamp time) {
@@ -88,9 +88,11 @@ Trajectory UnseenWay::completed(Trajectory trajectory, const BodyMotionOf& body_
     }
     chain.times.push_back(step.frames.later);
     chain.first_from_body.push_back(chain.first_from_body.back() * body_motion_of(*step.base));
-    chain.world_from_body.push_back(pose_of_frame(trajectory, step.frames.later));
+    const bool is_known = step.frames.is_later_seen || old == OldPoses::kept;
+    chain.world_from_body.push_back(is_known ? pose_of_frame(trajectory, step.frames.later) : std::nullopt);
   }
   add_poses(chain, added);
+  std::erase_if(trajectory, [&](const StampedPose& pose) { return pose_of_frame(added, pose.time).has_value(); });
   const auto middle = static_cast<std::ptrdiff_t>(trajectory.size());
   trajectory.insert(trajectory.end(), added.begin(), added.end());
   std::ranges::inplace_merge(trajectory, trajectory.begin() + middle, {}, &StampedPose::time);

@@ -26,14 +26,19 @@ class UnseenWay {
   // Takes down the steps that were not told yet.
   void take_down(const Tell& tell);
 
+  // Poses that the trajectory has of frames in which nothing was seen: told at the time, perhaps by less than is known
+  // now.
+  enum class OldPoses { kept, made_anew };
+
   // The trajectory, with poses for the unseen frames that wheels lead to from one of its poses. Between two of them,
   // each takes its share, by time, of what the way was told wrongly. world_from_body.
-  Trajectory completed(Trajectory trajectory, const BodyMotionOf& body_motion_of) const;
+  Trajectory completed(Trajectory trajectory, const BodyMotionOf& body_motion_of, OldPoses old = OldPoses::kept) const;
 
  private:
   struct Frames {
     Timestamp earlier{};
     Timestamp later{};
+    bool is_later_seen = false;
   };
   struct Step {
     Frames frames;

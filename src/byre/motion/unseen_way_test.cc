@@ -73,6 +73,15 @@ TEST(UnseenWay, GivesNoSecondPoseToFramesThatHaveOne) {
   EXPECT_NEAR(all[1].world_from_body.translation.x(), 0.7, 1e-12);
 }
 
+TEST(UnseenWay, MakesPosesOfUnseenFramesAnewWhereItIsAskedTo) {
+  const Trajectory bridged = {{frame(0), at(0.0)}, {frame(1), at(0.7)}, {frame(2), at(0.2)}, {frame(3), at(0.9)}};
+  const Trajectory all = way({true, false, true, false}).completed(bridged, as_it_is, UnseenWay::OldPoses::made_anew);
+  ASSERT_THAT(all, SizeIs(4));
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(all[static_cast<std::size_t>(i)].world_from_body.translation.x(), kStep * i, 1e-12) << i;
+  }
+}
+
 TEST(UnseenWay, KnowsFromWhenOnNothingWasTakenDown) {
   UnseenWay unseen;
   unseen.note(frame(0), true);

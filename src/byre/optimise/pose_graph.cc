@@ -109,7 +109,9 @@ struct NodeBlocks {
 class CeresGraph {
  public:
   CeresGraph(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options)
-      : options_(options), nodes_(graph.nodes.begin(), graph.nodes.end()) {
+      : options_(options),
+        is_metric_(std::ranges::any_of(graph.edges, &PoseGraphEdge::is_in_world_lengths)),
+        nodes_(graph.nodes.begin(), graph.nodes.end()) {
     for (const int i : roles.edges) costs_.emplace_back(graph.edges[i], options.scale_is_free);
   }
 
@@ -150,10 +152,12 @@ class CeresGraph {
     problem.SetManifold(rotation, &manifold_);
     if (!moves) problem.SetParameterBlockConstant(rotation);
     if (!moves) problem.SetParameterBlockConstant(position);
-    if (!moves || !options_.scale_is_free || node.scale_is_known) problem.SetParameterBlockConstant(log_scale);
+    const bool has_free_scale = options_.scale_is_free && !node.scale_is_known && (moves || is_metric_);
+    if (!has_free_scale) problem.SetParameterBlockConstant(log_scale);
   }
 
   const PoseGraphOptions& options_;  // owned by the caller, constant
+  bool is_metric_;                   // edges tell the world's lengths; constant after construction
   std::vector<NodeBlocks> nodes_;    // written by Ceres
   std::deque<PoseGraphCost> costs_;  // one per edge that has a say; a deque, for Ceres holds their addresses
   RotationManifold manifold_;
@@ -187,9 +191,8 @@ PoseGraphResult solve(const PoseGraph& graph, const GraphRoles& roles, const Pos
     result.cost = summary.final_cost;
   }
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (!roles.node_moves[i]) continue;
-    result.camera_from_world[i] = ceres_graph.node(i).camera_from_world();
     if (options.scale_is_free) result.scales[i] = std::exp(ceres_graph.node(i).log_scale);
+    if (roles.node_moves[i]) result.camera_from_world[i] = ceres_graph.node(i).camera_from_world();
   }
   return result;
 }

@@ -24,6 +24,8 @@ struct PoseGraphEdge {
   Matrix6 information = Matrix6::Identity();
   double scale = 1.0;         // 1 unless the two cameras' lengths were compared
   double scale_sigma = 0.01;  // standard error of the scale's logarithm; has a say only while scales are free
+  // Told in the world's lengths by what else than the cameras tells it, such as wheels: scales have no part in it.
+  bool is_in_world_lengths = false;
 };
 
 struct PoseGraph {
@@ -56,7 +58,7 @@ struct PoseGraphResult {
 
 // Minimises the robust errors of the edges over poses, and scales if they are free. Nodes that no path of edges joins
 // to a fixed one stay where they are; with nothing fixed the first node that has an edge is held. Edges from a node to
-// itself have no say.
+// itself have no say. Where edges tell the world's lengths, fixed nodes keep their poses alone, and not their scales.
 PoseGraphResult optimise_pose_graph(const PoseGraph& graph, const PoseGraphOptions& options);
 
 }  // namespace byre

@@ -34,7 +34,7 @@ Matrix6 square_root(const Matrix6& information) {
 Matrix7 whitening_of(const PoseGraphEdge& edge, bool scale_has_a_say) {
   Matrix7 whitening = Matrix7::Zero();
   whitening.topLeftCorner<6, 6>() = square_root(edge.information);
-  if (scale_has_a_say) whitening(6, 6) = 1.0 / edge.scale_sigma;
+  if (scale_has_a_say && !edge.is_in_world_lengths) whitening(6, 6) = 1.0 / edge.scale_sigma;
   return whitening;
 }
 
@@ -54,6 +54,7 @@ PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say)
     : second_from_first_(edge.second_from_first.rotation),
       second_in_first_(inverse(edge.second_from_first).translation / edge.scale),
       log_scale_(std::log(edge.scale)),
+      scales_have_a_part_(edge.is_in_world_lengths ? 0.0 : 1.0),
       whitening_(whitening_of(edge, scale_has_a_say)) {}
 
 // With rotations R, positions c, scales s = exp(l) and the measured position m of the second in the first, the error is
@@ -61,10 +62,12 @@ PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say)
 bool PoseGraphCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   const NodeState first(parameters);
   const NodeState second(parameters + 3);
-  const Eigen::Matrix3d scaled_rotation = std::exp(second.log_scale) * second.rotation.toRotationMatrix();
+  const double first_scale = scales_have_a_part_ * first.log_scale,
+               second_scale = scales_have_a_part_ * second.log_scale;
+  const Eigen::Matrix3d scaled_rotation = std::exp(second_scale) * second.rotation.toRotationMatrix();
   const Eigen::Quaterniond second_from_first = second.rotation * first.rotation.conjugate();
   const Eigen::Matrix3d rotation = second_from_first.toRotationMatrix();
-  const double scale = std::exp(second.log_scale - first.log_scale);
+  const double scale = std::exp(second_scale - first_scale);
   const Eigen::Vector3d measured_arm = scale * (rotation * second_in_first_);
 
   const Eigen::Vector3d between = first.position_in_world - second.position_in_world;
@@ -79,13 +82,13 @@ bool PoseGraphCost::Evaluate(const double* const* parameters, double* residual, 
   NodeJacobian by_first = NodeJacobian::Zero();
   by_first.block<3, 3>(0, 0) = scale * rotation * skew(second_in_first_);
   by_first.block<3, 3>(0, 3) = scaled_rotation;
-  by_first.block<3, 1>(0, 6) = -measured_arm;
+  by_first.block<3, 1>(0, 6) = -scales_have_a_part_ * measured_arm;
   by_first.block<3, 3>(3, 0) = -turn_by_second * rotation;
   by_first(6, 6) = -1.0;
   NodeJacobian by_second = NodeJacobian::Zero();
   by_second.block<3, 3>(0, 0) = -skew(error.head<3>());
   by_second.block<3, 3>(0, 3) = -scaled_rotation;
-  by_second.block<3, 1>(0, 6) = error.head<3>();
+  by_second.block<3, 1>(0, 6) = scales_have_a_part_ * error.head<3>();
   by_second.block<3, 3>(3, 0) = turn_by_second;
   by_second(6, 6) = 1.0;
   write(whitening_ * by_first, jacobians);

@@ -3,6 +3,7 @@
 #include "byre/geometry/median.h"
 #include "byre/optimise/pose_graph.h"
 #include "byre/slam/mapping_steps.h"
+#include "byre/slam/part_placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,6 +121,18 @@ PoseGraphNode node_of(const MapWindow& window, const WindowKeyframe& keyframe) {
           .scale_is_known = window.rig_of(keyframe).is_stereo()};
 }
 
+PoseGraphEdge edge_of_motion(const MapWindow& window, const WindowMotion& motion) {
+  const Rig& earlier = window.rig_of(window.keyframes[static_cast<std::size_t>(motion.earlier)]);
+  const Rig& later = window.rig_of(window.keyframes[static_cast<std::size_t>(motion.later)]);
+  const Matrix6 covariance = move_covariance(motion.motion.covariance, inverse(later.body_from_camera));
+  return {.first = motion.earlier,
+          .second = motion.later,
+          .second_from_first =
+              inverse(later.body_from_camera) * inverse(motion.motion.last_from_body) * earlier.body_from_camera,
+          .information = covariance.inverse(),
+          .is_in_world_lengths = true};
+}
+
 PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_of,
                           const std::vector<LoopEdge>& loops) {
   PoseGraph graph;
@@ -131,6 +144,11 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
     if (!joined.insert(std::minmax(first, second)).second) return;
     graph.edges.push_back(edge_between(window, first, second, shared, metre));
   };
+  for (const WindowMotion& motion : window.motions) {
+    graph.edges.push_back(edge_of_motion(window, motion));
+    const bool is_seen = count_shared_points(window, motion.later).contains(motion.earlier);
+    if (!is_seen) joined.insert(std::minmax(motion.earlier, motion.later));
+  }
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
     const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
     graph.nodes.push_back(node_of(window, keyframe));
@@ -200,6 +218,16 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
   }
 }
 
+// Parts lie by all that is told of the ways between them, as where a loop joins the last to the first, and scale drifts
+// no further than is told. Bundle adjustment would get there, but slowly: next to nothing that is seen tells of it.
+void settle_by_motions(MapWindow& window) {
+  const IndexOfKeyframe index_of = index_keyframes(window);
+  PoseGraphOptions options;
+  options.scale_is_free = scale_may_drift(window);
+  const PoseGraphResult settled = optimise_pose_graph(make_pose_graph(window, index_of, {}), options);
+  if (settled.usable) take_over(window, index_of, settled);
+}
+
 }  // namespace
 
 bool scale_may_drift(const MapWindow& window) {
@@ -220,6 +248,8 @@ MapWindow whole_map(const MapView& map) {
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop) {
   MapWindow adjusted = whole;
+  const bool has_parts = place_parts(adjusted);
+  if (has_parts || (scale_may_drift(adjusted) && !adjusted.motions.empty())) settle_by_motions(adjusted);
   if (!loops.empty()) close_loops(adjusted, loops, options.mapping);
   MappingOptions mapping = options.mapping;
   mapping.first_bundle_iterations = options.first_bundle_iterations;

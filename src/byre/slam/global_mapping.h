@@ -28,9 +28,10 @@ MapWindow whole_map(const MapView& map);
 
 // Bends the map so that loops close: a pose graph over covisibility and loops moves the keyframes, and their points
 // along; points on both sides of a loop are fused; bundle adjustment of everything settles the rest. Without loops the
-// last alone. Keyframes without stereo move as similarities (Strasdat 2010, Scale drift-aware large scale monocular
-// SLAM): the scale of what they map has drifted, and lengths around them change. should_stop, unless empty, is asked
-// now and then: what was reached by then is the result.
+// last alone. Before all that, parts that share no points go to where wheels have them by now. Keyframes without stereo
+// move as similarities (Strasdat 2010, Scale drift-aware large scale monocular SLAM): the scale of what they map has
+// drifted, and lengths around them change. should_stop, unless empty, is asked now and then: what was reached by then
+// is the result.
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop = {});
 

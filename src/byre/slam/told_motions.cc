@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace byre {
 namespace {
 
 constexpr Timestamp kLongest = std::chrono::seconds(10);
+constexpr Timestamp kLongestUnseen = std::chrono::minutes(2);
 
 // Sigmas of what is told and a share of the motion for what keyframes that are not adjusted yet err by.
 bool contradicts(const BodyMotion& told, const Pose& seen) {
@@ -22,6 +24,13 @@ bool contradicts(const BodyMotion& told, const Pose& seen) {
   const double turn = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
   return error.head<3>().norm() > kSigmas * way + kShare * seen.translation.norm() ||
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
+}
+
+// Whether what is seen tells nothing of the way between them.
+bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
+  constexpr int kAll = std::numeric_limits<int>::max();
+  return std::ranges::none_of(online.covisible_keyframes(later, kAll),
+                              [&](const Covisible& other) { return other.keyframe == earlier; });
 }
 
 Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {
@@ -44,11 +53,14 @@ std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<Keyframe
   for (std::size_t i = 1; i < keyframes.size(); ++i) {
     const Keyframe& earlier = *online.find_keyframe(keyframes[i - 1]);
     const Keyframe& later = *online.find_keyframe(keyframes[i]);
-    if (rig_of(online, later).is_stereo() || later.frame.time - earlier.frame.time > kLongest) continue;
+    const Timestamp gap = later.frame.time - earlier.frame.time;
+    if (gap > kLongestUnseen) continue;
+    const bool unseen = is_unseen(online, keyframes[i - 1], keyframes[i]);
+    if (!unseen && (rig_of(online, later).is_stereo() || gap > kLongest)) continue;
     const auto told = tell(earlier.frame.time, later.frame.time);
     if (!told) continue;
-    if (!contradicts(*told, seen_between(online, keyframes[i - 1], keyframes[i])))
-      motions.push_back({keyframes[i - 1], keyframes[i], *told});
+    if (unseen || !contradicts(*told, seen_between(online, keyframes[i - 1], keyframes[i])))
+      motions.push_back({keyframes[i - 1], keyframes[i], *told, unseen});
   }
   return motions;
 }
@@ -58,6 +70,7 @@ std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<Keyfram
   if (motions.size() < kMany) return motions;
   double told_squared = 0.0, seen_by_told = 0.0;
   for (const KeyframeMotion& motion : motions) {
+    if (motion.is_unseen) continue;
     const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
     const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
     told_squared += weight * told.squaredNorm();

@@ -22,11 +22,12 @@ struct KeyframeMotion {
   KeyframeId earlier;
   KeyframeId later;
   BodyMotion motion;
+  bool is_unseen = false;  // they share no points, so that nothing else tells of the way between them
 };
 
 // What is told of the ways between these keyframes, of those that one recording brought: from each to the next. A
-// motion that contradicts what was seen is left out, as where a wheel spins; and that of a pair of cameras, which knows
-// metres by itself: what wheels add there is not more than they err.
+// motion that contradicts what was seen is left out, as where a wheel spins; and that of a pair of cameras that saw the
+// way: it knows metres by itself, and what wheels add there is not more than they err.
 std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
                                          const TellMotion& tell);
 

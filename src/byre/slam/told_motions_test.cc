@@ -58,6 +58,18 @@ TEST_F(MotionsOfATrueMap, LeaveOutWhatContradictsWhatWasSeen) {
   EXPECT_THAT(told_motions(map_, ids, 0, told(1.0, spinning)), SizeIs(ids.size() - 4));
 }
 
+// Nothing was seen of a way between keyframes that share no points, so that nothing can contradict it.
+TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  const std::vector<KeyframeId> ends = {ids.front(), ids.back()};
+  const auto motions = told_motions(map_, ends, 0, told(3.0));
+  ASSERT_THAT(motions, SizeIs(1));
+  EXPECT_TRUE(motions.front().is_unseen);
+  EXPECT_THAT(told_motions(map_, {ids[0], ids[1]}, 0, told(3.0)), IsEmpty()) << "seen";
+  const Map pair = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
+  EXPECT_THAT(told_motions(pair, {pair.keyframe_ids().front(), pair.keyframe_ids().back()}, 0, told()), SizeIs(1));
+}
+
 TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
   const Map map = true_map(mission_, 1, Origin::online);
   const auto motions = in_lengths_of(map, told_motions(map, map.keyframe_ids(), 0, told(1.03)));

@@ -78,7 +78,7 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
   prior_.begin_with(mounting_before(given, options));
   prior_.presume_upright(given.body_from_left.rotation * -Eigen::Vector3d::UnitY());
-  if (!options.offline) prior_.keep_long();
+  if (!options.offline) prior_.serve_mapping();
   session_.hear([this](Timestamp earlier, Timestamp later) { return prior_.way_between(earlier, later); },
                 [this, is_metric = given.tells_metres()](Timestamp earlier, Timestamp later) {
                   return prior_.reach(earlier, later, is_metric);

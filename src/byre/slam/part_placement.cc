@@ -1,0 +1,142 @@
+#include "byre/slam/part_placement.h"
+
+#include "byre/alignment.h"
+#include "byre/slam/body_pose.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace byre {
+namespace {
+
+// The window's keyframes by the part that they belong to, named by one of its keyframes.
+class Parts {
+ public:
+  explicit Parts(const MapWindow& window) : parent_(window.keyframes.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+    for (const WindowPoint& point : window.points) {
+      if (point.removed || point.observations.empty()) continue;
+      for (const WindowObservation& seen : point.observations) join(seen.keyframe, point.observations.front().keyframe);
+    }
+  }
+
+  int part_of(int keyframe) const {
+    while (parent_[static_cast<std::size_t>(keyframe)] != keyframe) {
+      keyframe = parent_[static_cast<std::size_t>(keyframe)];
+    }
+    return keyframe;
+  }
+
+ private:
+  void join(int first, int second) {
+    const auto [low, high] = std::minmax({part_of(first), part_of(second)});
+    parent_[static_cast<std::size_t>(high)] = low;
+  }
+
+  std::vector<int> parent_;
+};
+
+Pose world_from_body(const MapWindow& window, int keyframe) {
+  const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
+  return body_pose(window.rig_of(entry), entry.keyframe.camera_from_world);
+}
+
+// How long ways are in each part, as a multiple of what is told; missing where too few are told, or the part knows
+// metres by itself.
+std::map<int, double> lengths_of_parts(const MapWindow& window, const Parts& parts) {
+  constexpr int kFew = 3;
+  struct Sums {
+    int count = 0;
+    double told_squared = 0.0;
+    double seen_by_told = 0.0;
+  };
+  std::map<int, Sums> sums;
+  for (const WindowMotion& motion : window.motions) {
+    const int part = parts.part_of(motion.earlier);
+    const WindowKeyframe& earlier = window.keyframes[static_cast<std::size_t>(motion.earlier)];
+    if (part != parts.part_of(motion.later) || window.rig_of(earlier).is_stereo()) continue;
+    const Pose seen = inverse(world_from_body(window, motion.earlier)) * world_from_body(window, motion.later);
+    const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
+    const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
+    Sums& of_part = sums[part];
+    ++of_part.count;
+    of_part.told_squared += weight * told.squaredNorm();
+    of_part.seen_by_told += weight * seen.translation.dot(told);
+  }
+  std::map<int, double> lengths;
+  for (const auto& [part, of_part] : sums) {
+    if (of_part.count >= kFew && of_part.seen_by_told > 0.0) {
+      lengths[part] = of_part.seen_by_told / of_part.told_squared;
+    }
+  }
+  return lengths;
+}
+
+void move_part(MapWindow& window, const Parts& parts, int part, const Similarity& after_from_before) {
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    if (parts.part_of(static_cast<int>(i)) != part) continue;
+    Pose& pose = window.keyframes[i].keyframe.camera_from_world;
+    pose = move_camera(after_from_before, pose);
+  }
+  const auto scale = static_cast<float>(after_from_before.scale);
+  for (WindowPoint& point : window.points) {
+    if (point.removed || point.observations.empty()) continue;
+    if (parts.part_of(point.observations.front().keyframe) != part) continue;
+    point.point.position_in_world = after_from_before * point.point.position_in_world;
+    point.point.min_distance *= scale;
+    point.point.max_distance *= scale;
+  }
+}
+
+// The part of the later keyframe goes to where the motion leads from the earlier one, with lengths so much longer.
+Similarity placement(const MapWindow& window, const WindowMotion& motion, double growth) {
+  const Pose before = world_from_body(window, motion.later);
+  return {growth, world_from_body(window, motion.earlier) * motion.motion.last_from_body *
+                      inverse(scale_lengths(before, growth))};
+}
+
+void scale_motions(MapWindow& window, double scale) {
+  for (WindowMotion& motion : window.motions) {
+    motion.motion = {scale_lengths(motion.motion.last_from_body, scale),
+                     scale_lengths(motion.motion.covariance, scale)};
+  }
+}
+
+}  // namespace
+
+bool place_parts(MapWindow& window) {
+  const Parts parts(window);
+  if (std::ranges::none_of(window.motions, [&](const WindowMotion& motion) {
+        return parts.part_of(motion.earlier) != parts.part_of(motion.later);
+      })) {
+    return false;
+  }
+  std::vector<bool> is_placed(window.keyframes.size(), false);  // by part
+  const auto note_placed = [&](int keyframe) { is_placed[static_cast<std::size_t>(parts.part_of(keyframe))] = true; };
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    if (!window.keyframes[i].movable) note_placed(static_cast<int>(i));
+  }
+  const std::map<int, double> lengths = lengths_of_parts(window, parts);
+  const auto length_of = [&](int part, double otherwise) {
+    const auto found = lengths.find(part);
+    return found == lengths.end() ? otherwise : found->second;
+  };
+  const auto time_of = [&](const WindowMotion& motion) {
+    return window.keyframes[static_cast<std::size_t>(motion.later)].keyframe.frame.time;
+  };
+  std::ranges::sort(window.motions, {}, time_of);
+  const int first = window.motions.front().earlier;
+  const double first_length = length_of(parts.part_of(first), 1.0);
+  note_placed(first);
+  scale_motions(window, first_length);
+  for (const WindowMotion& motion : window.motions) {
+    const int before = parts.part_of(motion.earlier), part = parts.part_of(motion.later);
+    if (is_placed[static_cast<std::size_t>(part)] || !is_placed[static_cast<std::size_t>(before)]) continue;
+    move_part(window, parts, part, placement(window, motion, first_length / length_of(part, first_length)));
+    note_placed(part);
+  }
+  return true;
+}
+
+}  // namespace byre
