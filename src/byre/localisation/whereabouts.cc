@@ -56,17 +56,21 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
   const Pose before = body_pose(rig, byre::camera_from_world(map, last));
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
   return (now.translation - before.translation).norm() > *reach + kSigmas * carried ||
-         is_turned_otherwise(inverse(before) * now);
+         is_told_otherwise(inverse(before) * now);
 }
 
 // last_from_body: since the last pose that was seen.
-bool Whereabouts::is_turned_otherwise(const Pose& last_from_body) const {
-  constexpr double kLeast = 0.5;  // radians
+bool Whereabouts::is_told_otherwise(const Pose& last_from_body) const {
+  constexpr double kLeastShare = 0.2;  // share of the depth of what was seen
+  constexpr double kLeastTurn = 0.5;   // radians
   constexpr double kSigmas = 3.0;
   if (!motion_.told()) return false;
   const BodyMotion told = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
-  const double sigma = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
-  return angle_between(told.last_from_body.rotation, last_from_body.rotation) > kLeast + kSigmas * sigma;
+  const double sigma = std::sqrt(told.covariance.topLeftCorner<3, 3>().trace());
+  const double turn_sigma = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
+  return (told.last_from_body.translation - last_from_body.translation).norm() >
+             kLeastShare * scene_depth_ + kSigmas * sigma ||
+         angle_between(told.last_from_body.rotation, last_from_body.rotation) > kLeastTurn + kSigmas * turn_sigma;
 }
 
 // Every pose so far is believed, and the last one was seen.

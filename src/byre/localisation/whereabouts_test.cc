@@ -148,6 +148,30 @@ TEST_F(TrueWhereabouts, AreNotWhereWheelsCannotHaveLedTo) {
   EXPECT_TRUE(is_out_of_reach(39));
 }
 
+TEST_F(TrueWhereabouts, AreNotWhereWheelsHaveNotLedTo) {
+  Whereabouts mapping({}, {}, {}, false);
+  mapping.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
+  mapping.note({mission_.frames[0], track_of(0), true, true, 0}, mission_.rig, map_);
+  const auto motion_to = [&](std::size_t frame) {
+    return inverse(mission_.truth[0].world_from_body) * mission_.truth[frame].world_from_body;
+  };
+  const auto is_out_of_reach = [&](std::size_t frame) {
+    return mapping.is_out_of_reach(mission_.frames[frame], track_of(frame), mission_.rig, map_);
+  };
+  mapping.tell(motion_to(20));
+  EXPECT_FALSE(is_out_of_reach(20));
+  EXPECT_FALSE(is_out_of_reach(21)) << "wheels may err";
+  EXPECT_TRUE(is_out_of_reach(39)) << "another way than they told";
+  Pose turned = motion_to(20);
+  turned.rotation = turned.rotation * rotation_exp({0.0, 0.0, 2.0});
+  mapping.tell(turned);
+  EXPECT_TRUE(is_out_of_reach(20)) << "another way round";
+  BodyMotion unsure = motion_to(0);
+  unsure.covariance = 100.0 * Matrix6::Identity();
+  mapping.tell(unsure);
+  EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where they led to";
+}
+
 TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();

@@ -52,7 +52,7 @@ void write(const NodeJacobian& jacobian, double** blocks) {
 
 PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say)
     : second_from_first_(edge.second_from_first.rotation),
-      second_in_first_(inverse(edge.second_from_first).translation / edge.scale),
+      second_in_first_(inverse(edge.second_from_first).translation / (edge.is_in_world_lengths ? 1.0 : edge.scale)),
       log_scale_(std::log(edge.scale)),
       scales_have_a_part_(edge.is_in_world_lengths ? 0.0 : 1.0),
       whitening_(whitening_of(edge, scale_has_a_say)) {}

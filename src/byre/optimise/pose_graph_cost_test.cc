@@ -119,13 +119,16 @@ class PoseGraphCostTest : public testing::TestWithParam<double> {
 };
 
 TEST_P(PoseGraphCostTest, HasTheNumericJacobian) {
-  for (const bool scale_has_a_say : {false, true}) {
-    const PoseGraphCost cost(edge_, scale_has_a_say);
-    const Jacobian14 analytic = analytic_jacobian(cost, nodes_);
-    const Jacobian14 numeric = numeric_jacobian(cost, nodes_);
-    EXPECT_LT((analytic - numeric).norm(), 1e-7 * (1.0 + numeric.norm())) << "analytic:\n"
-                                                                          << analytic << "\nnumeric:\n"
-                                                                          << numeric;
+  for (const bool is_in_world_lengths : {false, true}) {
+    edge_.is_in_world_lengths = is_in_world_lengths;
+    for (const bool scale_has_a_say : {false, true}) {
+      const PoseGraphCost cost(edge_, scale_has_a_say);
+      const Jacobian14 analytic = analytic_jacobian(cost, nodes_);
+      const Jacobian14 numeric = numeric_jacobian(cost, nodes_);
+      EXPECT_LT((analytic - numeric).norm(), 1e-7 * (1.0 + numeric.norm())) << "analytic:\n"
+                                                                            << analytic << "\nnumeric:\n"
+                                                                            << numeric;
+    }
   }
 }
 
@@ -160,6 +163,15 @@ TEST(PoseGraphCost, WeighsByTheInformation) {
   edge.information = random_information(draw);
   const double expected = delta.dot(edge.information * delta);
   EXPECT_NEAR(error_at({edge, false}, nodes).squaredNorm(), expected, 1e-10 * expected);
+}
+
+TEST(PoseGraphCost, LeavesScalesOutInLengthsOfTheWorld) {
+  Draw draw(8);
+  Nodes nodes{random_node(draw), random_node(draw)};
+  PoseGraphEdge edge = predicted_edge(nodes);
+  edge.second_from_first.translation *= std::exp(-nodes.second.log_scale);
+  edge.is_in_world_lengths = true;
+  EXPECT_LT(error_at({edge, true}, nodes).norm(), 1e-11);
 }
 
 TEST(PoseGraphCost, CountsTheScaleInSigmasOfItsLogarithm) {

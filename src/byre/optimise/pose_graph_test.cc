@@ -191,6 +191,27 @@ TEST(OptimisePoseGraph, RemovesScaleDriftWhenScalesAreFree) {
   }
 }
 
+// As wheels tell it from node to node, in the lengths of the world; the first node's scale is not what they tell.
+TEST(OptimisePoseGraph, HoldsScalesToTheLengthsThatEdgesTell) {
+  PoseGraph truth = with_scale_drift({.nodes = 40, .rounds = 1});
+  for (PoseGraphNode& node : truth.nodes) node.scale *= 1.1;
+  PoseGraph drifted = as_odometry_thinks(truth);
+  for (int i = 0; i < 39; ++i) {
+    PoseGraphEdge told = true_edge(truth, i, i + 1);
+    told.second_from_first.translation /= truth.nodes[static_cast<std::size_t>(i) + 1].scale;
+    told.scale = 1.0;
+    told.information = information_of(0.01, 0.01);
+    told.is_in_world_lengths = true;
+    drifted.edges.push_back(told);
+  }
+  const PoseGraphResult result = optimise_pose_graph(drifted, {.loss = RobustLoss::none, .scale_is_free = true});
+  ASSERT_TRUE(result.usable);
+  EXPECT_LT(position_error(result.camera_from_world, truth), 0.1 * position_error(poses_of(drifted), truth));
+  for (std::size_t i = 0; i < truth.nodes.size(); ++i) {
+    EXPECT_NEAR(result.scales[i] / truth.nodes[i].scale, 1.0, 0.02) << "node " << i;
+  }
+}
+
 TEST(OptimisePoseGraph, FindsMeasuredScalesExactly) {
   const PoseGraph truth = [] {
     PoseGraph graph = with_scale_drift({.nodes = 40});

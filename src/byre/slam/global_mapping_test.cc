@@ -1,6 +1,7 @@
 #include "byre/slam/global_mapping.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/slam/drift_scene.h"
 #include "byre/slam/mission_scene.h"
 #include "byre/slam/online_copy.h"
 
@@ -78,6 +79,27 @@ TEST(AdjustMap, BringsADriftedMapWhereItSeesToBe) {
   EXPECT_GT(before, 0.1);
   EXPECT_LT(worst_position_error(map, mission), 0.1 * before);
   EXPECT_THAT(find_faults(map), testing::IsEmpty());
+}
+
+// One camera's scale, by what wheels tell from keyframe to keyframe.
+TEST(AdjustMap, HoldsScaleToWhatIsTold) {
+  const auto error_with = [](bool is_told) {
+    DriftedLap lap(monocular_rig(), {1.2, {}});
+    MapWindow whole = whole_map(lap.map);
+    const auto truth = [&](std::size_t keyframe) {
+      const Timestamp time = whole.keyframes[keyframe].keyframe.frame.time;
+      return lap.mission.truth[frame_at(lap.mission, time)].world_from_body;
+    };
+    Matrix6 covariance = 1e-4 * Matrix6::Identity();
+    for (std::size_t i = 1; is_told && i < whole.keyframes.size(); ++i) {
+      const int earlier = static_cast<int>(i) - 1, later = static_cast<int>(i);
+      whole.motions.push_back({earlier, later, {inverse(truth(i - 1)) * truth(i), covariance}});
+    }
+    apply_correction(adjust_map(whole, {}, {}), whole, lap.map);
+    return worst_position_error(lap.map, lap.mission);
+  };
+  EXPECT_GT(error_with(false), 0.05);
+  EXPECT_LT(error_with(true), 0.02);
 }
 
 TEST(AdjustMap, StopsWhenItIsAskedTo) {
