@@ -29,13 +29,17 @@ void Whereabouts::tell(const std::optional<BodyMotion>& motion) {
   since_believed_ = since_believed_ && motion ? std::optional(*since_believed_ * *motion) : std::nullopt;
 }
 
-bool Whereabouts::is_led_well() const {
+// What is told leads so well that a place can be told from the next by it.
+bool Whereabouts::leads_well(const BodyMotion& told) const {
   constexpr double kMostShare = 0.15;  // share of the depth of what was seen
   constexpr double kMostTurn = 0.1;    // radians
+  return std::sqrt(told.covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
+         std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
+}
+
+bool Whereabouts::is_led_well() const {
   if (!motion_.told() || trajectory_.empty()) return false;
-  const Matrix6 covariance = (bridge_ ? *bridge_ * *motion_.told() : *motion_.told()).covariance;
-  return std::sqrt(covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
-         std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
+  return leads_well(bridge_ ? *bridge_ * *motion_.told() : *motion_.told());
 }
 
 Matrix6 Whereabouts::carried_covariance() const {
@@ -46,31 +50,38 @@ Matrix6 Whereabouts::carried_covariance() const {
 bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const MapView& map) const {
   constexpr Timestamp kLongest = std::chrono::seconds(30);
+  constexpr Timestamp kLongestOnMission = std::chrono::seconds(3);  // whoever is carried is found in the map soon
   constexpr double kSigmas = 5.0;
-  if (!reach_ || on_offline_map_ || trajectory_.empty()) return false;
-  const AnchoredPose& last = bridge_ ? trajectory_[bridge_begin_] : trajectory_.back();
-  if (frame.time - last.time > kLongest) return false;
-  const auto reach = reach_(last.time, frame.time);
+  if (!reach_ || trajectory_.believed_count() == 0) return false;
+  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
+  const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : believed;
+  if (frame.time - last_seen.time > (on_offline_map_ ? kLongestOnMission : kLongest)) return false;
+  std::optional<BodyMotion> told = since_believed_;  // since the last pose that was seen
+  if (told && bridge_) told = *bridge_ * *told;
+  const Pose now = body_pose(rig, track.tracked.camera_from_world);
+  const auto is_elsewhere = [&] {
+    const Pose led = body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body;
+    return is_beyond(told->covariance, inverse(led) * now);
+  };
+  if (on_offline_map_) {
+    return quality_.verdict != Verdict::untrusted && told && leads_well(*told) && is_elsewhere();
+  }
+  const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
   const double carried = std::sqrt(carried_covariance().topLeftCorner<3, 3>().trace());
-  const Pose before = body_pose(rig, byre::camera_from_world(map, last));
-  const Pose now = body_pose(rig, track.tracked.camera_from_world);
-  return (now.translation - before.translation).norm() > *reach + kSigmas * carried ||
-         is_told_otherwise(inverse(before) * now);
+  const Pose before = body_pose(rig, byre::camera_from_world(map, last_seen));
+  return (now.translation - before.translation).norm() > *reach + kSigmas * carried || (told && is_elsewhere());
 }
 
-// last_from_body: since the last pose that was seen.
-bool Whereabouts::is_told_otherwise(const Pose& last_from_body) const {
+// Whether a pose is farther from where what is told leads than that may err.
+bool Whereabouts::is_beyond(const Matrix6& covariance, const Pose& led_from_body) const {
   constexpr double kLeastShare = 0.2;  // share of the depth of what was seen
   constexpr double kLeastTurn = 0.5;   // radians
   constexpr double kSigmas = 3.0;
-  if (!motion_.told()) return false;
-  const BodyMotion told = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
-  const double sigma = std::sqrt(told.covariance.topLeftCorner<3, 3>().trace());
-  const double turn_sigma = std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace());
-  return (told.last_from_body.translation - last_from_body.translation).norm() >
-             kLeastShare * scene_depth_ + kSigmas * sigma ||
-         angle_between(told.last_from_body.rotation, last_from_body.rotation) > kLeastTurn + kSigmas * turn_sigma;
+  const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  return led_from_body.translation.norm() > kLeastShare * scene_depth_ + kSigmas * sigma ||
+         rotation_log(led_from_body.rotation).norm() > kLeastTurn + kSigmas * turn_sigma;
 }
 
 // Every pose so far is believed, and the last one was seen.

@@ -57,7 +57,8 @@ class Whereabouts {
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
   // Wheels did not turn as much as they must have to lead there from where the robot was seen last, or led it
-  // elsewhere: it is another place that looks alike. After half a minute the robot may have been carried.
+  // elsewhere: it is another place that looks alike. After half a minute the robot may have been carried. On an offline
+  // map that is asked for three seconds, where it was known well.
   bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
 
   // A frame later; motion is that of the body, where it is known.
@@ -112,7 +113,8 @@ class Whereabouts {
  private:
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
-  bool is_told_otherwise(const Pose& last_from_body) const;
+  bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
+  bool leads_well(const BodyMotion& told) const;
   bool is_led_well() const;  // by what was told since the last pose that was believed
   void believe();
   Pose held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map);

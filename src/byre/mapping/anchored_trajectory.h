@@ -61,6 +61,7 @@ class AnchoredTrajectory {
   void keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked);
   // The last frame has become a keyframe.
   void anchor_last_to(KeyframeId keyframe);
+  std::size_t believed_count() const { return believed_end_; }  // so many of the first are believed
   void believe_all() { believed_end_ = poses_.size(); }
   void drop_doubtful();
 

@@ -222,7 +222,7 @@ Session::Located Session::locate(const InputFrame& input) {
   if (!located.track && can_search) {
     Tracker::Find find = tracker_.find(frame, scene);
     located.track = std::move(find.track);
-    if (located.track && is_out_of_reach()) located.track.reset();
+    if (located.track && !hint_.get() && is_out_of_reach()) located.track.reset();
     located.refused = find.refused;
     located.from_nothing = located.track.has_value();
     located.is_by_hint = located.from_nothing && hint_.get();
