@@ -172,6 +172,34 @@ TEST_F(TrueWhereabouts, AreNotWhereWheelsHaveNotLedTo) {
   EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where they led to";
 }
 
+// Found where wheels have not led to, a moment after it was known well where the robot is.
+TEST_F(TrueWhereabouts, AreNotFoundElsewhereOnAMissionForAMoment) {
+  whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
+  find_and_believe(0);
+  const std::size_t here = whereabouts_.trajectory().size() - 1;
+  const auto is_out_of_reach = [&](std::size_t frame, Timestamp later = {}) {
+    Frame seen = mission_.frames[here];
+    seen.time += later;
+    return whereabouts_.is_out_of_reach(seen, track_of(frame), mission_.rig, map_);
+  };
+  whereabouts_.tell(Pose{});
+  EXPECT_FALSE(is_out_of_reach(39)) << "it was not known well where it is";
+  whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
+  EXPECT_TRUE(is_out_of_reach(39));
+  EXPECT_FALSE(is_out_of_reach(here));
+  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(4))) << "it may have been carried";
+  whereabouts_.lose();
+  whereabouts_.note({mission_.frames[39], track_of(39), true, true, 0}, mission_.rig, map_);
+  whereabouts_.tell(Pose{});
+  ASSERT_FALSE(confirmation().is_believed());
+  EXPECT_TRUE(is_out_of_reach(39)) << "a place that is not believed yet proves nothing";
+  EXPECT_FALSE(is_out_of_reach(here));
+  BodyMotion far = Pose{};
+  far.covariance = 100.0 * Matrix6::Identity();
+  whereabouts_.tell(far);
+  EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where wheels led to";
+}
+
 TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
