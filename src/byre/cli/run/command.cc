@@ -63,6 +63,12 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   std::optional<DrawnFloorPlan> plan;
   if (options.view.plan) plan = read_drawn_floor_plan(*options.view.plan);
   protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, plan);
+  if (plan && protocol.options.offline->walls() == nullptr) {
+    const bool are_known = plan->plan.occupied_threshold.has_value();
+    show_warnings(std::cerr, {plan->plan.name + ": its walls bound nothing: " +
+                              (are_known ? "a tenth of the map's path lies inside them"
+                                         : "it has no occupied_thresh, which says what a wall is")});
+  }
   return protocol;
 }
 

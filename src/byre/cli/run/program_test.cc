@@ -200,6 +200,18 @@ TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
   EXPECT_GT(lines_of("events.jsonl").back().at("position_m").at(1), 1900.0);
 }
 
+TEST_F(MissionProgram, SaysWhereThePlansWallsBoundNothing) {
+  write("plan.yaml", "image: plan.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n");
+  write("plan.pgm", "P2 2 2 255\n255 255 255 255\n");
+  StoredMap stored = load_map(folder_ / "room.byre");
+  stored.plan.emplace();
+  stored.plan->plan = "plan.yaml";
+  save_map(stored, folder_ / "room.byre");
+  const Outcome outcome = mission("--plan plan.yaml --quiet");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("plan.yaml: its walls bound nothing: it has no occupied_thresh"));
+}
+
 // As after the map's scale was corrected on a floor plan; the recording still says what the baseline was taken for
 // then.
 TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
