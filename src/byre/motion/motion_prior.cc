@@ -166,7 +166,8 @@ void MotionPrior::look_again(const Trajectory& seen) {
   std::vector<MotionPair> pairs;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < seen.size(); ++i) {
-    if (seen[i].time - seen[i - 1].time > kMaxFrameGap) begin = i;
+    const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
+    if (is_gap || !unseen_.is_seen(seen[i - 1].time, seen[i].time)) begin = i;
     if (seen[i].time - seen[begin].time < kStride) continue;
     if (const auto base = base_between(seen[begin].time, seen[i].time)) {
       pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});

@@ -54,7 +54,8 @@ class MotionPrior {
   // mounted.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
 
-  // After the last frame: the mounting that was known by what was seen as the map has it in the end.
+  // After the last frame: the mounting that was known by what was seen as the map has it in the end. Poses of frames
+  // that were not seen tell nothing: they are those that wheels told.
   void look_again(const Trajectory& seen);
 
   // The final poses of frames that were seen, with those of frames that wheels lead to from them.

@@ -145,6 +145,22 @@ TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.38, 0.001);
 }
 
+// Poses that wheels themselves have told do not tell how they are mounted.
+TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  MotionPrior prior = followed(drive, {}, 40.0, 60.0);
+  Drive told_wrongly = drive;
+  told_wrongly.base_from_body.translation.setZero();
+  std::mt19937 random(7);
+  Trajectory poses;
+  for (int i = 0; i <= 1200; ++i) {
+    const double t = 0.05 * i;
+    poses.push_back({from_seconds(t), (t < 40.0 ? drive : told_wrongly).seen(t, random)});
+  }
+  prior.look_again(poses);
+  EXPECT_NEAR(prior.wheels()->base_from_body.translation.x(), 0.4, 0.02);
+}
+
 // Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
 TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};

@@ -63,6 +63,14 @@ void UnseenWay::note(Timestamp time, bool is_seen) {
   was_seen_ = is_seen;
 }
 
+bool UnseenWay::is_seen(Timestamp earlier, Timestamp later) const {
+  const auto is_before = [&](const Frames& frames) { return frames.later <= earlier; };
+  const auto step = std::ranges::partition_point(steps_, is_before, &Step::frames);
+  if (step != steps_.end()) return step->frames.earlier >= later;
+  const auto untold = std::ranges::partition_point(untold_, is_before);
+  return untold == untold_.end() || untold->earlier >= later;
+}
+
 std::optional<Timestamp> UnseenWay::first_untold() const {
   return untold_.empty() ? std::nullopt : std::optional(untold_.front().earlier);
 }

@@ -21,6 +21,8 @@ class UnseenWay {
   void note(Timestamp time, bool is_seen);
 
   std::optional<Timestamp> last() const { return last_; }  // last frame
+  // Whether each frame between the two was seen, and they were.
+  bool is_seen(Timestamp earlier, Timestamp later) const;
   // Steps that were not told yet begin at this time; empty: there are none.
   std::optional<Timestamp> first_untold() const;
   // Takes down the steps that were not told yet.

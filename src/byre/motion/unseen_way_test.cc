@@ -82,6 +82,22 @@ TEST(UnseenWay, MakesPosesOfUnseenFramesAnewWhereItIsAskedTo) {
   }
 }
 
+TEST(UnseenWay, KnowsWhereNothingWasSeen) {
+  UnseenWay unseen = way({true, true, true, false, true, true, false, false, true, true});
+  const auto expect_seen = [&] {
+    EXPECT_TRUE(unseen.is_seen(frame(0), frame(2)));
+    EXPECT_FALSE(unseen.is_seen(frame(2), frame(3)));
+    EXPECT_FALSE(unseen.is_seen(frame(2), frame(5)));
+    EXPECT_TRUE(unseen.is_seen(frame(4), frame(5)));
+    EXPECT_FALSE(unseen.is_seen(frame(6), frame(7)));
+    EXPECT_TRUE(unseen.is_seen(frame(8), frame(9)));
+  };
+  expect_seen();
+  unseen.note(frame(10), false);
+  expect_seen();
+  EXPECT_FALSE(unseen.is_seen(frame(9), frame(10))) << "not told yet";
+}
+
 TEST(UnseenWay, KnowsFromWhenOnNothingWasTakenDown) {
   UnseenWay unseen;
   unseen.note(frame(0), true);
