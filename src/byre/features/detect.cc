@@ -61,10 +61,10 @@ struct Memory {
   std::vector<int> found;
   std::vector<bool> poor;
   std::vector<int> square_of_corner;
-  std::vector<std::size_t> begin;  // of each square in `ranked`, and one past the last
+  std::vector<std::size_t> begin;  // where each square begins in `ranked`, and the end
   std::vector<Key> ranked;         // by square, strongest first
   std::vector<int> of_rank;        // how many squares have a corner of that rank
-  std::vector<Key> last;           // those of the last rank that gives corners
+  std::vector<Key> last;           // corners of the last rank that gives any
 };
 
 Memory& memory_of_thread() {

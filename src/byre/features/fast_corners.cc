@@ -26,7 +26,7 @@ constexpr std::size_t kCircle = 16;
 // The largest of the smallest values of nine neighbours on the circle, and the smallest of their largest ones.
 template <class V>
 HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& most_of_darkest) {
-  // Of two, four and eight neighbours from each second place of the circle on.
+  // Extremes of two, four and eight neighbours from each second place of the circle on.
   V low_two[kCircle], high_two[kCircle], low_four[kCircle], high_four[kCircle];
   for (std::size_t i = 1; i < kCircle; i += 2) {
     low_two[i] = hn::Min(on_circle[i], on_circle[(i + 1) % kCircle]);
