@@ -76,40 +76,42 @@ void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std:
   }
 }
 
-// Marks, a bit each and the first one lowest, those of a row's pixels that are stronger than the threshold and than
-// their neighbours: as many as a vector has lanes, at most 32.
+// Which of a row's pixels are stronger than the threshold and than their neighbours. There is no branch to be guessed:
+// in most places the guess would be as good as drawn.
 template <class D, class V>
-HWY_INLINE std::uint32_t peaks_among(D d, const std::uint8_t* strengths, std::ptrdiff_t stride, V limit) {
+HWY_INLINE hn::Mask<D> peaks_among(D d, const std::uint8_t* strengths, std::ptrdiff_t stride, V limit) {
   const auto centre = hn::LoadU(d, strengths);
-  const auto is_strong = hn::Gt(centre, limit);
-  if (hn::AllFalse(d, is_strong)) return 0;
   const auto row_around = [&](const std::uint8_t* middle) {
     return hn::Max(hn::LoadU(d, middle - 1), hn::LoadU(d, middle + 1));
   };
   const auto above = hn::Max(row_around(strengths - stride), hn::LoadU(d, strengths - stride));
   const auto below = hn::Max(row_around(strengths + stride), hn::LoadU(d, strengths + stride));
   const auto around = hn::Max(hn::Max(above, below), row_around(strengths));
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, hn::And(is_strong, hn::Gt(centre, around)), bits);
-  return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U |
-         static_cast<std::uint32_t>(bits[2]) << 16U | static_cast<std::uint32_t>(bits[3]) << 24U;
+  return hn::Gt(centre, hn::Max(around, limit));
 }
 
-// Writes which of a row's first pixels are stronger than the threshold and than their neighbours, and returns how many.
-// At least as many pixels as a vector has lanes.
-std::size_t find_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::size_t count, std::uint8_t threshold,
-                       int* peaks) {
+// Marks, a bit each and the first one lowest, those of a row's first pixels. At least as many pixels as a vector has
+// lanes; writes whole words.
+void mark_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::size_t count, std::uint8_t threshold,
+                std::uint64_t* marks) {
   const hn::CappedTag<std::uint8_t, 32> d;
   const std::size_t lanes = hn::Lanes(d);
   const auto limit = hn::Set(d, threshold);
-  std::size_t found = 0;
-  for (std::size_t x = 0; x < count; x += lanes) {
-    // The last ones overlap with those before, so as to stay inside the row; those are not told twice.
-    const std::size_t at = x + lanes <= count ? x : count - lanes;
-    std::uint32_t marked = peaks_among(d, strengths + at, stride, limit) >> (x - at) << (x - at);
-    for (; marked != 0; marked &= marked - 1) peaks[found++] = static_cast<int>(at) + std::countr_zero(marked);
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(marks);
+  std::size_t x = 0;
+  for (; x + lanes <= count; x += lanes) {
+    hn::StoreMaskBits(d, peaks_among(d, strengths + x, stride, limit), bytes + x / 8);
   }
-  return found;
+  for (std::size_t byte = x / 8; byte % 8 != 0 || 8 * byte < count; ++byte) bytes[byte] = 0;
+  if (x == count) return;
+  // The last ones overlap with those before, so as to stay inside the row.
+  const std::size_t at = count - lanes;
+  std::uint8_t last[8] = {};
+  hn::StoreMaskBits(d, peaks_among(d, strengths + at, stride, limit), last);
+  for (std::size_t i = x - at; i < lanes; ++i) {
+    const std::size_t pixel = at + i;
+    bytes[pixel / 8] = static_cast<std::uint8_t>(bytes[pixel / 8] | (last[i / 8] >> (i % 8) & 1) << (pixel % 8));
+  }
 }
 
 std::size_t lanes_of_rows() {
@@ -126,7 +128,7 @@ namespace byre {
 namespace {
 
 HWY_EXPORT(measure_row);
-HWY_EXPORT(find_peaks);
+HWY_EXPORT(mark_peaks);
 HWY_EXPORT(lanes_of_rows);
 
 // Clockwise from below; column and row.
@@ -213,8 +215,9 @@ void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold,
   const auto stride = static_cast<std::ptrdiff_t>(strengths.step);
   const auto width = static_cast<std::size_t>(area.width);
   const bool is_narrow = width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)();
-  thread_local std::vector<int> peaks;
-  peaks.resize(std::max(peaks.size(), width));
+  thread_local std::vector<std::uint64_t> marks;
+  constexpr std::size_t kBits = 64;
+  marks.resize(std::max(marks.size(), width / kBits + 1));
   for (int y = area.y; y < area.y + area.height; ++y) {
     const std::uint8_t* const row = strengths.ptr<std::uint8_t>(y) + area.x;
     const auto append = [&](int x) { corners.push_back({area.x + x, y, static_cast<float>(row[x] - 1)}); };
@@ -224,9 +227,12 @@ void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold,
       }
       continue;
     }
-    const std::size_t found =
-        HWY_DYNAMIC_DISPATCH(find_peaks)(row, stride, width, static_cast<std::uint8_t>(threshold), peaks.data());
-    for (std::size_t i = 0; i < found; ++i) append(peaks[i]);
+    HWY_DYNAMIC_DISPATCH(mark_peaks)(row, stride, width, static_cast<std::uint8_t>(threshold), marks.data());
+    for (std::size_t word = 0; word * kBits < width; ++word) {
+      for (std::uint64_t left = marks[word]; left != 0; left &= left - 1) {
+        append(static_cast<int>(word * kBits) + std::countr_zero(left));
+      }
+    }
   }
 }
 
