@@ -116,6 +116,11 @@ struct Described {
   }
 };
 
+// What an image is like once it is developed.
+ImageCondition condition_of_developed(const ImageCondition& of_original) {
+  return condition_after(development_for(of_original), of_original);
+}
+
 // An image as features are looked for in it.
 struct Developed {
   cv::Mat image;
@@ -157,28 +162,33 @@ struct Extractor::State {
 
   void prepare(const ImageFrame& images, bool stereo, Frame& frame);
   void describe_octave(int octave, int quota);
-  Described describe_all(bool stereo);
+  Described describe_all();
   void match_right(std::vector<Keypoint>& keypoints);
   void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
   void time_rows(std::vector<Keypoint>& keypoints) const;
 };
 
-// Images rectified and developed, the left one at every octave, and what they are like as they came.
+// Both images rectified and developed, at every octave, and what they are like as they came. The right one is exposed
+// as the left one is, which is known once both have been measured.
 void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
+  const std::array<std::function<void()>, 3> measure = {
+      [&] { frame.condition = measure_condition(images.left); },
+      [&] { frame.content = checksum(std::as_bytes(std::span(images.left.pixels))); },
+      [&] { frame.right_condition = measure_condition(*images.right); }};
+  threads.run(stereo ? 3 : 2, [&](int i) { measure[static_cast<std::size_t>(i)](); });
   const auto prepare_left = [&] {
-    frame.condition = measure_condition(images.left);
     left_developed.take(rectifier.left(left_image), *frame.condition);
     build_pyramid(left_developed.image, left);
   };
   const auto prepare_right = [&] {
-    frame.right_condition = measure_condition(*images.right);
     right_developed.take(rectifier.right(right_image), *frame.right_condition);
+    build_pyramid(
+        exposed_as_left(right_developed.image, condition_of_developed(*frame.condition), right_developed.condition),
+        right);
   };
-  const auto identify_left = [&] { frame.content = checksum(std::as_bytes(std::span(images.left.pixels))); };
-  const std::array<std::function<void()>, 3> tasks = {prepare_left, identify_left, prepare_right};
-  threads.run(stereo ? 3 : 2, [&](int i) { tasks[static_cast<std::size_t>(i)](); });
+  threads.run(stereo ? 2 : 1, [&](int i) { i == 0 ? prepare_left() : prepare_right(); });
 }
 
 void Extractor::State::describe_octave(int octave, int quota) {
@@ -210,19 +220,10 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// Features of all octaves, the finest first; meanwhile the right image at every octave.
-Described Extractor::State::describe_all(bool stereo) {
+// Features of all octaves, the finest first.
+Described Extractor::State::describe_all() {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
-  // The right pyramid takes longer than the coarse octaves.
-  const int of_right = stereo ? 1 : -1;
-  threads.run(stereo ? kOctaves + 1 : kOctaves, [&](int task) {
-    if (task == of_right) {
-      build_pyramid(exposed_as_left(right_developed.image, left_developed.condition, right_developed.condition), right);
-    } else {
-      const int octave = stereo && task > of_right ? task - 1 : task;
-      describe_octave(octave, quota[static_cast<std::size_t>(octave)]);
-    }
-  });
+  threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });
   Described all;
   all.keypoints.reserve(static_cast<std::size_t>(options.max_features));
   all.descriptors.reserve(static_cast<std::size_t>(options.max_features));
@@ -287,6 +288,7 @@ const Rig& Extractor::rig() const {
 
 Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const Clock::time_point start = Clock::now();
+  const TaskThreads::Shift shift(state_->threads);
   const Calibration& calibration = state_->calibration;
   const bool stereo = calibration.right && images.right && used == ImagesUsed::all;
   Extraction extraction;
@@ -294,7 +296,7 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   frame.time = images.time;
   state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
-  Described described = state_->describe_all(stereo);
+  Described described = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
   if (stereo) state_->match_right(described.keypoints);
   if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
