@@ -2,12 +2,10 @@
 
 #include "byre/features/brief_pattern.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 // The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -15,15 +13,32 @@
 #define HWY_TARGET_INCLUDE "byre/features/descriptor.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include <hwy/highway.h>
+#include "byre/features/pairwise_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace byre::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 constexpr std::size_t kPairs = 256;
+
+// Adds up rows of 32 pixels, each weighed by column and by row.
+void add_moments(const std::uint8_t* pixels, std::ptrdiff_t stride, int rows, const std::int16_t* by_column,
+                 const std::int16_t* by_row, int* moments) {
+  constexpr std::size_t kColumns = 32;
+  const hn::CappedTag<std::int16_t, 16> d16;
+  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
+  const hn::RepartitionToWide<decltype(d16)> d32;
+  auto x = hn::Zero(d32), more_x = hn::Zero(d32), y = hn::Zero(d32), more_y = hn::Zero(d32);
+  for (int row = 0; row < rows; ++row, pixels += stride, by_column += kColumns, by_row += kColumns) {
+    for (std::size_t column = 0; column < kColumns; column += hn::Lanes(d16)) {
+      const auto greys = hn::PromoteTo(d16, hn::LoadU(d8, pixels + column));
+      x = hn::ReorderWidenMulAccumulate(d32, greys, hn::LoadU(d16, by_column + column), x, more_x);
+      y = hn::ReorderWidenMulAccumulate(d32, greys, hn::LoadU(d16, by_row + column), y, more_y);
+    }
+  }
+  moments[0] = hn::GetLane(hn::SumOfLanes(d32, hn::Add(x, more_x)));
+  moments[1] = hn::GetLane(hn::SumOfLanes(d32, hn::Add(y, more_y)));
+}
 
 // Offsets of the pattern's points once they are turned, from the pixel a number of bytes before the middle.
 void turn_pattern(const float* x, const float* y, float cosine, float sine, int stride, int before_middle,
@@ -64,6 +79,7 @@ HWY_AFTER_NAMESPACE();
 namespace byre {
 namespace {
 
+HWY_EXPORT(add_moments);
 HWY_EXPORT(turn_pattern);
 HWY_EXPORT(compare_pairs);
 
@@ -130,19 +146,11 @@ PatternColumns split_pattern() {
 
 float orientation(const std::uint8_t* centre, std::ptrdiff_t stride) {
   static const DiscWeights weights = disc_weights();
-  std::array<std::uint8_t, weights.x.size()> square;
-  const std::uint8_t* row = centre - kDiscRadius * stride - kDiscRadius;
-  for (std::size_t at = 0; at < square.size(); at += DiscWeights::kColumns, row += stride) {
-    std::copy_n(row, DiscWeights::kColumns, square.data() + at);
-  }
-  int moment_x = 0;
-  int moment_y = 0;
-  for (std::size_t i = 0; i < square.size(); ++i) {
-    const auto pixel = static_cast<std::int16_t>(square[i]);
-    moment_x += pixel * weights.x[i];
-    moment_y += pixel * weights.y[i];
-  }
-  return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+  int moments[2];
+  HWY_DYNAMIC_DISPATCH(add_moments)
+  (centre - kDiscRadius * stride - kDiscRadius, stride, DiscWeights::kRows, weights.x.data(), weights.y.data(),
+   moments);
+  return std::atan2(static_cast<float>(moments[1]), static_cast<float>(moments[0]));
 }
 
 Descriptor describe(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
@@ -154,6 +162,7 @@ Descriptor describe(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, f
    offsets.data());
   const std::uint8_t* const first = blurred_centre - before_middle;
   std::array<std::uint8_t, 512> greys;
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < greys.size(); ++i) greys[i] = first[offsets[i]];
   Descriptor descriptor;
   HWY_DYNAMIC_DISPATCH(compare_pairs)(greys.data(), greys.data() + 256, descriptor.data());
