@@ -94,7 +94,7 @@ float noise_of(const Image& image) {
   // Two counts in turns, as the same one cannot be raised twice at once.
   std::array<std::array<int, kClipped + 1>, 2> raised{};
   thread_local std::vector<std::int16_t> across;        // second differences between rows
-  thread_local std::vector<std::uint16_t> differences;  // those of both directions
+  thread_local std::vector<std::uint16_t> differences;  // second differences in both directions
   const std::ptrdiff_t stride = image.width;
   const auto width = static_cast<std::size_t>(image.width);
   across.resize(width);
