@@ -1,7 +1,7 @@
 #include "byre/features/align_sums.h"
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 // The vectorised part of this file is compiled once for each instruction set; eight numbers are worked on side by side

@@ -181,9 +181,10 @@ Share share_of_squares(std::size_t wanted, Memory& memory) {
 
 }  // namespace
 
-std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners) {
+  corners.clear();
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
-  if (std::min(area.width, area.height) <= 0) return {};
+  if (std::min(area.width, area.height) <= 0) return;
   Memory& memory = memory_of_thread();
   cv::Mat strengths = scratch_image(memory.strengths, level.size());
   measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
@@ -194,19 +195,23 @@ std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const 
   rank_in_squares(level.size(), max_corners, memory);
   const std::size_t wanted = std::min(memory.ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
   const Share share = share_of_squares(wanted, memory);
-  std::vector<Corner> spread;
-  spread.reserve(wanted);
+  corners.reserve(wanted);
   for (std::size_t square = 0; square + 1 < memory.begin.size(); ++square) {
     const std::size_t end = memory.begin[square + 1];
     std::size_t i = memory.begin[square];
     for (const std::size_t next = std::min(end, i + share.of_all); i < next; ++i) {
-      spread.push_back(corner_of(memory.ranked[i]));
+      corners.push_back(corner_of(memory.ranked[i]));
     }
     if (i < end && key_among_equal_ranks(memory.ranked[i], square) < share.end_of_next) {
-      spread.push_back(corner_of(memory.ranked[i]));
+      corners.push_back(corner_of(memory.ranked[i]));
     }
   }
-  return spread;
+}
+
+std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+  std::vector<Corner> corners;
+  detect_corners(level, max_corners, options, corners);
+  return corners;
 }
 
 }  // namespace byre

@@ -68,7 +68,7 @@ cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, con
 
 // What was measured of each keypoint, where it was.
 template <typename Measured>
-void take_over(const std::vector<std::optional<Measured>>& measured, std::span<Keypoint> keypoints) {
+void take_over(std::span<const std::optional<Measured>> measured, std::span<Keypoint> keypoints) {
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
@@ -157,7 +157,9 @@ struct Extractor::State {
   Developed left_developed;
   Developed right_developed;
   std::array<cv::Mat, kOctaves> blurred;
+  std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
+  std::vector<std::optional<StereoMatch>> stereo_matches;
   TaskThreads threads;
 
   void prepare(const ImageFrame& images, bool stereo, Frame& frame);
@@ -173,11 +175,11 @@ struct Extractor::State {
 void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
-  const std::array<std::function<void()>, 3> measure = {
-      [&] { frame.condition = measure_condition(images.left); },
-      [&] { frame.content = checksum(std::as_bytes(std::span(images.left.pixels))); },
-      [&] { frame.right_condition = measure_condition(*images.right); }};
-  threads.run(stereo ? 3 : 2, [&](int i) { measure[static_cast<std::size_t>(i)](); });
+  threads.run(stereo ? 3 : 2, [&](int i) {
+    if (i == 0) frame.condition = measure_condition(images.left);
+    if (i == 1) frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
+    if (i == 2) frame.right_condition = measure_condition(*images.right);
+  });
   const auto prepare_left = [&] {
     left_developed.take(rectifier.left(left_image), *frame.condition);
     build_pyramid(left_developed.image, left);
@@ -200,7 +202,8 @@ void Extractor::State::describe_octave(int octave, int quota) {
   detect.fast_threshold = options.fast_threshold;
   detect.min_fast_threshold = options.min_fast_threshold;
   detect.border = kDescriptorRadius;
-  const std::vector<Corner> corners = detect_corners(level, quota, detect);
+  std::vector<Corner>& corners = corners_of_octave[slot];
+  detect_corners(level, quota, detect, corners);
   if (corners.empty()) return;
   found.keypoints.reserve(corners.size());
   found.descriptors.reserve(corners.size());
@@ -241,11 +244,13 @@ void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
   StereoOptions stereo_options;
   stereo_options.refine = options.refinement != Refinement::none;
   const std::span<Keypoint> all = keypoints;
+  stereo_matches.resize(all.size());
   threads.run(static_cast<int>((all.size() + kAtOnce - 1) / kAtOnce), [&](int task) {
     const std::size_t first = static_cast<std::size_t>(task) * kAtOnce;
     const std::span<Keypoint> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
-    const auto matches = match_stereo(left, right, rectifier.rig(), some, stereo_options);
-    take_over(matches, some);
+    const std::span matches = std::span(stereo_matches).subspan(first, some.size());
+    match_stereo(left, right, rectifier.rig(), some, stereo_options, matches);
+    take_over<StereoMatch>(matches, some);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) some[i].row_offset = matches[i]->row_offset;
     }
@@ -254,7 +259,7 @@ void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
 
 void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
   require_size(image.width, image.height, image.units.size(), calibration.depth->camera.value_or(calibration.left));
-  take_over(depth->read(image, keypoints, options.depth), keypoints);
+  take_over<DepthReading>(depth->read(image, keypoints, options.depth), keypoints);
 }
 
 void Extractor::State::time_rows(std::vector<Keypoint>& keypoints) const {

@@ -5,6 +5,7 @@
 #include "byre/features/row_costs.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -126,17 +127,22 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
 
 }  // namespace
 
+void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std::span<const Keypoint> keypoints,
+                  const StereoOptions& options, std::span<std::optional<StereoMatch>> matches) {
+  assert(matches.size() == keypoints.size());
+  const double max_disparity =
+      std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    const std::size_t octave = keypoints[i].octave;
+    matches[i] = match_one(left.levels[octave], right.levels[octave], keypoints[i], max_disparity, options);
+  }
+}
+
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
                                                      std::span<const Keypoint> keypoints,
                                                      const StereoOptions& options) {
-  const double max_disparity =
-      std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
-  std::vector<std::optional<StereoMatch>> matches;
-  matches.reserve(keypoints.size());
-  for (const Keypoint& keypoint : keypoints) {
-    matches.push_back(
-        match_one(left.levels[keypoint.octave], right.levels[keypoint.octave], keypoint, max_disparity, options));
-  }
+  std::vector<std::optional<StereoMatch>> matches(keypoints.size());
+  match_stereo(left, right, rig, keypoints, options, matches);
   return matches;
 }
 

@@ -91,7 +91,8 @@ std::vector<GuidedMatch> match_expected(const Features& features, const MapView&
     PointId point;
     int distance = std::numeric_limits<int>::max();
   };
-  std::vector<Claim> claims(static_cast<std::size_t>(features.size()));
+  thread_local std::vector<Claim> claims;
+  claims.assign(static_cast<std::size_t>(features.size()), {});
   for (const ExpectedPoint& candidate : expected) {
     const MapPoint* const point = map.find_point(candidate.id);
     if (point == nullptr) continue;

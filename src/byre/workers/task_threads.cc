@@ -23,7 +23,7 @@ TaskThreads::TaskThreads(int helpers) {
   }
 }
 
-void TaskThreads::run(int count, const std::function<void(int)>& task) {
+void TaskThreads::run_all(int count, const std::function<void(int)>& task) {
   if (helpers_.empty()) {
     for (int i = 0; i < count; ++i) task(i);
     return;

@@ -38,9 +38,13 @@ class TaskThreads {
 
   // Calls task(0) to task(count - 1), each once, on the calling thread and those that help, and returns when all are
   // done. Tasks are begun in order; the caller waits for none that is not yet begun. Throws what a task threw first.
-  void run(int count, const std::function<void(int)>& task);
+  template <typename Task>
+  void run(int count, const Task& task) {
+    run_all(count, std::cref(task));  // a reference needs no memory
+  }
 
  private:
+  void run_all(int count, const std::function<void(int)>& task);
   void help(const std::stop_token& stop);
   void work();  // until no task is left
   bool is_left() const { return next_ < count_; }
