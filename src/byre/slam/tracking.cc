@@ -52,7 +52,8 @@ std::vector<PointId> distinct(const std::vector<PointId>& points) {
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
                                               const MapView& map, const std::vector<GuidedMatch>& matches,
                                               const TrackOptions& options) {
-  const MeasuredPoints measured = measure_matches(frame, camera_from_world, rig, map, matches);
+  thread_local MeasuredPoints measured;  // memory
+  measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
   std::vector<TrackedFeature> inliers = inliers_of(*refined, measured);
@@ -83,7 +84,8 @@ std::vector<SeenPoint> seen_points(const TrackedFrame& tracked) {
 }
 
 std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
-  std::vector<PointId> points;
+  thread_local std::vector<PointId> points;  // memory
+  points.clear();
   const auto append = [&](KeyframeId id) {
     const Keyframe* const keyframe = map.find_keyframe(id);
     if (keyframe == nullptr) return;
@@ -99,15 +101,17 @@ std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int 
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                   const MapView& map, const std::vector<PointId>& candidates,
                                   const TrackOptions& options) {
-  const std::vector<ExpectedPoint> predicted = project_points(map, candidates, predicted_camera_from_world, rig);
+  thread_local std::vector<ExpectedPoint> expected;  // memory, as the next
+  thread_local std::vector<GuidedMatch> matches;
+  project_points(map, candidates, predicted_camera_from_world, rig, expected);
   std::optional<Pose> first;
   for (const float radius : {options.search_radius, options.wide_radius}) {
-    if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, predicted, radius, options);
+    if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, expected, radius, options);
   }
   if (!first) return std::nullopt;
 
-  const std::vector<ExpectedPoint> expected = project_points(map, candidates, *first, rig);
-  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f});
+  project_points(map, candidates, *first, rig, expected);
+  match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f}, matches);
   auto tracked = refine_on_matches(frame, *first, rig, map, matches, options);
   if (tracked) tracked->expected = static_cast<int>(expected.size());
   return tracked;
