@@ -9,7 +9,8 @@ set(BYRE_TESTS_APART optimise)
 # Files that include themselves once for each processor. GCC 12 for ARM crashes on the vectors of arm_sve.h after a
 # precompiled header.
 set(BYRE_FILES_BY_PROCESSOR features/downscale.cc features/remap.cc features/gaussian_blur.cc features/fast_corners.cc
-    features/block_differences.cc features/align_sums.cc optimise/pose_expansion.cc)
+    features/block_differences.cc features/align_sums.cc features/descriptor.cc features/row_costs.cc
+    optimise/pose_expansion.cc)
 # Files whose objects are picked one by one.
 set(BYRE_FILES_PICKED dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc
     viewer/web_library.cc)

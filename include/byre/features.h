@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -117,17 +118,30 @@ void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_oc
   const int first_column = cell(pixel.x() - reach, columns_);
   const int last_column = cell(pixel.x() + reach, columns_);
   const int last_row = cell(pixel.y() + reach, rows_);
+  // Whether a keypoint lies in the area is as good as drawn. So no branch depends on it: all of a cell are written
+  // down, and those outside are written over.
+  constexpr std::size_t kAtOnce = 64;
+  std::array<int, kAtOnce> inside;
+  std::size_t count = 0;
+  const auto visit_all = [&] {
+    for (std::size_t i = 0; i < count; ++i) visit(inside[i]);
+    count = 0;
+  };
   for (int row = cell(pixel.y() - reach, rows_); row <= last_row; ++row) {
     const int begin = cell_begin_[static_cast<std::size_t>(row * columns_ + first_column)];
     const int end = cell_begin_[static_cast<std::size_t>(row * columns_ + last_column + 1)];
     for (int i = begin; i < end; ++i) {
       const Keypoint& candidate = keypoint(i);
-      if (candidate.octave < min_octave || candidate.octave > max_octave) continue;
-      if (std::abs(candidate.pixel.x() - pixel.x()) > radius) continue;
-      if (std::abs(candidate.pixel.y() - pixel.y()) > radius) continue;
-      visit(i);
+      const auto is_outside = static_cast<int>(candidate.octave < min_octave) |
+                              static_cast<int>(candidate.octave > max_octave) |
+                              static_cast<int>(std::abs(candidate.pixel.x() - pixel.x()) > radius) |
+                              static_cast<int>(std::abs(candidate.pixel.y() - pixel.y()) > radius);
+      inside[count] = i;
+      count += static_cast<std::size_t>(1 - is_outside);
+      if (count == kAtOnce) visit_all();
     }
   }
+  visit_all();
 }
 
 }  // namespace byre

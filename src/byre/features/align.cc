@@ -1,11 +1,12 @@
 #include "byre/features/align.h"
 
+#include "byre/features/align_sums.h"
 #include "byre/features/align_window.h"
 
 namespace byre {
 namespace {
 
-constexpr int kTemplateSize = 8;
+constexpr int kTemplateSize = 8;  // as of warp_square
 
 using Template = CentredTemplate<kTemplateSize>;
 
@@ -17,23 +18,13 @@ bool warp(const Patch& reference, const Eigen::Vector2f& reference_pixel, const 
   const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
   const Eigen::Array2f low = reference_pixel - reach;
   const Eigen::Array2f high = reference_pixel + reach;
-  constexpr float kSlack = 0.01f;  // allowance for the rounding of the walk along a row
+  constexpr float kSlack = 0.01f;  // allowance for the rounding of places
   if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return false;
-  const Eigen::Vector2f along_row = reference_from_current.col(0);
-  for (int y = 0; y < kTemplateSize; ++y) {
-    Eigen::Vector2f at =
-        reference_pixel + reference_from_current * Eigen::Vector2f(-kHalf, static_cast<float>(y) - kHalf);
-    for (int x = 0; x < kTemplateSize; ++x, at += along_row) {
-      const int column = static_cast<int>(at.x());
-      const int row = static_cast<int>(at.y());
-      const float fx = at.x() - static_cast<float>(column);
-      const float fy = at.y() - static_cast<float>(row);
-      const std::uint8_t* const p = reference.pixels.data() + row * Patch::kSize + column;
-      const float upper = p[0] + fx * static_cast<float>(p[1] - p[0]);
-      const float lower = p[Patch::kSize] + fx * static_cast<float>(p[Patch::kSize + 1] - p[Patch::kSize]);
-      warped.values[static_cast<std::size_t>(y * kTemplateSize + x)] = upper + fy * (lower - upper);
-    }
-  }
+  const Eigen::Vector2f along_row = reference_from_current.col(0), along_column = reference_from_current.col(1);
+  const Eigen::Vector2f first = reference_pixel - kHalf * (along_row + along_column);
+  warp_square(reference.pixels.data(),
+              {first.x(), first.y(), along_row.x(), along_row.y(), along_column.x(), along_column.y()},
+              warped.values.data());
   warped.centre();
   return true;
 }

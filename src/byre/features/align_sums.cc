@@ -1,5 +1,6 @@
 #include "byre/features/align_sums.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -94,6 +95,48 @@ void sum_up_10(const float* centred_template, float sum_of_squares, const float*
   sum_up<10>(centred_template, sum_of_squares, around, sums);
 }
 
+float centre_8(float* values) {
+  centre<64>(values);
+  return dot<padded(64)>(values, values);
+}
+float centre_10(float* values) {
+  centre<100>(values);
+  return dot<padded(100)>(values, values);
+}
+
+void warp(const std::uint8_t* pixels, const WarpedPlaces& places, float* values) {
+  constexpr int kSide = 16;  // pixels
+  const D d;
+  const hn::Rebind<std::int32_t, D> d32;
+  const auto low_byte = hn::Set(d32, 0xff);
+  // Neighbours in a row are read with two more bytes, which are not used.
+  HWY_ALIGN std::uint8_t read[kSide * kSide + 2] = {};
+  std::copy_n(pixels, kSide * kSide, read);
+  const auto* const from = reinterpret_cast<const std::int32_t*>(read);
+  const auto between_columns = [&](auto offset, auto fraction) {
+    const auto bytes = hn::GatherOffset(d32, from, offset);
+    const auto left = hn::And(bytes, low_byte), right = hn::And(hn::ShiftRight<8>(bytes), low_byte);
+    return hn::Add(hn::ConvertTo(d, left), hn::Mul(fraction, hn::ConvertTo(d, hn::Sub(right, left))));
+  };
+  for (int row = 0; row < kLanes; ++row) {
+    const auto down = static_cast<float>(row);
+    const auto row_x = hn::Set(d, places.x + down * places.x_along_column);
+    const auto row_y = hn::Set(d, places.y + down * places.y_along_column);
+    for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(d))) {
+      const auto steps = hn::Iota(d, static_cast<float>(lane));
+      const auto x = hn::Add(row_x, hn::Mul(steps, hn::Set(d, places.x_along_row)));
+      const auto y = hn::Add(row_y, hn::Mul(steps, hn::Set(d, places.y_along_row)));
+      const auto whole_x = hn::ConvertTo(d32, x), whole_y = hn::ConvertTo(d32, y);
+      const auto right_share = hn::Sub(x, hn::ConvertTo(d, whole_x)),
+                 lower_share = hn::Sub(y, hn::ConvertTo(d, whole_y));
+      const auto offset = hn::Add(hn::ShiftLeft<4>(whole_y), whole_x);
+      const auto upper = between_columns(offset, right_share);
+      const auto lower = between_columns(hn::Add(offset, hn::Set(d32, kSide)), right_share);
+      hn::StoreU(hn::Add(upper, hn::Mul(lower_share, hn::Sub(lower, upper))), d, values + row * kLanes + lane);
+    }
+  }
+}
+
 // Columns from first on, eight of them, of all rows.
 HWY_INLINE void interpolate_columns(const std::uint8_t* pixels, std::ptrdiff_t stride, float right, float below,
                                     int size, float* values) {
@@ -136,6 +179,9 @@ namespace {
 
 HWY_EXPORT(sum_up_8);
 HWY_EXPORT(sum_up_10);
+HWY_EXPORT(centre_8);
+HWY_EXPORT(centre_10);
+HWY_EXPORT(warp);
 HWY_EXPORT(interpolate);
 
 }  // namespace
@@ -146,6 +192,15 @@ AlignSums align_sums(const float* centred_template, float sum_of_squares, const 
   size == 8 ? HWY_DYNAMIC_DISPATCH(sum_up_8)(centred_template, sum_of_squares, around, sums)
             : HWY_DYNAMIC_DISPATCH(sum_up_10)(centred_template, sum_of_squares, around, sums);
   return sums;
+}
+
+float centre_template(float* values, int size) {
+  assert(size == 8 || size == 10);
+  return size == 8 ? HWY_DYNAMIC_DISPATCH(centre_8)(values) : HWY_DYNAMIC_DISPATCH(centre_10)(values);
+}
+
+void warp_square(const std::uint8_t* pixels, const WarpedPlaces& places, float* values) {
+  HWY_DYNAMIC_DISPATCH(warp)(pixels, places, values);
 }
 
 void interpolate_square(const std::uint8_t* pixels, std::ptrdiff_t stride, float right, float below, int size,

@@ -95,7 +95,59 @@ TEST_P(AlignSumsOf, AreTheSameToTheLastBitWithEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
+TEST_P(AlignSumsOf, AreOfATemplateWithoutItsMean) {
+  const int count = GetParam() * GetParam();
+  const std::vector<float> drawn = drawn_greys(count);
+  std::vector<float> values = drawn;
+  values.resize(padded(count), 0.0f);
+  const float squares = centre_template(values.data(), GetParam());
+  const std::vector<double> expected = without_mean({drawn.begin(), drawn.end()});
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-3);
+  EXPECT_NEAR(squares, dot(expected, expected), 1e-5 * dot(expected, expected));
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    std::vector<float> again = drawn;
+    again.resize(padded(count), 0.0f);
+    EXPECT_EQ(centre_template(again.data(), GetParam()), squares) << hwy::TargetName(target);
+    EXPECT_EQ(again, values) << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sizes, AlignSumsOf, testing::Values(8, 10));
+
+double value_between(const std::vector<std::uint8_t>& pixels, int stride, double x, double y) {
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const double right = x - column, below = y - row;
+  const auto at = [&](int u, int v) { return static_cast<double>(pixels[static_cast<std::size_t>(v * stride + u)]); };
+  const double upper = (1.0 - right) * at(column, row) + right * at(column + 1, row);
+  return (1.0 - below) * upper + below * ((1.0 - right) * at(column, row + 1) + right * at(column + 1, row + 1));
+}
+
+TEST(WarpedSquare, LiesBetweenThePixels) {
+  constexpr int kSide = 16;
+  std::vector<std::uint8_t> pixels(kSide * kSide);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * i % 251);
+  for (const WarpedPlaces& places :
+       {WarpedPlaces{3.25f, 4.7f, 1.0f, 0.0f, 0.0f, 1.0f}, WarpedPlaces{4.0f, 6.5f, 1.1f, -0.3f, 0.25f, 0.9f},
+        WarpedPlaces{0.01f, 14.98f, 2.13f, 0.0f, 0.0f, -2.13f}}) {
+    std::vector<float> values(64), again(64);
+    warp_square(pixels.data(), places, values.data());
+    for (int row = 0; row < 8; ++row) {
+      for (int column = 0; column < 8; ++column) {
+        const double x = places.x + column * places.x_along_row + row * places.x_along_column;
+        const double y = places.y + column * places.y_along_row + row * places.y_along_column;
+        EXPECT_NEAR(values[static_cast<std::size_t>(8 * row + column)], value_between(pixels, kSide, x, y), 2e-3);
+      }
+    }
+    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      warp_square(pixels.data(), places, again.data());
+      EXPECT_EQ(again, values) << hwy::TargetName(target);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+  }
+}
 
 TEST(InterpolatedSquare, LiesBetweenThePixels) {
   constexpr int kStride = 20;

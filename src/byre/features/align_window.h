@@ -42,16 +42,7 @@ struct CentredTemplate {
   std::array<float, padded(Size* Size)> values{};
   float sum_of_squares = 0.0f;
 
-  void centre() {
-    float mean = 0.0f;
-    for (std::size_t i = 0; i < Size * Size; ++i) mean += values[i];
-    mean /= Size * Size;
-    sum_of_squares = 0.0f;
-    for (std::size_t i = 0; i < Size * Size; ++i) {
-      values[i] -= mean;
-      sum_of_squares += values[i] * values[i];
-    }
-  }
+  void centre() { sum_of_squares = centre_template(values.data(), Size); }
 };
 
 // The normal equations of one Gauss-Newton step, with the light's gain and offset eliminated.

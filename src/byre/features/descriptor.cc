@@ -2,13 +2,86 @@
 
 #include "byre/features/brief_pattern.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
+#include <cstdint>
+
+// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "byre/features/descriptor.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include "byre/features/pairwise_sums-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace byre::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t kPairs = 256;
+
+// Adds up rows of 32 pixels, each weighed by column and by row.
+void add_moments(const std::uint8_t* pixels, std::ptrdiff_t stride, int rows, const std::int16_t* by_column,
+                 const std::int16_t* by_row, int* moments) {
+  constexpr std::size_t kColumns = 32;
+  const hn::CappedTag<std::int16_t, 16> d16;
+  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
+  const hn::RepartitionToWide<decltype(d16)> d32;
+  auto x = hn::Zero(d32), more_x = hn::Zero(d32), y = hn::Zero(d32), more_y = hn::Zero(d32);
+  for (int row = 0; row < rows; ++row, pixels += stride, by_column += kColumns, by_row += kColumns) {
+    for (std::size_t column = 0; column < kColumns; column += hn::Lanes(d16)) {
+      const auto greys = hn::PromoteTo(d16, hn::LoadU(d8, pixels + column));
+      x = hn::ReorderWidenMulAccumulate(d32, greys, hn::LoadU(d16, by_column + column), x, more_x);
+      y = hn::ReorderWidenMulAccumulate(d32, greys, hn::LoadU(d16, by_row + column), y, more_y);
+    }
+  }
+  moments[0] = hn::GetLane(hn::SumOfLanes(d32, hn::Add(x, more_x)));
+  moments[1] = hn::GetLane(hn::SumOfLanes(d32, hn::Add(y, more_y)));
+}
+
+// Offsets of the pattern's points once they are turned, from the pixel a number of bytes before the middle.
+void turn_pattern(const float* x, const float* y, float cosine, float sine, int stride, int before_middle,
+                  std::uint32_t* offsets) {
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToSigned<decltype(d)> d32;
+  const hn::RebindToUnsigned<decltype(d)> du32;
+  const auto c = hn::Set(d, cosine), s = hn::Set(d, sine);
+  const auto row_bytes = hn::Set(d32, stride), middle = hn::Set(d32, before_middle);
+  for (std::size_t i = 0; i < 2 * kPairs; i += hn::Lanes(d)) {
+    const auto at_x = hn::LoadU(d, x + i), at_y = hn::LoadU(d, y + i);
+    const auto column = hn::NearestInt(hn::Sub(hn::Mul(at_x, c), hn::Mul(at_y, s)));
+    const auto row = hn::NearestInt(hn::Add(hn::Mul(at_x, s), hn::Mul(at_y, c)));
+    const auto offset = hn::Add(hn::Add(hn::Mul(row, row_bytes), column), middle);
+    hn::StoreU(hn::BitCast(du32, offset), du32, offsets + i);
+  }
+}
+
+// A bit for each pair: whether the first is darker.
+void compare_pairs(const std::uint8_t* first, const std::uint8_t* second, std::uint64_t* words) {
+  const hn::CappedTag<std::uint8_t, 64> d;
+  std::uint8_t bits[kPairs / 8 + 8];
+  for (std::size_t i = 0; i < kPairs; i += hn::Lanes(d)) {
+    hn::StoreMaskBits(d, hn::Lt(hn::LoadU(d, first + i), hn::LoadU(d, second + i)), bits + i / 8);
+  }
+  for (std::size_t word = 0; word < kPairs / 64; ++word) {
+    words[word] = 0;
+    for (std::size_t byte = 0; byte < 8; ++byte) words[word] |= std::uint64_t{bits[8 * word + byte]} << (8 * byte);
+  }
+}
+
+}  // namespace
+}  // namespace byre::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 
 namespace byre {
 namespace {
+
+HWY_EXPORT(add_moments);
+HWY_EXPORT(turn_pattern);
+HWY_EXPORT(compare_pairs);
 
 constexpr int kDiscRadius = 15;
 
@@ -52,7 +125,7 @@ DiscWeights disc_weights() {
   return weights;
 }
 
-// The pattern, split by coordinate so that the rotation vectorises.
+// The pattern's points split by coordinate: the first of each pair, then the second.
 struct PatternColumns {
   std::array<float, 512> x;
   std::array<float, 512> y;
@@ -60,62 +133,42 @@ struct PatternColumns {
 
 PatternColumns split_pattern() {
   PatternColumns columns;
-  for (std::size_t i = 0; i < 512; ++i) {
-    columns.x[i] = kBriefPattern[2 * i];
-    columns.y[i] = kBriefPattern[2 * i + 1];
+  for (std::size_t pair = 0; pair < 256; ++pair) {
+    for (std::size_t point = 0; point < 2; ++point) {
+      columns.x[256 * point + pair] = kBriefPattern[4 * pair + 2 * point];
+      columns.y[256 * point + pair] = kBriefPattern[4 * pair + 2 * point + 1];
+    }
   }
   return columns;
-}
-
-// Rounds half to even without a library call, for |value| < 2^22.
-inline int round_to_int(float value) {
-  constexpr float kMagic = 12582912.0f;  // 1.5 * 2^23: the sum's mantissa is the rounded value
-  const float shifted = value + kMagic;
-  std::int32_t bits;
-  std::memcpy(&bits, &shifted, sizeof bits);
-  return bits - 0x4B400000;
 }
 
 }  // namespace
 
 float orientation(const std::uint8_t* centre, std::ptrdiff_t stride) {
   static const DiscWeights weights = disc_weights();
-  std::array<std::uint8_t, weights.x.size()> square;
-  const std::uint8_t* row = centre - kDiscRadius * stride - kDiscRadius;
-  for (std::size_t at = 0; at < square.size(); at += DiscWeights::kColumns, row += stride) {
-    std::copy_n(row, DiscWeights::kColumns, square.data() + at);
-  }
-  int moment_x = 0;
-  int moment_y = 0;
-  for (std::size_t i = 0; i < square.size(); ++i) {
-    const auto pixel = static_cast<std::int16_t>(square[i]);
-    moment_x += pixel * weights.x[i];
-    moment_y += pixel * weights.y[i];
-  }
-  return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+  int moments[2];
+  HWY_DYNAMIC_DISPATCH(add_moments)
+  (centre - kDiscRadius * stride - kDiscRadius, stride, DiscWeights::kRows, weights.x.data(), weights.y.data(),
+   moments);
+  return std::atan2(static_cast<float>(moments[1]), static_cast<float>(moments[0]));
 }
 
 Descriptor describe(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
   static const PatternColumns pattern = split_pattern();
-  const float cosine = std::cos(angle);
-  const float sine = std::sin(angle);
-  const int row_stride = static_cast<int>(stride);
-  std::array<int, 512> offset;
-  for (std::size_t i = 0; i < 512; ++i) {
-    const int column = round_to_int(pattern.x[i] * cosine - pattern.y[i] * sine);
-    const int row = round_to_int(pattern.x[i] * sine + pattern.y[i] * cosine);
-    offset[i] = row * row_stride + column;
-  }
-  Descriptor descriptor{};
-  for (std::size_t word = 0; word < 4; ++word) {
-    std::uint64_t bits = 0;
-    for (std::size_t bit = 0; bit < 64; ++bit) {
-      const std::size_t pair = 2 * (64 * word + bit);
-      bits |= static_cast<std::uint64_t>(blurred_centre[offset[pair]] < blurred_centre[offset[pair + 1]]) << bit;
-    }
-    descriptor[word] = bits;
-  }
+  const int before_middle = kDescriptorRadius * static_cast<int>(stride) + kDescriptorRadius;
+  std::array<std::uint32_t, 512> offsets;
+  HWY_DYNAMIC_DISPATCH(turn_pattern)
+  (pattern.x.data(), pattern.y.data(), std::cos(angle), std::sin(angle), static_cast<int>(stride), before_middle,
+   offsets.data());
+  const std::uint8_t* const first = blurred_centre - before_middle;
+  std::array<std::uint8_t, 512> greys;
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < greys.size(); ++i) greys[i] = first[offsets[i]];
+  Descriptor descriptor;
+  HWY_DYNAMIC_DISPATCH(compare_pairs)(greys.data(), greys.data() + 256, descriptor.data());
   return descriptor;
 }
 
 }  // namespace byre
+
+#endif

@@ -1,8 +1,10 @@
 #include "byre/features/descriptor.h"
 
+#include "byre/features/brief_pattern.h"
 #include "byre/features/test_images.h"
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <numbers>
 
@@ -73,6 +75,31 @@ TEST(Orientation, PointsTowardsTheBrightSide) {
   for (double angle = -3.0; angle <= 3.0; angle += 0.5) {
     const cv::Mat image = brighter_towards(angle);
     EXPECT_LE(turn_between(orientation(at(image, {20, 20}), stride(image)), angle), 0.01) << angle;
+  }
+}
+
+// Without vectors.
+Descriptor described_plainly(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
+  const float cosine = std::cos(angle), sine = std::sin(angle);
+  const auto grey = [&](std::size_t point) {
+    const auto x = static_cast<float>(kBriefPattern[2 * point]), y = static_cast<float>(kBriefPattern[2 * point + 1]);
+    const auto column = static_cast<std::ptrdiff_t>(std::nearbyint(x * cosine - y * sine));
+    const auto row = static_cast<std::ptrdiff_t>(std::nearbyint(x * sine + y * cosine));
+    return blurred_centre[row * stride + column];
+  };
+  Descriptor descriptor{};
+  for (std::size_t pair = 0; pair < 256; ++pair) {
+    if (grey(2 * pair) < grey(2 * pair + 1)) descriptor[pair / 64] |= 1ull << (pair % 64);
+  }
+  return descriptor;
+}
+
+TEST(Describe, IsToTheLastBitWhatPlainCodeGives) {
+  const cv::Mat image = white_noise({61, 47}, 3);
+  for (float angle = -3.2f; angle < 3.2f; angle += 0.01f) {
+    EXPECT_EQ(describe(at(image, {30, 23}), stride(image), angle),
+              described_plainly(at(image, {30, 23}), stride(image), angle))
+        << angle;
   }
 }
 

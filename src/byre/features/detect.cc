@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <tuple>
+#include <numeric>
+#include <vector>
 
 namespace byre {
 namespace {
@@ -16,9 +18,6 @@ struct CellGrid {
   int columns() const { return (area.width + cell_size - 1) / cell_size; }
   int rows() const { return (area.height + cell_size - 1) / cell_size; }
   std::size_t size() const { return static_cast<std::size_t>(columns() * rows()); }
-  std::size_t index_of(const Corner& corner) const {
-    return static_cast<std::size_t>((corner.y - area.y) / cell_size * columns() + (corner.x - area.x) / cell_size);
-  }
   cv::Rect cell(std::size_t index) const {
     const int row = static_cast<int>(index) / columns();
     const int column = static_cast<int>(index) % columns();
@@ -31,20 +30,41 @@ cv::Rect searched_area(const cv::Mat& level, int border) {
   return {border, border, level.cols - 2 * border, level.rows - 2 * border};
 }
 
-struct RankedCorner {
-  Corner corner;
-  int square = 0;
-  int rank = 0;  // within its square, strongest first
-};
+// What orders corners, smallest first: the square they lie in, then strength, then row and column.
+using Key = std::uint64_t;
+
+constexpr unsigned kPlaceBits = 16, kStrengthShift = 2 * kPlaceBits, kSquareShift = kStrengthShift + 8;
+
+Key key_of(const Corner& corner, int square) {
+  const auto weakness = static_cast<Key>(255 - static_cast<int>(corner.response));
+  return static_cast<Key>(square) << kSquareShift | weakness << kStrengthShift |
+         static_cast<Key>(corner.y) << kPlaceBits | static_cast<Key>(corner.x);
+}
+
+Corner corner_of(Key key) {
+  constexpr Key kPlace = (Key{1} << kPlaceBits) - 1;
+  return {static_cast<int>(key & kPlace), static_cast<int>(key >> kPlaceBits & kPlace),
+          static_cast<float>(255 - static_cast<int>(key >> kStrengthShift & 0xff))};
+}
+
+// Strength, then square.
+Key key_among_equal_ranks(Key key, std::size_t square) {
+  return (key >> kStrengthShift & 0xff) << 32U | static_cast<Key>(square);
+}
 
 // Memory of a detection, kept by its thread from one to the next.
 struct Memory {
   std::vector<std::uint8_t> strengths;
   std::vector<std::uint8_t> cell;
   std::vector<Corner> corners;
+  std::vector<int> cell_of_column;
   std::vector<int> found;
   std::vector<bool> poor;
-  std::vector<RankedCorner> ranked;
+  std::vector<int> square_of_corner;
+  std::vector<std::size_t> begin;  // where each square begins in `ranked`, and the end
+  std::vector<Key> ranked;         // by square, strongest first
+  std::vector<int> of_rank;        // how many squares have a corner of that rank
+  std::vector<Key> last;           // corners of the last rank that gives any
 };
 
 Memory& memory_of_thread() {
@@ -77,45 +97,94 @@ void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, 
 void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Memory& memory) {
   std::vector<Corner>& corners = memory.corners;
   const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
+  std::vector<int>& cell_of_column = memory.cell_of_column;
+  cell_of_column.resize(static_cast<std::size_t>(grid.area.width));
+  for (int x = 0; x < grid.area.width; ++x) cell_of_column[static_cast<std::size_t>(x)] = x / grid.cell_size;
+  const auto cell_of = [&](const Corner& corner) {
+    return static_cast<std::size_t>((corner.y - grid.area.y) / grid.cell_size * grid.columns() +
+                                    cell_of_column[static_cast<std::size_t>(corner.x - grid.area.x)]);
+  };
   std::vector<int>& found = memory.found;
   found.assign(grid.size(), 0);
-  for (const Corner& corner : corners) ++found[grid.index_of(corner)];
+  for (const Corner& corner : corners) ++found[cell_of(corner)];
   std::vector<bool>& poor = memory.poor;
   poor.assign(grid.size(), false);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
   }
   // Corners of poor cells are found again.
-  std::erase_if(corners, [&](const Corner& corner) { return poor[grid.index_of(corner)]; });
+  std::erase_if(corners, [&](const Corner& corner) { return poor[cell_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, memory.cell, corners);
   }
 }
 
-// Refills `ranked`.
-void rank_in_squares(const std::vector<Corner>& corners, const cv::Size& size, int max_corners,
-                     std::vector<RankedCorner>& ranked) {
+// Refills `ranked`, and where each of the squares begins in it.
+void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
   const double area = static_cast<double>(size.width) * size.height;
   const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
   const int columns = static_cast<int>(size.width / side) + 1;
-  ranked.clear();
-  for (const Corner& corner : corners) {
-    ranked.push_back({corner, static_cast<int>(corner.y / side) * columns + static_cast<int>(corner.x / side), 0});
+  const int rows = static_cast<int>(size.height / side) + 1;
+  std::vector<std::size_t>& begin = memory.begin;
+  begin.assign(static_cast<std::size_t>(columns * rows) + 2, 0);
+  std::vector<int>& squares = memory.square_of_corner;
+  squares.clear();
+  for (const Corner& corner : memory.corners) {
+    squares.push_back(static_cast<int>(corner.y / side) * columns + static_cast<int>(corner.x / side));
+    ++begin[static_cast<std::size_t>(squares.back()) + 2];
   }
-  std::sort(ranked.begin(), ranked.end(), [](const RankedCorner& a, const RankedCorner& b) {
-    return std::tuple(a.square, -a.corner.response, a.corner.y, a.corner.x) <
-           std::tuple(b.square, -b.corner.response, b.corner.y, b.corner.x);
-  });
-  for (std::size_t i = 1; i < ranked.size(); ++i) {
-    if (ranked[i].square == ranked[i - 1].square) ranked[i].rank = ranked[i - 1].rank + 1;
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  memory.ranked.resize(memory.corners.size());
+  // Each begin moves on to the next one's place.
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const int square = squares[i];
+    memory.ranked[begin[static_cast<std::size_t>(square) + 1]++] = key_of(memory.corners[i], square);
   }
+  begin.pop_back();
+  for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
+    const auto at = [&](std::size_t i) { return memory.ranked.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::sort(at(begin[square]), at(begin[square + 1]));
+  }
+}
+
+// How many corners each square gives, and which of its next ones are taken besides: those before a key.
+struct Share {
+  std::size_t of_all = 0;
+  Key end_of_next = 0;  // see key_among_equal_ranks
+};
+
+Share share_of_squares(std::size_t wanted, Memory& memory) {
+  std::vector<int>& of_rank = memory.of_rank;
+  of_rank.clear();
+  const std::vector<std::size_t>& begin = memory.begin;
+  for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
+    const std::size_t count = begin[square + 1] - begin[square];
+    if (count > of_rank.size()) of_rank.resize(count, 0);
+    for (std::size_t rank = 0; rank < count; ++rank) ++of_rank[rank];
+  }
+  Share share;
+  for (; share.of_all < of_rank.size() && wanted >= static_cast<std::size_t>(of_rank[share.of_all]); ++share.of_all) {
+    wanted -= static_cast<std::size_t>(of_rank[share.of_all]);
+  }
+  if (share.of_all == of_rank.size()) return share;
+  std::vector<Key>& last = memory.last;
+  last.clear();
+  for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
+    const std::size_t next = begin[square] + share.of_all;
+    if (next < begin[square + 1]) last.push_back(key_among_equal_ranks(memory.ranked[next], square));
+  }
+  const auto end = last.begin() + static_cast<std::ptrdiff_t>(wanted);
+  std::nth_element(last.begin(), end, last.end());
+  share.end_of_next = *end;
+  return share;
 }
 
 }  // namespace
 
-std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners) {
+  corners.clear();
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
-  if (std::min(area.width, area.height) <= 0) return {};
+  if (std::min(area.width, area.height) <= 0) return;
   Memory& memory = memory_of_thread();
   cv::Mat strengths = scratch_image(memory.strengths, level.size());
   measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
@@ -123,23 +192,26 @@ std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const 
   append_peaks(strengths, area, options.fast_threshold, memory.corners);
   search_poor_cells(strengths, max_corners, options, memory);
 
-  std::vector<RankedCorner>& ranked = memory.ranked;
-  rank_in_squares(memory.corners, level.size(), max_corners, ranked);
-  const std::size_t wanted = std::min(ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
-  const auto by_rank = [](const RankedCorner& a, const RankedCorner& b) {
-    return std::tuple(a.rank, -a.corner.response, a.square) < std::tuple(b.rank, -b.corner.response, b.square);
-  };
-  if (wanted < ranked.size()) {
-    std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(wanted), ranked.end(), by_rank);
+  rank_in_squares(level.size(), max_corners, memory);
+  const std::size_t wanted = std::min(memory.ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
+  const Share share = share_of_squares(wanted, memory);
+  corners.reserve(wanted);
+  for (std::size_t square = 0; square + 1 < memory.begin.size(); ++square) {
+    const std::size_t end = memory.begin[square + 1];
+    std::size_t i = memory.begin[square];
+    for (const std::size_t next = std::min(end, i + share.of_all); i < next; ++i) {
+      corners.push_back(corner_of(memory.ranked[i]));
+    }
+    if (i < end && key_among_equal_ranks(memory.ranked[i], square) < share.end_of_next) {
+      corners.push_back(corner_of(memory.ranked[i]));
+    }
   }
-  ranked.resize(wanted);
-  std::sort(ranked.begin(), ranked.end(), [](const RankedCorner& a, const RankedCorner& b) {
-    return std::tuple(a.square, a.rank) < std::tuple(b.square, b.rank);
-  });
-  std::vector<Corner> spread;
-  spread.reserve(ranked.size());
-  for (const RankedCorner& candidate : ranked) spread.push_back(candidate.corner);
-  return spread;
+}
+
+std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+  std::vector<Corner> corners;
+  detect_corners(level, max_corners, options, corners);
+  return corners;
 }
 
 }  // namespace byre

@@ -20,4 +20,7 @@ struct DetectOptions {
 // of squares; the same image gives the same corners.
 std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options);
 
+// The same; refills `corners`.
+void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners);
+
 }  // namespace byre

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <utility>
 
-// The vectorised part of this file is compiled once for each instruction set.
+// The vectorised part of this file is compiled once for each instruction set; not for those whose vectors are not made
+// of blocks of 16 bytes.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/downscale.cc"
 #include <hwy/foreach_target.h>
@@ -19,16 +21,17 @@ namespace {
 
 // A row's pixels, each between two of the source: 128 times its grey value.
 void scale_row(const std::uint8_t* source, const Downscale::Group* groups, std::size_t count, std::int16_t* sums) {
-  const hn::FixedTag<std::uint8_t, 16> d8;
-  const hn::FixedTag<std::int16_t, 8> d16;
-  const hn::FixedTag<std::int32_t, 4> d32;
-  const hn::Half<decltype(d16)> half;
+  const hn::CappedTag<std::uint8_t, 32> d8;
+  const hn::Repartition<std::int16_t, decltype(d8)> d16;
+  const hn::RepartitionToWide<decltype(d16)> d32;
+  const hn::Rebind<std::int16_t, decltype(d32)> made;
+  constexpr std::size_t kBytes = 4 * Downscale::Group::kPixels;
   for (std::size_t g = 0; g < count; ++g, sums += Downscale::Group::kPixels) {
-    const auto pixels = hn::LoadU(d8, source + groups[g].first);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto chosen = hn::TableLookupBytesOr0(pixels, hn::LoadU(d8, groups[g].neighbours.data() + 16 * i));
-      const auto sum = pairwise_sums(d32, hn::BitCast(d16, chosen), hn::LoadU(d16, groups[g].weights.data() + 8 * i));
-      hn::StoreU(hn::DemoteTo(half, hn::ShiftRight<4>(sum)), half, sums + 4 * i);
+    const auto pixels = hn::LoadDup128(d8, source + groups[g].first);
+    for (std::size_t i = 0; i < kBytes; i += hn::Lanes(d8)) {
+      const auto chosen = hn::TableLookupBytesOr0(pixels, hn::LoadU(d8, groups[g].neighbours.data() + i));
+      const auto sum = pairwise_sums(d32, hn::BitCast(d16, chosen), hn::LoadU(d16, groups[g].weights.data() + i / 2));
+      hn::StoreU(hn::DemoteTo(made, hn::ShiftRight<4>(sum)), made, sums + i / 4);
     }
   }
 }

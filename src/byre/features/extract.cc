@@ -68,7 +68,7 @@ cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, con
 
 // What was measured of each keypoint, where it was.
 template <typename Measured>
-void take_over(const std::vector<std::optional<Measured>>& measured, std::span<Keypoint> keypoints) {
+void take_over(std::span<const std::optional<Measured>> measured, std::span<Keypoint> keypoints) {
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
@@ -116,6 +116,11 @@ struct Described {
   }
 };
 
+// What an image is like once it is developed.
+ImageCondition condition_of_developed(const ImageCondition& of_original) {
+  return condition_after(development_for(of_original), of_original);
+}
+
 // An image as features are looked for in it.
 struct Developed {
   cv::Mat image;
@@ -152,33 +157,40 @@ struct Extractor::State {
   Developed left_developed;
   Developed right_developed;
   std::array<cv::Mat, kOctaves> blurred;
+  std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
+  std::vector<std::optional<StereoMatch>> stereo_matches;
   TaskThreads threads;
 
   void prepare(const ImageFrame& images, bool stereo, Frame& frame);
   void describe_octave(int octave, int quota);
-  Described describe_all(bool stereo);
+  Described describe_all();
   void match_right(std::vector<Keypoint>& keypoints);
   void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
   void time_rows(std::vector<Keypoint>& keypoints) const;
 };
 
-// Images rectified and developed, the left one at every octave, and what they are like as they came.
+// Both images rectified and developed, at every octave, and what they are like as they came. The right one is exposed
+// as the left one is, which is known once both have been measured.
 void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
+  threads.run(stereo ? 3 : 2, [&](int i) {
+    if (i == 0) frame.condition = measure_condition(images.left);
+    if (i == 1) frame.content = checksum(std::as_bytes(std::span(images.left.pixels)));
+    if (i == 2) frame.right_condition = measure_condition(*images.right);
+  });
   const auto prepare_left = [&] {
-    frame.condition = measure_condition(images.left);
     left_developed.take(rectifier.left(left_image), *frame.condition);
     build_pyramid(left_developed.image, left);
   };
   const auto prepare_right = [&] {
-    frame.right_condition = measure_condition(*images.right);
     right_developed.take(rectifier.right(right_image), *frame.right_condition);
+    build_pyramid(
+        exposed_as_left(right_developed.image, condition_of_developed(*frame.condition), right_developed.condition),
+        right);
   };
-  const auto identify_left = [&] { frame.content = checksum(std::as_bytes(std::span(images.left.pixels))); };
-  const std::array<std::function<void()>, 3> tasks = {prepare_left, identify_left, prepare_right};
-  threads.run(stereo ? 3 : 2, [&](int i) { tasks[static_cast<std::size_t>(i)](); });
+  threads.run(stereo ? 2 : 1, [&](int i) { i == 0 ? prepare_left() : prepare_right(); });
 }
 
 void Extractor::State::describe_octave(int octave, int quota) {
@@ -190,7 +202,8 @@ void Extractor::State::describe_octave(int octave, int quota) {
   detect.fast_threshold = options.fast_threshold;
   detect.min_fast_threshold = options.min_fast_threshold;
   detect.border = kDescriptorRadius;
-  const std::vector<Corner> corners = detect_corners(level, quota, detect);
+  std::vector<Corner>& corners = corners_of_octave[slot];
+  detect_corners(level, quota, detect, corners);
   if (corners.empty()) return;
   found.keypoints.reserve(corners.size());
   found.descriptors.reserve(corners.size());
@@ -210,19 +223,10 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// Features of all octaves, the finest first; meanwhile the right image at every octave.
-Described Extractor::State::describe_all(bool stereo) {
+// Features of all octaves, the finest first.
+Described Extractor::State::describe_all() {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
-  // The right pyramid takes longer than the coarse octaves.
-  const int of_right = stereo ? 1 : -1;
-  threads.run(stereo ? kOctaves + 1 : kOctaves, [&](int task) {
-    if (task == of_right) {
-      build_pyramid(exposed_as_left(right_developed.image, left_developed.condition, right_developed.condition), right);
-    } else {
-      const int octave = stereo && task > of_right ? task - 1 : task;
-      describe_octave(octave, quota[static_cast<std::size_t>(octave)]);
-    }
-  });
+  threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });
   Described all;
   all.keypoints.reserve(static_cast<std::size_t>(options.max_features));
   all.descriptors.reserve(static_cast<std::size_t>(options.max_features));
@@ -240,11 +244,13 @@ void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
   StereoOptions stereo_options;
   stereo_options.refine = options.refinement != Refinement::none;
   const std::span<Keypoint> all = keypoints;
+  stereo_matches.resize(all.size());
   threads.run(static_cast<int>((all.size() + kAtOnce - 1) / kAtOnce), [&](int task) {
     const std::size_t first = static_cast<std::size_t>(task) * kAtOnce;
     const std::span<Keypoint> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
-    const auto matches = match_stereo(left, right, rectifier.rig(), some, stereo_options);
-    take_over(matches, some);
+    const std::span matches = std::span(stereo_matches).subspan(first, some.size());
+    match_stereo(left, right, rectifier.rig(), some, stereo_options, matches);
+    take_over<StereoMatch>(matches, some);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) some[i].row_offset = matches[i]->row_offset;
     }
@@ -253,7 +259,7 @@ void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
 
 void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
   require_size(image.width, image.height, image.units.size(), calibration.depth->camera.value_or(calibration.left));
-  take_over(depth->read(image, keypoints, options.depth), keypoints);
+  take_over<DepthReading>(depth->read(image, keypoints, options.depth), keypoints);
 }
 
 void Extractor::State::time_rows(std::vector<Keypoint>& keypoints) const {
@@ -287,6 +293,7 @@ const Rig& Extractor::rig() const {
 
 Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const Clock::time_point start = Clock::now();
+  const TaskThreads::Shift shift(state_->threads);
   const Calibration& calibration = state_->calibration;
   const bool stereo = calibration.right && images.right && used == ImagesUsed::all;
   Extraction extraction;
@@ -294,7 +301,7 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   frame.time = images.time;
   state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
-  Described described = state_->describe_all(stereo);
+  Described described = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
   if (stereo) state_->match_right(described.keypoints);
   if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);

@@ -27,8 +27,8 @@ struct ExtractOptions {
 
 // Wall time of the stages of one extraction, seconds.
 struct ExtractTimes {
-  double rectify = 0.0;  // with the left pyramid
-  double extract = 0.0;  // corners, descriptors, patches; the right pyramid
+  double rectify = 0.0;  // with the pyramids
+  double extract = 0.0;  // corners, descriptors, patches
   double stereo = 0.0;   // matching left to right, or reading depths
 };
 

@@ -23,20 +23,28 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kCircle = 16;
 
-// The largest of the smallest values of nine neighbours on the circle.
+// The largest of the smallest values of nine neighbours on the circle, and the smallest of their largest ones.
 template <class V>
-HWY_INLINE V strongest_arc(const V* on_circle) {
-  // Smallest of two, four and eight neighbours from each second place of the circle on.
-  V two[kCircle], four[kCircle];
-  for (std::size_t i = 1; i < kCircle; i += 2) two[i] = hn::Min(on_circle[i], on_circle[(i + 1) % kCircle]);
-  for (std::size_t i = 1; i < kCircle; i += 2) four[i] = hn::Min(two[i], two[(i + 2) % kCircle]);
-  V strongest = hn::Xor(on_circle[0], on_circle[0]);
+HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& most_of_darkest) {
+  // Extremes of two, four and eight neighbours from each second place of the circle on.
+  V low_two[kCircle], high_two[kCircle], low_four[kCircle], high_four[kCircle];
   for (std::size_t i = 1; i < kCircle; i += 2) {
-    const V eight = hn::Min(four[i], four[(i + 4) % kCircle]);
-    // The ninth lies before or after.
-    strongest = hn::Max(strongest, hn::Min(eight, hn::Max(on_circle[i - 1], on_circle[(i + 8) % kCircle])));
+    low_two[i] = hn::Min(on_circle[i], on_circle[(i + 1) % kCircle]);
+    high_two[i] = hn::Max(on_circle[i], on_circle[(i + 1) % kCircle]);
   }
-  return strongest;
+  for (std::size_t i = 1; i < kCircle; i += 2) {
+    low_four[i] = hn::Min(low_two[i], low_two[(i + 2) % kCircle]);
+    high_four[i] = hn::Max(high_two[i], high_two[(i + 2) % kCircle]);
+  }
+  for (std::size_t i = 1; i < kCircle; i += 2) {
+    const V low_eight = hn::Min(low_four[i], low_four[(i + 4) % kCircle]);
+    const V high_eight = hn::Max(high_four[i], high_four[(i + 4) % kCircle]);
+    // The ninth lies before or after.
+    const V before = on_circle[i - 1], after = on_circle[(i + 8) % kCircle];
+    const V low = hn::Min(low_eight, hn::Max(before, after)), high = hn::Max(high_eight, hn::Min(before, after));
+    least_of_brightest = i == 1 ? low : hn::Max(least_of_brightest, low);
+    most_of_darkest = i == 1 ? high : hn::Min(most_of_darkest, high);
+  }
 }
 
 // Strengths of neighbouring pixels, at least as many as a vector's lanes; offsets lead from a pixel to its circle.
@@ -57,36 +65,53 @@ void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std:
     const auto darker = hn::SaturatedSub(centre, hn::Max(hn::Min(n0, n8), hn::Min(n4, n12)));
     auto strength = hn::Zero(d);
     if (!hn::AllFalse(d, hn::Gt(hn::Max(brighter, darker), limit))) {
-      V above[kCircle], below[kCircle];
-      for (std::size_t i = 0; i < kCircle; ++i) {
-        const auto value = neighbour(i);
-        above[i] = hn::SaturatedSub(value, centre);
-        below[i] = hn::SaturatedSub(centre, value);
-      }
-      strength = hn::Max(strongest_arc(above), strongest_arc(below));
+      V on_circle[kCircle];
+      for (std::size_t i = 0; i < kCircle; ++i) on_circle[i] = neighbour(i);
+      V least_of_brightest, most_of_darkest;
+      find_extreme_arcs(on_circle, least_of_brightest, most_of_darkest);
+      strength = hn::Max(hn::SaturatedSub(least_of_brightest, centre), hn::SaturatedSub(centre, most_of_darkest));
       strength = hn::IfThenElseZero(hn::Gt(strength, limit), strength);
     }
     hn::StoreU(strength, d, strengths + at);
   }
 }
 
-// Marks, a bit each and the first one lowest, those of a row's first pixels that are stronger than the threshold and
-// than their neighbours. At most 32, and as many as a vector has lanes.
-std::uint32_t find_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::uint8_t threshold) {
-  const hn::CappedTag<std::uint8_t, 32> d;
+// Which of a row's pixels are stronger than the threshold and than their neighbours. There is no branch to be guessed:
+// in most places the guess would be as good as drawn.
+template <class D, class V>
+HWY_INLINE hn::Mask<D> peaks_among(D d, const std::uint8_t* strengths, std::ptrdiff_t stride, V limit) {
   const auto centre = hn::LoadU(d, strengths);
-  const auto is_strong = hn::Gt(centre, hn::Set(d, threshold));
-  if (hn::AllFalse(d, is_strong)) return 0;
   const auto row_around = [&](const std::uint8_t* middle) {
     return hn::Max(hn::LoadU(d, middle - 1), hn::LoadU(d, middle + 1));
   };
   const auto above = hn::Max(row_around(strengths - stride), hn::LoadU(d, strengths - stride));
   const auto below = hn::Max(row_around(strengths + stride), hn::LoadU(d, strengths + stride));
   const auto around = hn::Max(hn::Max(above, below), row_around(strengths));
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, hn::And(is_strong, hn::Gt(centre, around)), bits);
-  return static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8U |
-         static_cast<std::uint32_t>(bits[2]) << 16U | static_cast<std::uint32_t>(bits[3]) << 24U;
+  return hn::Gt(centre, hn::Max(around, limit));
+}
+
+// Marks, a bit each and the first one lowest, those of a row's first pixels. At least as many pixels as a vector has
+// lanes; writes whole words.
+void mark_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::size_t count, std::uint8_t threshold,
+                std::uint64_t* marks) {
+  const hn::CappedTag<std::uint8_t, 32> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto limit = hn::Set(d, threshold);
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(marks);
+  std::size_t x = 0;
+  for (; x + lanes <= count; x += lanes) {
+    hn::StoreMaskBits(d, peaks_among(d, strengths + x, stride, limit), bytes + x / 8);
+  }
+  for (std::size_t byte = x / 8; byte % 8 != 0 || 8 * byte < count; ++byte) bytes[byte] = 0;
+  if (x == count) return;
+  // The last ones overlap with those before, so as to stay inside the row.
+  const std::size_t at = count - lanes;
+  std::uint8_t last[8] = {};
+  hn::StoreMaskBits(d, peaks_among(d, strengths + at, stride, limit), last);
+  for (std::size_t i = x - at; i < lanes; ++i) {
+    const std::size_t pixel = at + i;
+    bytes[pixel / 8] = static_cast<std::uint8_t>(bytes[pixel / 8] | (last[i / 8] >> (i % 8) & 1) << (pixel % 8));
+  }
 }
 
 std::size_t lanes_of_rows() {
@@ -103,7 +128,7 @@ namespace byre {
 namespace {
 
 HWY_EXPORT(measure_row);
-HWY_EXPORT(find_peaks);
+HWY_EXPORT(mark_peaks);
 HWY_EXPORT(lanes_of_rows);
 
 // Clockwise from below; column and row.
@@ -188,17 +213,25 @@ void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int thre
 void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
   assert(area.x > 0 && area.x + area.width < strengths.cols && area.y > 0 && area.y + area.height < strengths.rows);
   const auto stride = static_cast<std::ptrdiff_t>(strengths.step);
-  const auto lanes = static_cast<int>(HWY_DYNAMIC_DISPATCH(lanes_of_rows)());
+  const auto width = static_cast<std::size_t>(area.width);
+  const bool is_narrow = width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)();
+  thread_local std::vector<std::uint64_t> marks;
+  constexpr std::size_t kBits = 64;
+  marks.resize(std::max(marks.size(), width / kBits + 1));
   for (int y = area.y; y < area.y + area.height; ++y) {
-    const std::uint8_t* const row = strengths.ptr<std::uint8_t>(y);
-    const auto append = [&](int x) { corners.push_back({x, y, static_cast<float>(row[x] - 1)}); };
-    int x = area.x;
-    for (; x + lanes <= area.x + area.width; x += lanes) {
-      std::uint32_t peaks = HWY_DYNAMIC_DISPATCH(find_peaks)(row + x, stride, static_cast<std::uint8_t>(threshold));
-      for (; peaks != 0; peaks &= peaks - 1) append(x + std::countr_zero(peaks));
+    const std::uint8_t* const row = strengths.ptr<std::uint8_t>(y) + area.x;
+    const auto append = [&](int x) { corners.push_back({area.x + x, y, static_cast<float>(row[x] - 1)}); };
+    if (is_narrow) {
+      for (int x = 0; x < area.width; ++x) {
+        if (is_peak(row + x, stride, threshold)) append(x);
+      }
+      continue;
     }
-    for (; x < area.x + area.width; ++x) {
-      if (is_peak(row + x, stride, threshold)) append(x);
+    HWY_DYNAMIC_DISPATCH(mark_peaks)(row, stride, width, static_cast<std::uint8_t>(threshold), marks.data());
+    for (std::size_t word = 0; word * kBits < width; ++word) {
+      for (std::uint64_t left = marks[word]; left != 0; left &= left - 1) {
+        append(static_cast<int>(word * kBits) + std::countr_zero(left));
+      }
     }
   }
 }

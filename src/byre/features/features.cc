@@ -1,6 +1,7 @@
 #include "byre/features.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -38,25 +39,33 @@ struct Cells {
   int columns = 0;
   int rows = 0;
   std::vector<int> begin;  // see Features::cell_begin_
-  std::vector<int> order;  // indices of keypoints
+  // Indices of keypoints. Memory of the thread, used again by the next that are sorted.
+  std::vector<int>& order;
 
   Cells(int width, int height, const std::vector<Keypoint>& keypoints)
       : size(cell_size_for(width, height, keypoints.size())),
         columns((width + size - 1) / size),
         rows((height + size - 1) / size),
         begin(static_cast<std::size_t>(columns * rows + 1), 0),
-        order(keypoints.size()) {
-    std::vector<int> cells;
-    cells.reserve(keypoints.size());
+        order(memory()[0]) {
+    std::vector<int>& cells = memory()[1];
+    std::vector<int>& next = memory()[2];
+    order.resize(keypoints.size());
+    cells.clear();
     for (const Keypoint& keypoint : keypoints) {
       cells.push_back(cell_of(keypoint));
       ++begin[static_cast<std::size_t>(cells.back() + 1)];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
+    next.assign(begin.begin(), begin.end() - 1);
     for (std::size_t i = 0; i < keypoints.size(); ++i) {
       order[static_cast<std::size_t>(next[static_cast<std::size_t>(cells[i])]++)] = static_cast<int>(i);
     }
+  }
+
+  static std::array<std::vector<int>, 3>& memory() {
+    thread_local std::array<std::vector<int>, 3> kept;
+    return kept;
   }
 
   int cell_of(const Keypoint& keypoint) const {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace byre {
 namespace {
@@ -85,24 +88,34 @@ Light light_of(const Image& image) {
 // noise six times its standard deviation. The lower quartile, as there is texture elsewhere. Clipped pixels have none.
 float noise_of(const Image& image) {
   constexpr int kLargest = 8 * 255;
+  constexpr std::uint16_t kClipped = kLargest + 1;
   constexpr double kQuartile = 0.3186;  // lower quartile of the magnitude of a normal distribution, in its sigmas
   constexpr double kGain = 6.0;         // root of the sum of the squared weights
-  std::array<int, kLargest + 1> counts{};
-  int count = 0;
+  // Two counts in turns, as the same one cannot be raised twice at once.
+  std::array<std::array<int, kClipped + 1>, 2> raised{};
+  thread_local std::vector<std::int16_t> across;        // second differences between rows
+  thread_local std::vector<std::uint16_t> differences;  // second differences in both directions
   const std::ptrdiff_t stride = image.width;
+  const auto width = static_cast<std::size_t>(image.width);
+  across.resize(width);
+  differences.resize(width);
   for (int y = kRowStep; y + 1 < image.height; y += kRowStep) {
     const std::uint8_t* const row = image.pixels.data() + y * stride;
-    const auto across = [row, stride](int x) { return row[x - stride] - 2 * row[x] + row[x + stride]; };
-    int before = across(0), here = across(1);
-    for (int x = 1; x + 1 < image.width; ++x) {
-      const int after = across(x + 1);
-      const int difference = before - 2 * here + after;
-      before = here;
-      here = after;
-      if (row[x] <= 1 || row[x] >= 254) continue;
-      ++counts[static_cast<std::size_t>(std::abs(difference))];
-      ++count;
+    const std::uint8_t* const above = row - stride;
+    const std::uint8_t* const below = row + stride;
+    for (std::size_t x = 0; x < width; ++x) across[x] = static_cast<std::int16_t>(above[x] - 2 * row[x] + below[x]);
+    for (std::size_t x = 1; x + 1 < width; ++x) {
+      const auto difference = static_cast<std::int16_t>(across[x - 1] - 2 * across[x] + across[x + 1]);
+      const auto magnitude = static_cast<std::uint16_t>(std::abs(difference));
+      differences[x] = row[x] <= 1 || row[x] >= 254 ? kClipped : magnitude;
     }
+    for (std::size_t x = 1; x + 1 < width; ++x) ++raised[x % 2][differences[x]];
+  }
+  std::array<int, kLargest + 1> counts;
+  int count = 0;
+  for (std::size_t value = 0; value < counts.size(); ++value) {
+    counts[value] = raised[0][value] + raised[1][value];
+    count += counts[value];
   }
   const double wanted = 0.25 * count;
   double below = 0.0;

@@ -2,8 +2,10 @@
 
 #include "byre/features/align_window.h"
 #include "byre/features/block_differences.h"
+#include "byre/features/row_costs.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -22,7 +24,7 @@ const std::uint8_t* block(const cv::Mat& level, int x, int y) {
 
 struct RowMatch {
   int x = -1;
-  int cost = std::numeric_limits<int>::max();         // see cost_between_columns
+  int cost = std::numeric_limits<int>::max();         // see least_costs
   int second_cost = std::numeric_limits<int>::max();  // the best that is more than one pixel away
 
   bool is_unique(float max_ratio) const {
@@ -32,62 +34,34 @@ struct RowMatch {
   }
 };
 
-// Costs of neighbouring columns, between two that do not count.
+// Costs of neighbouring columns as least_costs reads them.
 using Costs = std::vector<std::uint16_t>;
 
-// A minimum's cost at its place between the columns; the sum of absolute differences grows linearly to both sides of
-// it. On whole columns a repeating pattern would seem unique wherever one of its copies happens to fall on a column.
-int cost_between_columns(const std::uint16_t* cost) {
-  const int left = cost[-1], here = cost[0], right = cost[1];
-  const int between = std::max(0, here - std::abs(left - right) / 2);
-  return here > std::min(left, right) ? here : between;
-}
-
-// The least cost between columns [first, last).
-int least_between_columns(const std::uint16_t* first, const std::uint16_t* last) {
-  int least = std::numeric_limits<int>::max();
-  for (; first < last; ++first) least = std::min(least, cost_between_columns(first));
-  return least;
-}
-
-// Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row. Before the
-// first and after the last stands a zero, below which no minimum lies.
+// Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
 void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last, Costs& costs) {
-  costs.resize(static_cast<std::size_t>(last - first + 3));
-  costs.front() = costs.back() = 0;
-  std::uint16_t* out = costs.data() + 1;
+  costs.resize(static_cast<std::size_t>(last - first + 3) + kCostsBeyond);
+  costs.front() = 0;
   const auto stride = [](const cv::Mat& image) { return static_cast<std::ptrdiff_t>(image.step); };
   for (int candidate = first; candidate <= last; candidate += kBlockCandidates) {
     // The last ones overlap with those before, so as to stay inside the image.
     const int begin = std::max(kLeftReach, std::min(candidate, last + 1 - kBlockCandidates));
     const auto sums = block_differences(block(from, x, y), stride(from), block(to, begin, y), stride(to));
-    const int end = std::min(last + 1, begin + kBlockCandidates);
-    out = std::copy(sums.begin() + (candidate - begin), sums.begin() + (end - begin), out);
+    // Where there are few columns, some of the sums lie before the first or after the last.
+    const int skipped = std::max(0, first - begin);
+    std::copy(sums.begin() + skipped, sums.end(), costs.begin() + 1 + (begin + skipped - first));
   }
-}
-
-// Index of the least cost; the first of equal ones.
-std::size_t least_of(const std::uint16_t* costs, std::size_t count) {
-  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();  // cost, then index
-  for (std::size_t i = 0; i < count; ++i) {
-    least = std::min(least, static_cast<std::uint32_t>(costs[i]) << 16U | static_cast<std::uint32_t>(i));
-  }
-  return least & 0xffffU;
 }
 
 // The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
 RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
   thread_local Costs padded;
   compare_with_row(from, x, y, to, first, last, padded);
-  const std::uint16_t* const costs = padded.data() + 1;
-  const auto count = static_cast<std::ptrdiff_t>(padded.size()) - 2;
-  if (count == 0) return {};
-  const auto best = static_cast<std::ptrdiff_t>(least_of(costs, static_cast<std::size_t>(count)));
+  if (last < first) return {};
+  const LeastCosts least = least_costs(padded.data() + 1, static_cast<std::size_t>(last - first + 1));
   RowMatch match;
-  match.x = first + static_cast<int>(best);
-  match.cost = cost_between_columns(costs + best);
-  match.second_cost = std::min(least_between_columns(costs, costs + std::max(std::ptrdiff_t{0}, best - 1)),
-                               least_between_columns(costs + std::min(count, best + 2), costs + count));
+  match.x = first + least.best;
+  match.cost = least.cost;
+  match.second_cost = least.second_cost;
   return match;
 }
 
@@ -153,17 +127,22 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
 
 }  // namespace
 
+void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std::span<const Keypoint> keypoints,
+                  const StereoOptions& options, std::span<std::optional<StereoMatch>> matches) {
+  assert(matches.size() == keypoints.size());
+  const double max_disparity =
+      std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    const std::size_t octave = keypoints[i].octave;
+    matches[i] = match_one(left.levels[octave], right.levels[octave], keypoints[i], max_disparity, options);
+  }
+}
+
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
                                                      std::span<const Keypoint> keypoints,
                                                      const StereoOptions& options) {
-  const double max_disparity =
-      std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
-  std::vector<std::optional<StereoMatch>> matches;
-  matches.reserve(keypoints.size());
-  for (const Keypoint& keypoint : keypoints) {
-    matches.push_back(
-        match_one(left.levels[keypoint.octave], right.levels[keypoint.octave], keypoint, max_disparity, options));
-  }
+  std::vector<std::optional<StereoMatch>> matches(keypoints.size());
+  match_stereo(left, right, rig, keypoints, options, matches);
   return matches;
 }
 

@@ -30,4 +30,8 @@ struct StereoMatch {
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
                                                      std::span<const Keypoint> keypoints, const StereoOptions& options);
 
+// The same, written where there is room for one entry per keypoint.
+void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std::span<const Keypoint> keypoints,
+                  const StereoOptions& options, std::span<std::optional<StereoMatch>> matches);
+
 }  // namespace byre

@@ -1,8 +1,9 @@
 #include "byre/features/stereo_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
-#include <vector>
+#include <span>
 
 namespace byre {
 
@@ -29,12 +30,14 @@ void MatchedByPart::note(const Features& features, const Rig& rig) {
 
 double MatchedByPart::at_best() const {
   constexpr double kEnough = 10.0;  // features of a part
-  std::vector<double> shares;
+  std::array<double, kParts> all;
+  std::size_t count = 0;
   for (const Part& part : parts_) {
-    if (part.features >= kEnough) shares.push_back(part.matched / part.features);
+    if (part.features >= kEnough) all[count++] = part.matched / part.features;
   }
-  if (shares.empty()) return 0.0;
-  const auto tenth = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 10);
+  if (count == 0) return 0.0;
+  const std::span shares = std::span(all).first(count);
+  const auto tenth = shares.begin() + static_cast<std::ptrdiff_t>(count / 10);
   std::ranges::nth_element(shares, tenth, std::greater<>());
   return *tenth;
 }

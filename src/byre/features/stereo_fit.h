@@ -37,13 +37,14 @@ class MatchedByPart {
 
  private:
   static constexpr int kColumns = 8, kRows = 6;
+  static constexpr auto kParts = static_cast<std::size_t>(kColumns * kRows);
   struct Part {
     double features = 0.0;
     double matched = 0.0;
   };
 
   double memory_;  // constant after construction
-  std::array<Part, static_cast<std::size_t>(kColumns* kRows)> parts_{};
+  std::array<Part, kParts> parts_{};
 };
 
 }  // namespace byre

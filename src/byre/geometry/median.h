@@ -2,18 +2,25 @@
 
 #include <algorithm>
 #include <cassert>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace byre {
 
-// The middle value, of an even number the upper of the two; there must be one.
+// The middle value, of an even number the upper of the two; there must be one. Reorders them.
 template <typename Value>
-Value median(std::vector<Value> values) {
+Value median_of(std::span<Value> values) {
   assert(!values.empty());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+// The middle value, of an even number the upper of the two; there must be one.
+template <typename Value>
+Value median(std::vector<Value> values) {
+  return median_of(std::span(values));
 }
 
 template <typename Value>

@@ -106,31 +106,28 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
   return sighting;
 }
 
-// Weighs all observations anew at this pose; all in front of the camera are inliers so far. Sightings of another pose
-// lend their memory.
-std::vector<Sighting> sight(std::span<const PoseObservation> observations, const Rig& rig,
-                            const Pose& camera_from_world, double systematic_sigma,
-                            std::vector<Sighting> sightings = {}) {
+// Weighs all observations anew at this pose; all in front of the camera are inliers so far. Refills `sightings`.
+void sight(std::span<const PoseObservation> observations, const Rig& rig, const Pose& camera_from_world,
+           double systematic_sigma, std::vector<Sighting>& sightings) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   sightings.clear();
   sightings.reserve(observations.size());
   for (const PoseObservation& observation : observations) {
     sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
   }
-  return sightings;
 }
 
 // From the median of the finite squared errors, so that up to half of them may be outliers.
 double variance_factor(const std::vector<Sighting>& sightings) {
   constexpr double kMedianMono = 1.386;    // median of chi-square with two degrees of freedom
   constexpr double kMedianStereo = 2.366;  // median of chi-square with three degrees of freedom
-  std::vector<double> ratios;
-  ratios.reserve(sightings.size());
+  thread_local std::vector<double> ratios;
+  ratios.clear();
   for (const Sighting& sighting : sightings) {
     if (!std::isfinite(sighting.squared_error)) continue;
     ratios.push_back(sighting.squared_error / (sighting.stereo ? kMedianStereo : kMedianMono));
   }
-  return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
+  return ratios.empty() ? 1.0 : std::max(1.0, median_of(std::span(ratios)));
 }
 
 void choose_inliers(std::vector<Sighting>& sightings, double factor) {
@@ -289,8 +286,10 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   const std::optional<KnownPose> known = known_pose(prior);
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
-  std::vector<Sighting> sightings = sight(observations, rig, predicted_camera_from_world, options.systematic_sigma);
-  WeighedPoints inliers;
+  // A pose is refined several times a frame: the memory stays.
+  thread_local std::vector<Sighting> sightings;
+  thread_local WeighedPoints inliers;
+  sight(observations, rig, predicted_camera_from_world, options.systematic_sigma, sightings);
   // Far from the solution all errors are large: gates and loss follow their median down, so that no minority that
   // happens to fit captures the pose.
   for (int round = 0; round < options.rounds; ++round) {
@@ -300,7 +299,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
     gather_inliers(sightings, inliers);
     const Evidence evidence{rig, inliers, known, options.huber_width * std::sqrt(factor)};
     result.camera_from_world = descend(evidence, result.camera_from_world, options.iterations_per_round);
-    sightings = sight(observations, rig, result.camera_from_world, options.systematic_sigma, std::move(sightings));
+    sight(observations, rig, result.camera_from_world, options.systematic_sigma, sightings);
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
   choose_inliers(sightings, result.variance_factor);

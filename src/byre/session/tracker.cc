@@ -14,9 +14,10 @@ std::size_t inlier_count(const std::optional<HybridTrack>& track) {
 }
 
 // A frame found in one map alone.
-HybridTrack found_in(Origin origin, const TrackedFrame& tracked) {
+HybridTrack found_in(Origin origin, TrackedFrame found) {
   HybridTrack track;
-  track.tracked = tracked;
+  track.tracked = std::move(found);
+  const TrackedFrame& tracked = track.tracked;
   if (origin == Origin::online) {
     track.online_reference = tracked.reference;
     return track;
@@ -82,8 +83,8 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
   const std::vector<PointId>& online = online_points(scene);
   const MapView map = scene.mapper.map();
   if (!scene.mission) {
-    const auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
-    return tracked ? std::optional(found_in(Origin::online, *tracked)) : std::nullopt;
+    auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
+    return tracked ? std::optional(found_in(Origin::online, *std::move(tracked))) : std::nullopt;
   }
   std::vector<PointId> candidates;
   if (scene.mapper.submaps().is_registered()) {

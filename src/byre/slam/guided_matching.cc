@@ -71,10 +71,10 @@ std::optional<FoundFeature> find_feature(const Features& features, const Descrip
   return FoundFeature{best.feature, best.distance};
 }
 
-std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<PointId>& points,
-                                          const Pose& camera_from_world, const Rig& rig) {
+void project_points(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
+                    const Rig& rig, std::vector<ExpectedPoint>& expected) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
-  std::vector<ExpectedPoint> expected;
+  expected.clear();
   expected.reserve(points.size());
   for (const PointId id : points) {
     const MapPoint* const point = map.find_point(id);
@@ -82,16 +82,23 @@ std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<
     const auto projection = project_point(*point, camera_from_world, camera_in_world, rig);
     if (projection) expected.push_back({id, *projection});
   }
+}
+
+std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<PointId>& points,
+                                          const Pose& camera_from_world, const Rig& rig) {
+  std::vector<ExpectedPoint> expected;
+  project_points(map, points, camera_from_world, rig, expected);
   return expected;
 }
 
-std::vector<GuidedMatch> match_expected(const Features& features, const MapView& map,
-                                        const std::vector<ExpectedPoint>& expected, const SearchOptions& options) {
+void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
+                    const SearchOptions& options, std::vector<GuidedMatch>& matches) {
   struct Claim {
     PointId point;
     int distance = std::numeric_limits<int>::max();
   };
-  std::vector<Claim> claims(static_cast<std::size_t>(features.size()));
+  thread_local std::vector<Claim> claims;
+  claims.assign(static_cast<std::size_t>(features.size()), {});
   for (const ExpectedPoint& candidate : expected) {
     const MapPoint* const point = map.find_point(candidate.id);
     if (point == nullptr) continue;
@@ -100,12 +107,18 @@ std::vector<GuidedMatch> match_expected(const Features& features, const MapView&
     Claim& claim = claims[static_cast<std::size_t>(found->feature)];
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
-  std::vector<GuidedMatch> matches;
+  matches.clear();
   matches.reserve(claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});
   }
+}
+
+std::vector<GuidedMatch> match_expected(const Features& features, const MapView& map,
+                                        const std::vector<ExpectedPoint>& expected, const SearchOptions& options) {
+  std::vector<GuidedMatch> matches;
+  match_expected(features, map, expected, options, matches);
   return matches;
 }
 

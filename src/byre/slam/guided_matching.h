@@ -44,6 +44,10 @@ struct ExpectedPoint {
 std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<PointId>& points,
                                           const Pose& camera_from_world, const Rig& rig);
 
+// The same; refills `expected`.
+void project_points(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
+                    const Rig& rig, std::vector<ExpectedPoint>& expected);
+
 struct GuidedMatch {
   int feature = 0;
   PointId point;
@@ -53,5 +57,9 @@ struct GuidedMatch {
 // One match at most for each expected point and each feature (the more similar point keeps it). Ordered by feature.
 std::vector<GuidedMatch> match_expected(const Features& features, const MapView& map,
                                         const std::vector<ExpectedPoint>& expected, const SearchOptions& options);
+
+// The same; refills `matches`.
+void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
+                    const SearchOptions& options, std::vector<GuidedMatch>& matches);
 
 }  // namespace byre

@@ -40,14 +40,15 @@ void InputWatch::note_pair(const Frame& frame, const Rig& rig, InputEvidence& ev
   if (fault_of(*frame.condition, image_) != ImageFault::none) return;
   evidence.right_fault = fault_of(*frame.right_condition, image_);
   if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeaturesJudged) return;
-  std::vector<float> row_errors;
+  thread_local std::vector<float> row_errors;
+  row_errors.clear();
   for (const Keypoint& keypoint : frame.features->keypoints()) {
     if (keypoint.has_disparity()) row_errors.push_back(std::abs(keypoint.row_offset));
   }
   constexpr std::size_t kEnough = 10;  // for a median
   const double matched = static_cast<double>(row_errors.size()) / frame.features->size();
   matched_ = blend(matched_, matched);
-  if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median(std::move(row_errors)));
+  if (row_errors.size() >= kEnough) row_error_ = blend(row_error_, median_of(std::span(row_errors)));
   by_part_.note(*frame.features, rig);
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   evidence.cameras_disagree = !images_fit({*matched_, by_part_.at_best(), row_error_.value_or(kUnknown)});

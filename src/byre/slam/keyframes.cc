@@ -41,13 +41,13 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
 }
 
 double median_depth(const TrackedFrame& tracked, const MapView& map) {
-  std::vector<double> depths;
-  depths.reserve(tracked.features.size());
+  thread_local std::vector<double> depths;  // memory
+  depths.clear();
   for (const TrackedFeature& feature : tracked.features) {
     const MapPoint* const point = map.find_point(feature.point);
     if (point != nullptr) depths.push_back((tracked.camera_from_world * point->position_in_world).z());
   }
-  return depths.empty() ? 0.0 : median(std::move(depths));
+  return depths.empty() ? 0.0 : median_of(std::span(depths));
 }
 
 Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig) {

@@ -45,10 +45,11 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
   return observation;
 }
 
-MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                               const std::vector<GuidedMatch>& matches) {
+void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured) {
   const CameraView view{*frame.features, rig, camera_from_world};
-  MeasuredPoints measured;
+  measured.observations.clear();
+  measured.features.clear();
   measured.observations.reserve(matches.size());
   measured.features.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
@@ -57,6 +58,12 @@ MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world
     measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
     measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }
+}
+
+MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                               const std::vector<GuidedMatch>& matches) {
+  MeasuredPoints measured;
+  measure_matches(frame, camera_from_world, rig, map, matches, measured);
   return measured;
 }
 
@@ -86,8 +93,10 @@ bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOpt
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
                                const TrackOptions& options) {
-  const std::vector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
-  std::vector<PoseObservation> observations;
+  thread_local std::vector<GuidedMatch> matches;  // memory, as the next
+  thread_local std::vector<PoseObservation> observations;
+  match_expected(*frame.features, map, expected, {radius}, matches);
+  observations.clear();
   observations.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
     const Keypoint& keypoint = frame.features->keypoint(match.feature);

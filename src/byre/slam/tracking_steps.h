@@ -26,6 +26,10 @@ struct MeasuredPoints {
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                                const std::vector<GuidedMatch>& matches);
 
+// The same; refills `measured`.
+void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
+
 // Matches as a pose that stands already has them.
 struct PartedPoints {
   MeasuredPoints agreeing;

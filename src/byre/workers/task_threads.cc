@@ -1,9 +1,17 @@
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace byre {
+namespace {
+
+// The caller waits for a task at most, and a helper may need this very processor to end it.
+constexpr std::chrono::microseconds kForHelpers(50);
+constexpr std::chrono::microseconds kForCaller(200);
+
+}  // namespace
 
 int processor_count() {
   return static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
@@ -15,7 +23,7 @@ TaskThreads::TaskThreads(int helpers) {
   }
 }
 
-void TaskThreads::run(int count, const std::function<void(int)>& task) {
+void TaskThreads::run_all(int count, const std::function<void(int)>& task) {
   if (helpers_.empty()) {
     for (int i = 0; i < count; ++i) task(i);
     return;
@@ -25,12 +33,21 @@ void TaskThreads::run(int count, const std::function<void(int)>& task) {
     task_ = &task;
     count_ = count;
     next_ = 0;
+    ++runs_;
   }
   begun_.notify_all();
   work();
+  wait_awake(kForHelpers, [this] { return helping_ == 0; });
   std::unique_lock lock(mutex_);
   ended_.wait(lock, [this] { return helping_ == 0; });
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+template <typename Condition>
+void TaskThreads::wait_awake(std::chrono::microseconds longest, Condition condition) const {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + longest;
+  while (is_on_shift_ && !condition() && Clock::now() < end) continue;
 }
 
 void TaskThreads::help(const std::stop_token& stop) {
@@ -40,7 +57,11 @@ void TaskThreads::help(const std::stop_token& stop) {
     lock.unlock();
     work();
     lock.lock();
+    const int runs = runs_;
     if (--helping_ == 0) ended_.notify_one();
+    lock.unlock();
+    wait_awake(kForCaller, [&] { return runs_ != runs; });
+    lock.lock();
   }
 }
 

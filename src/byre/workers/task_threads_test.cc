@@ -34,6 +34,18 @@ TEST_P(TaskThreadsOf, ThrowWhatATaskThrewAndGoOn) {
   EXPECT_EQ(calls, 5);
 }
 
+TEST_P(TaskThreadsOf, RunEachTaskOnceOnAShift) {
+  TaskThreads threads(GetParam());
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    const TaskThreads::Shift shift(threads);
+    for (const int count : {1, 2, 30}) {
+      std::vector<int> calls(static_cast<std::size_t>(count), 0);
+      threads.run(count, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });
+      EXPECT_EQ(calls, std::vector<int>(static_cast<std::size_t>(count), 1));
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Helpers, TaskThreadsOf, testing::Values(0, 1, 3));
 
 TEST(TaskThreads, WorkSideBySide) {
