@@ -2,12 +2,21 @@
 #include "byre/geometry/median.h"
 #include "byre/slam/global_mapping.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
 
 namespace byre {
 namespace {
+
+// A copy's points are ascending, and so are those that its difference to another names.
+const WindowPoint* find_point(const MapWindow& window, PointId id) {
+  const auto found =
+      std::ranges::lower_bound(window.points, id, {}, [](const WindowPoint& point) { return *point.id; });
+  return found != window.points.end() && *found->id == id ? &*found : nullptr;
+}
 
 using Positions = std::map<PointId, Eigen::Vector3d>;
 
@@ -54,6 +63,7 @@ class WorldMotion {
     const Positions positions = may_grow ? positions_after(correction, before) : Positions{};
     std::map<KeyframeId, const WindowKeyframe*> keyframes_before;
     for (const WindowKeyframe& keyframe : before.keyframes) {
+      newest_ = std::max(newest_, keyframe.id.number);
       motions_[keyframe.id] = Similarity{};
       keyframes_before[keyframe.id] = &keyframe;
     }
@@ -67,11 +77,15 @@ class WorldMotion {
     }
   }
 
+  // A keyframe that was there when the copy was made and is not in it stays where it is.
+  bool is_left_out(KeyframeId id) const { return id.number <= newest_ && !motions_.contains(id); }
+
   // Motion about a keyframe; for one that came later, that of its nearest ancestor. Parents are older, so this ends.
   Similarity of(std::optional<KeyframeId> id) const {
     while (id) {
       const auto known = motions_.find(*id);
       if (known != motions_.end()) return known->second;
+      if (is_left_out(*id)) return {};
       const Keyframe* const keyframe = map_.find_keyframe(*id);
       id = keyframe != nullptr ? keyframe->parent : std::nullopt;
     }
@@ -81,6 +95,7 @@ class WorldMotion {
  private:
   const Map& map_;
   std::map<KeyframeId, Similarity> motions_;
+  std::uint32_t newest_ = 0;  // number of the newest keyframe of the copy
 };
 
 struct PlacedPoint {
@@ -102,15 +117,14 @@ MapPoint carried_along(const Similarity& world_motion, const MapPoint& point) {
 // Points that the correction does not place itself, as they lie after it: those made or moved since the copy was taken.
 std::vector<PlacedPoint> carried_points(const MapDelta& correction, const MapWindow& before, const WorldMotion& motion,
                                         const Map& map) {
-  const Positions positions_before = positions_of(before);
-  std::map<PointId, const MapPoint*> corrected;
-  for (const UpdatedPoint& updated : correction.updated_points) corrected[updated.id] = &updated.point;
   std::vector<PlacedPoint> carried;
   for (const PointId id : map.point_ids()) {
     const MapPoint& now = *map.find_point(id);
-    const auto then = positions_before.find(id);
-    const bool as_it_was = then != positions_before.end() && then->second == now.position_in_world;
-    if (as_it_was && corrected.contains(id)) continue;
+    const WindowPoint* const then = find_point(before, id);
+    if (then == nullptr && motion.is_left_out(now.reference.keyframe)) continue;
+    const bool as_it_was = then != nullptr && then->point.position_in_world == now.position_in_world;
+    const auto number_of = [](const UpdatedPoint& updated) { return updated.id.number; };
+    if (as_it_was && std::ranges::binary_search(correction.updated_points, id.number, {}, number_of)) continue;
     carried.push_back({id, carried_along(motion.of(now.reference.keyframe), now)});
   }
   return carried;
@@ -119,6 +133,7 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const MapWin
 std::vector<MovedKeyframe> carried_keyframes(const WorldMotion& motion, const Map& map) {
   std::vector<MovedKeyframe> carried;
   for (const KeyframeId id : map.keyframe_ids()) {
+    if (motion.is_left_out(id)) continue;
     const Keyframe& keyframe = *map.find_keyframe(id);
     const Similarity world_motion = motion.of(id);
     carried.push_back({{id.number},
