@@ -23,16 +23,8 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
 // One observation. What follows from it is worked out anew each time: kept, it would take several times the memory.
 struct Term {
-  const BundleObservation* seen = nullptr;  // owned by the caller, as is the rig
-  const Rig* rig = nullptr;
+  int seen = 0;   // index into the problem's observations
   int slot = -1;  // place of the pose in the reduced system; negative for one that stays
-
-  Eigen::Vector3d residual(const Eigen::Vector3d& point_in_camera) const {
-    return reprojection().residual(point_in_camera);
-  }
-  Reprojection reprojection() const {
-    return Reprojection(*rig, seen->measured, seen->pixel_sigma, seen->disparity_sigma);
-  }
 };
 
 // An observation's error at an estimate, and its slopes.
@@ -86,21 +78,12 @@ class SchurBundle {
  public:
   SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
               double huber_width)
-      : scale_(scale), huber_width_(huber_width) {
+      : problem_(problem), scale_(scale), huber_width_(huber_width) {
     give_slots(roles);
-    for (const BundlePose& pose : problem.poses) estimate_.poses.push_back(pose.camera_from_world);
-    for (const BundlePoint& point : problem.points) estimate_.points.push_back(point.position_in_world);
-    estimate_.update_rotations();
+    begin_estimate();
+    for (const BundlePose& pose : problem.poses) rigs_.push_back(&problem.rigs[static_cast<std::size_t>(pose.rig)]);
     for (const int i : roles.motions) motions_.push_back(&problem.motions[static_cast<std::size_t>(i)]);
-    for (const int i : roles.observations) {
-      const BundleObservation& seen = problem.observations[static_cast<std::size_t>(i)];
-      if (tracks_.empty() || tracks_.back().point != seen.point) {
-        tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
-      }
-      const Rig& rig = problem.rigs[static_cast<std::size_t>(problem.poses[static_cast<std::size_t>(seen.pose)].rig)];
-      terms_.push_back({&seen, &rig, slots_[static_cast<std::size_t>(seen.pose)]});
-      tracks_.back().end = terms_.size();
-    }
+    make_tracks(roles);
     eliminated_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
     if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
@@ -121,6 +104,8 @@ class SchurBundle {
 
  private:
   void give_slots(const BundleRoles& roles);
+  void begin_estimate();
+  void make_tracks(const BundleRoles& roles);
   std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
   Linear linearised(const Term& term, const Eigen::Vector3d& point) const;
   void linearise_track(std::size_t index, double radius);
@@ -130,7 +115,17 @@ class SchurBundle {
   void add_motion(const BundleMotion& motion);
   double cost_of_motions(const Estimate& estimate) const;
 
-  std::optional<HeldDistance> scale_;  // constant after construction, as are the next six
+  const BundleObservation& observation_of(const Term& term) const {
+    return problem_.observations[static_cast<std::size_t>(term.seen)];
+  }
+  Reprojection reprojection_of(const BundleObservation& seen) const {
+    return Reprojection(*rigs_[static_cast<std::size_t>(seen.pose)], seen.measured, seen.pixel_sigma,
+                        seen.disparity_sigma);
+  }
+
+  const BundleProblem& problem_;  // owned by the caller
+  std::vector<const Rig*> rigs_;  // one a pose; constant after construction, as are the next seven
+  std::optional<HeldDistance> scale_;
   double huber_width_ = 0.0;
   std::vector<int> slots_;  // one a pose
   int slot_count_ = 0;
@@ -155,6 +150,27 @@ void SchurBundle::give_slots(const BundleRoles& roles) {
   slots_.assign(roles.pose_moves.size(), -1);
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (roles.pose_moves[i]) slots_[i] = slot_count_++;
+  }
+}
+
+void SchurBundle::begin_estimate() {
+  estimate_.poses.reserve(problem_.poses.size());
+  estimate_.points.reserve(problem_.points.size());
+  for (const BundlePose& pose : problem_.poses) estimate_.poses.push_back(pose.camera_from_world);
+  for (const BundlePoint& point : problem_.points) estimate_.points.push_back(point.position_in_world);
+  estimate_.update_rotations();
+}
+
+void SchurBundle::make_tracks(const BundleRoles& roles) {
+  terms_.reserve(roles.observations.size());
+  tracks_.reserve(problem_.points.size());
+  for (const int i : roles.observations) {
+    const BundleObservation& seen = problem_.observations[static_cast<std::size_t>(i)];
+    if (tracks_.empty() || tracks_.back().point != seen.point) {
+      tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
+    }
+    terms_.push_back({i, slots_[static_cast<std::size_t>(seen.pose)]});
+    tracks_.back().end = terms_.size();
   }
 }
 
@@ -194,18 +210,19 @@ std::vector<std::vector<int>> SchurBundle::neighbours() const {
 }
 
 Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) const {
-  const auto pose = static_cast<std::size_t>(term.seen->pose);
+  const BundleObservation& seen = observation_of(term);
+  const auto pose = static_cast<std::size_t>(seen.pose);
   const Eigen::Matrix3d& rotation = estimate_.rotations[pose];
   const Eigen::Vector3d turned = rotation * point;
   const Eigen::Vector3d point_in_camera = turned + estimate_.poses[pose].translation;
-  const Reprojection reprojection = term.reprojection();
+  const Reprojection reprojection = reprojection_of(seen);
   Linear linear;
   linear.residual = reprojection.residual(point_in_camera);
   if (border_) {
-    linear.by_calibration = border_->slope(*term.seen, point_in_camera);
+    linear.by_calibration = border_->slope(seen, point_in_camera);
     linear.residual += linear.by_calibration * estimate_.calibration;
   }
-  linear.weight = term.seen->weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
+  linear.weight = seen.weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
   const Eigen::Matrix3d by_camera = reprojection.jacobian(point_in_camera);
   linear.by_point = by_camera * rotation;
   if (term.slot >= 0) linear.by_pose << -by_camera * skew(turned), by_camera;
@@ -407,12 +424,12 @@ double SchurBundle::cost_of(const Estimate& estimate) const {
   for (const Track& track : tracks_) {
     const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
     for (std::size_t i = track.begin; i < track.end; ++i) {
-      const Term& term = terms_[i];
-      const auto pose = static_cast<std::size_t>(term.seen->pose);
+      const BundleObservation& seen = observation_of(terms_[i]);
+      const auto pose = static_cast<std::size_t>(seen.pose);
       const Eigen::Vector3d point_in_camera = estimate.rotations[pose] * point + estimate.poses[pose].translation;
-      Eigen::Vector3d residual = term.residual(point_in_camera);
-      if (border_) residual += border_->slope(*term.seen, point_in_camera) * estimate.calibration;
-      twice += term.seen->weight * huber_cost(residual.squaredNorm(), huber_width_);
+      Eigen::Vector3d residual = reprojection_of(seen).residual(point_in_camera);
+      if (border_) residual += border_->slope(seen, point_in_camera) * estimate.calibration;
+      twice += seen.weight * huber_cost(residual.squaredNorm(), huber_width_);
     }
   }
   if (border_) twice += 2.0 * border_->cost(estimate.calibration);

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -40,7 +41,7 @@ LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint
                       const FinishOptions& options, const FinishHooks& hooks) {
   MapWindow recent = recent_map(online, first_new, edges);
   add_motions(recent, options.motions);
-  return apply_correction(adjust_map(recent, edges, options.global, hooks.should_stop), recent, online);
+  return adjust_at_once(std::move(recent), edges, options.global, online, hooks.should_stop);
 }
 
 // What lies around the keyframes that came first. Returns from which keyframe on the map was corrected.
@@ -61,14 +62,15 @@ std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, co
 }
 
 void thin_out(Map& online, std::uint32_t first_new, const FinishOptions& options) {
-  const MapWindow recent = recent_map(online, first_new, {});
-  if (recent.keyframes.empty()) return;
-  MapWindow thinned = recent;
+  MapWindow thinned = recent_map(online, first_new, {});
+  if (thinned.keyframes.empty()) return;
   const KeyframeId newest = thinned.keyframes.back().id;
   remove_weak_points(thinned, newest);
   remove_redundant_keyframes(thinned, options.global.mapping);
   remove_weak_points(thinned, newest);
-  apply(difference(recent, thinned), online);
+  const MapDelta delta = difference(online, thinned);
+  thinned = {};
+  apply(delta, online);
 }
 
 int count_parts(const Map& map) {

@@ -9,6 +9,7 @@ namespace byre {
 Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
   const Stopwatch watch;
   Map online = online_copy(stored.map);
+  stored.map = Map(Origin::offline);  // hundreds of megabytes
   Finishing finishing;
   finishing.report = finish_map(online, index_of(online, vocabulary), {}, hooks);
   finishing.cut_short = hooks.should_stop();
