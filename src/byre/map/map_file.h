@@ -103,5 +103,7 @@ StoredMap open_map(const std::filesystem::path& path);
 // Where the map of a file lies on a floor plan, without reading the rest of it.
 std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path);
 void save_map(const StoredMap& stored, const std::filesystem::path& path);
+// The same, after which the map is as it was read again from what is written: the two are never there at once.
+void save_and_reread(StoredMap& stored, const std::filesystem::path& path);
 
 }  // namespace byre

@@ -44,11 +44,27 @@ struct Track {
   std::size_t end = 0;
 };
 
-// What eliminating a point leaves to find it by, once the poses' steps are known.
-struct Eliminated {
-  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
-  Eigen::Vector3d gradient;
+// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known. Made for
+// both anew: kept, they would take as much memory as all else that is known of the point.
+class PointEquations {
+ public:
+  void add(const Linear& linear) {
+    normal_.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
+    gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
+  }
+  // When all views are added.
+  void damp(double radius) {
+    damping = normal_.diagonal().unaryExpr(&bounded) / radius;
+    normal_.diagonal() += damping;
+    covariance = normal_.llt().solve(Eigen::Matrix3d::Identity());
+  }
+
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Vector3d damping;
+  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
+
+ private:
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
 };
 
 // Poses, points and the change of the calibration, and what is looked up again and again.
@@ -84,7 +100,6 @@ class SchurBundle {
     for (const BundlePose& pose : problem.poses) rigs_.push_back(&problem.rigs[static_cast<std::size_t>(pose.rig)]);
     for (const int i : roles.motions) motions_.push_back(&problem.motions[static_cast<std::size_t>(i)]);
     make_tracks(roles);
-    eliminated_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
     if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
   }
@@ -108,8 +123,9 @@ class SchurBundle {
   void make_tracks(const BundleRoles& roles);
   std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
   Linear linearised(const Term& term, const Eigen::Vector3d& point) const;
-  void linearise_track(std::size_t index, double radius);
-  void eliminate(std::size_t index);
+  void linearise_track(std::size_t index);
+  void eliminate(std::size_t index, const PointEquations& equations);
+  bool solve_point(std::size_t index, Step& step);
   bool solve_poses(Step& step);
   void add_scale();
   void add_motion(const BundleMotion& motion);
@@ -135,12 +151,12 @@ class SchurBundle {
 
   Estimate estimate_;
   // As linearise leaves them.
-  std::optional<ReducedSystem> reduced_;     // with the points eliminated
-  std::vector<Matrix6> own_;                 // one a pose, before the points are eliminated
-  Eigen::VectorXd gradient_;                 // slopes by the poses
-  Eigen::VectorXd used_up_;                  // part of the gradient that finding the points uses up
-  Eigen::VectorXd damping_;                  // added to the diagonal of reduced_
-  std::vector<Eliminated> eliminated_;       // one a track
+  std::optional<ReducedSystem> reduced_;  // with the points eliminated
+  std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
+  Eigen::VectorXd gradient_;              // slopes by the poses
+  Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
+  Eigen::VectorXd damping_;               // added to the diagonal of reduced_
+  double radius_ = 0.0;
   std::vector<Matrix63> between_;            // one a term of the track at hand: normal matrix between pose and point
   std::optional<CalibrationBorder> border_;  // empty where no calibration is sought
   double largest_slope_ = 0.0;
@@ -229,19 +245,15 @@ Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) c
   return linear;
 }
 
-void SchurBundle::linearise_track(std::size_t index, double radius) {
+void SchurBundle::linearise_track(std::size_t index) {
   const Track& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
-  Eigen::Matrix3d point_point = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  PointEquations equations;
   between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const Term& term = terms_[i];
     const Linear linear = linearised(term, point);
-    if (track.moves) {
-      point_point.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
-      gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
-    }
+    if (track.moves) equations.add(linear);
     if (border_) {
       border_->add(linear.by_calibration, linear.weight, linear.residual);
       if (track.moves) border_->add_point(index, linear.weight * linear.by_point.transpose(), linear.by_calibration);
@@ -254,25 +266,20 @@ void SchurBundle::linearise_track(std::size_t index, double radius) {
     if (border_) border_->add_pose(term.slot, weighted, linear.by_calibration);
   }
   if (!track.moves) return;
-  Eliminated& eliminated = eliminated_[index];
-  eliminated.gradient = gradient;
-  eliminated.damping = point_point.diagonal().unaryExpr(&bounded) / radius;
-  point_point.diagonal() += eliminated.damping;
-  eliminated.covariance = point_point.llt().solve(Eigen::Matrix3d::Identity());
-  largest_slope_ = std::max(largest_slope_, gradient.cwiseAbs().maxCoeff());
-  eliminate(index);
+  equations.damp(radius_);
+  largest_slope_ = std::max(largest_slope_, equations.gradient.cwiseAbs().maxCoeff());
+  eliminate(index, equations);
 }
 
 // Takes from the other equations what finding the point uses up.
-void SchurBundle::eliminate(std::size_t index) {
+void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
   const Track& track = tracks_[index];
-  const Eliminated& eliminated = eliminated_[index];
-  if (border_) border_->eliminate(index, eliminated.covariance, eliminated.gradient);
+  if (border_) border_->eliminate(index, equations.covariance, equations.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
     if (row < 0) continue;
-    const Matrix63 gain = between_[i - track.begin] * eliminated.covariance;
-    used_up_.segment<6>(6 * row).noalias() += gain * eliminated.gradient;
+    const Matrix63 gain = between_[i - track.begin] * equations.covariance;
+    used_up_.segment<6>(6 * row).noalias() += gain * equations.gradient;
     if (border_) border_->eliminate_pose(row, index, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
@@ -336,8 +343,9 @@ double SchurBundle::linearise(double radius) {
   gradient_.setZero(size);
   used_up_.setZero(size);
   largest_slope_ = 0.0;
+  radius_ = radius;
   if (border_) border_->begin(estimate_.calibration);
-  for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i, radius);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i);
   if (scale_) add_scale();
   for (const BundleMotion* const motion : motions_) add_motion(*motion);
   damping_.resize(size);
@@ -378,27 +386,39 @@ bool SchurBundle::solve_poses(Step& step) {
 std::optional<Step> SchurBundle::solve() {
   Step step;
   if (!solve_poses(step)) return std::nullopt;
+  step.points.reserve(tracks_.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    const Track& track = tracks_[t];
-    if (!track.moves) continue;
-    const Eliminated& point = eliminated_[t];
-    Eigen::Vector3d pull = -point.gradient;
-    for (std::size_t i = track.begin; i < track.end; ++i) {
-      const int slot = terms_[i].slot;
-      if (slot < 0) continue;
-      const Linear linear = linearised(terms_[i], estimate_.points[static_cast<std::size_t>(track.point)]);
-      const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
-      const Matrix63 between = weighted * linear.by_point;
-      pull.noalias() -= between.transpose() * step.poses.segment<6>(6 * slot);
-    }
-    if (border_) pull -= border_->pull_on(t, step.calibration);
-    const Eigen::Vector3d move = point.covariance * pull;
-    if (!move.allFinite()) return std::nullopt;
-    step.points.push_back(move);
-    step.expected_gain += 0.5 * move.dot(point.damping.cwiseProduct(move) - point.gradient);
-    step.squared_length += move.squaredNorm();
+    if (tracks_[t].moves && !solve_point(t, step)) return std::nullopt;
   }
   return step;
+}
+
+// The step of a point, given those of poses and calibration. False where it has none.
+bool SchurBundle::solve_point(std::size_t index, Step& step) {
+  const Track& track = tracks_[index];
+  const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
+  PointEquations equations;
+  between_.resize(track.end - track.begin);
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    const Linear linear = linearised(terms_[i], point);
+    equations.add(linear);
+    if (terms_[i].slot < 0) continue;
+    const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
+    between_[i - track.begin].noalias() = weighted * linear.by_point;
+  }
+  equations.damp(radius_);
+  Eigen::Vector3d pull = -equations.gradient;
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    const int slot = terms_[i].slot;
+    if (slot >= 0) pull.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
+  }
+  if (border_) pull -= border_->pull_on(index, step.calibration);
+  const Eigen::Vector3d move = equations.covariance * pull;
+  if (!move.allFinite()) return false;
+  step.points.push_back(move);
+  step.expected_gain += 0.5 * move.dot(equations.damping.cwiseProduct(move) - equations.gradient);
+  step.squared_length += move.squaredNorm();
+  return true;
 }
 
 Estimate SchurBundle::moved(const Step& step) const {

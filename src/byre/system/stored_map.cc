@@ -67,7 +67,7 @@ void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::str
   stored.notes["software"] = "byre " BYRE_VERSION;
   if (!site.empty()) stored.notes["site"] = site;
   add_words(stored, vocabulary);
-  save_map(stored, path);
+  save_and_reread(stored, path);
 }
 
 }  // namespace byre
