@@ -4,6 +4,8 @@
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
 
+#include <utility>
+
 namespace byre {
 
 Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
@@ -14,7 +16,7 @@ Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const Fini
   finishing.report = finish_map(online, index_of(online, vocabulary), {}, hooks);
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
-  stored.map = offline_copy(online);
+  stored.map = offline_copy(std::move(online));
   stored.pose_source = PoseSource::slam;
   finishing.faults = find_faults(stored);
   return finishing;
