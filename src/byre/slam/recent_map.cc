@@ -6,8 +6,8 @@ namespace byre {
 namespace {
 
 constexpr int kAll = 1 << 20;
-constexpr int kMinSharedPoints = 30;  // shared by a keyframe that is moved along with one that came
-constexpr int kAroundLoopEnd = 15;    // keyframes moved along with the end of a loop
+constexpr int kMinSharedWithNew = 30;  // shared by a keyframe that is moved along with one that came
+constexpr int kAroundLoopEnd = 15;     // keyframes moved along with the end of a loop
 
 using Keyframes = std::set<KeyframeId>;
 
@@ -17,7 +17,7 @@ Keyframes movable_keyframes(const Map& map, std::uint32_t first_new, const std::
     if (id.number < first_new) continue;
     movable.insert(id);
     for (const Covisible& other : map.covisible_keyframes(id, kAll)) {
-      if (other.shared_points < kMinSharedPoints) break;
+      if (other.shared_points < kMinSharedWithNew) break;
       movable.insert(other.keyframe);
     }
   }

@@ -15,7 +15,7 @@ namespace {
 using testing::IsEmpty;
 
 constexpr int kKeyframes = 60;
-constexpr std::uint32_t kFirstNew = 52;  // the last eight came
+constexpr std::uint32_t kFirstThatCame = 52;  // the last eight came
 
 SimulatedMission long_way() {
   SimulationOptions options;
@@ -41,7 +41,7 @@ class RecentMap : public testing::Test {
   RecentMap() {
     forget_distant_views(map_);
     for (const KeyframeId id : map_.keyframe_ids()) {
-      if (id.number < kFirstNew) continue;
+      if (id.number < kFirstThatCame) continue;
       const Keyframe& keyframe = *map_.find_keyframe(id);
       map_.move_keyframe(id, exp_pose(Vector6::Constant(0.02)) * keyframe.camera_from_world, keyframe.covariance);
     }
@@ -56,20 +56,20 @@ class RecentMap : public testing::Test {
 };
 
 TEST_F(RecentMap, MovesWhatCameAndWhatSharesManyPointsWithIt) {
-  const MapWindow recent = recent_map(map_, kFirstNew, {});
+  const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   std::set<KeyframeId> movable, all;
   for (const WindowKeyframe& keyframe : recent.keyframes) {
     all.insert(keyframe.id);
     if (keyframe.movable) movable.insert(keyframe.id);
   }
   EXPECT_LT(2 * all.size(), static_cast<std::size_t>(map_.keyframe_count()));
-  EXPECT_GT(movable.size(), static_cast<std::size_t>(kKeyframes) - kFirstNew);
+  EXPECT_GT(movable.size(), static_cast<std::size_t>(kKeyframes) - kFirstThatCame);
   EXPECT_LT(movable.size(), all.size()) << "there are no anchors";
-  for (std::uint32_t i = kFirstNew; i < kKeyframes; ++i) EXPECT_TRUE(movable.contains({Origin::online, i}));
+  for (std::uint32_t i = kFirstThatCame; i < kKeyframes; ++i) EXPECT_TRUE(movable.contains({Origin::online, i}));
 }
 
 TEST_F(RecentMap, HasAllThatSeesAPointOfWhatMoves) {
-  const MapWindow recent = recent_map(map_, kFirstNew, {});
+  const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   for (const WindowPoint& point : recent.points) {
     EXPECT_EQ(point.observations_elsewhere, 0);
     const bool is_of_movable = std::ranges::any_of(point.observations, [&](const WindowObservation& seen) {
@@ -80,7 +80,7 @@ TEST_F(RecentMap, HasAllThatSeesAPointOfWhatMoves) {
 }
 
 TEST_F(RecentMap, BeginsWithAnchorsAndEndsWithTheNewest) {
-  const MapWindow recent = recent_map(map_, kFirstNew, {});
+  const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   EXPECT_FALSE(recent.keyframes.front().movable);
   EXPECT_EQ(recent.keyframes.back().id, map_.keyframe_ids().back());
   EXPECT_TRUE(std::ranges::is_partitioned(recent.keyframes, [](const auto& keyframe) { return !keyframe.movable; }));
@@ -93,18 +93,18 @@ TEST_F(RecentMap, IsTheWholeMapWhereMostOfItLiesAround) {
 
 TEST_F(RecentMap, MovesWhereLoopsEnd) {
   const KeyframeId place{Origin::online, 5};
-  const MapWindow recent = recent_map(map_, kFirstNew, {{map_.keyframe_ids().back(), place, {}}});
+  const MapWindow recent = recent_map(map_, kFirstThatCame, {{map_.keyframe_ids().back(), place, {}}});
   const auto found = std::ranges::find(recent.keyframes, place, &WindowKeyframe::id);
   ASSERT_NE(found, recent.keyframes.end());
 }
 
 TEST_F(RecentMap, LeavesWhatIsFarAsItIs) {
-  const MapWindow recent = recent_map(map_, kFirstNew, {});
+  const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   std::set<KeyframeId> near;
   for (const WindowKeyframe& keyframe : recent.keyframes) near.insert(keyframe.id);
   const Map before = map_;
   FinishOptions options;
-  options.first_new = kFirstNew;
+  options.first_new = kFirstThatCame;
   finish_map(map_, PlaceIndex(vocabulary_of(mission_)), options, {});
   EXPECT_THAT(find_faults(map_), IsEmpty());
   int far_points = 0;
@@ -142,7 +142,7 @@ TEST_F(RecentMap, IsBroughtToWhereItSeesToBeAsByTheWholeMap) {
   Map by_all = map_, by_recent = map_;
   finish_map(by_all, nothing, {}, {});
   FinishOptions options;
-  options.first_new = kFirstNew;
+  options.first_new = kFirstThatCame;
   finish_map(by_recent, nothing, options, {});
   EXPECT_LT(worst_error(by_recent), 0.6 * worst_error(map_));
   EXPECT_LT(worst_error(by_recent), 1.1 * worst_error(by_all));
