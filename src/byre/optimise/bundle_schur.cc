@@ -44,8 +44,11 @@ struct Track {
   std::size_t end = 0;
 };
 
-// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known. Made for
-// both anew: kept, they would take as much memory as all else that is known of the point.
+// Most points whose equations are kept between the two times that they are needed. Those of a million would take as
+// much memory as all else that is known of these.
+constexpr std::size_t kMostKept = 100000;
+
+// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known.
 class PointEquations {
  public:
   void add(const Linear& linear) {
@@ -100,6 +103,7 @@ class SchurBundle {
     for (const BundlePose& pose : problem.poses) rigs_.push_back(&problem.rigs[static_cast<std::size_t>(pose.rig)]);
     for (const int i : roles.motions) motions_.push_back(&problem.motions[static_cast<std::size_t>(i)]);
     make_tracks(roles);
+    if (tracks_.size() <= kMostKept) kept_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
     if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
   }
@@ -157,6 +161,7 @@ class SchurBundle {
   Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
   Eigen::VectorXd damping_;               // added to the diagonal of reduced_
   double radius_ = 0.0;
+  std::vector<PointEquations> kept_;         // one a track, or none where these are too many
   std::vector<Matrix63> between_;            // one a term of the track at hand: normal matrix between pose and point
   std::optional<CalibrationBorder> border_;  // empty where no calibration is sought
   double largest_slope_ = 0.0;
@@ -269,6 +274,7 @@ void SchurBundle::linearise_track(std::size_t index) {
   equations.damp(radius_);
   largest_slope_ = std::max(largest_slope_, equations.gradient.cwiseAbs().maxCoeff());
   eliminate(index, equations);
+  if (!kept_.empty()) kept_[index] = equations;
 }
 
 // Takes from the other equations what finding the point uses up.
@@ -397,16 +403,19 @@ std::optional<Step> SchurBundle::solve() {
 bool SchurBundle::solve_point(std::size_t index, Step& step) {
   const Track& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
+  const bool is_kept = !kept_.empty();
   PointEquations equations;
+  if (is_kept) equations = kept_[index];
   between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
+    if (is_kept && terms_[i].slot < 0) continue;
     const Linear linear = linearised(terms_[i], point);
-    equations.add(linear);
+    if (!is_kept) equations.add(linear);
     if (terms_[i].slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
     between_[i - track.begin].noalias() = weighted * linear.by_point;
   }
-  equations.damp(radius_);
+  if (!is_kept) equations.damp(radius_);
   Eigen::Vector3d pull = -equations.gradient;
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int slot = terms_[i].slot;
