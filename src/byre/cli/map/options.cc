@@ -64,7 +64,7 @@ void declare_map_content(CLI::App& command, MapOptions& options) {
 
 void declare_building(CLI::App& command, MapOptions& options) {
   add_input(command, Input::file, "--extend", options.extended,
-            "Go on with this map: the recording is found in it, and both are adjusted together")
+            "Go on with this map: the recording is found in it, and adjusted with what lies around")
       ->type_name("MAP");
   command
       .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")
