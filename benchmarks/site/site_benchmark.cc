@@ -1,9 +1,11 @@
 // How byre grows with the map: a kept map is tiled to sites of so many keyframes, and a recording of that map is run on
-// each.
+// each. With --write the site is kept in a file, to be extended or adjusted by the program.
 
+#include "connected_site.h"
 #include "tiled_map.h"
 
 #include "byre/benchmark/markdown_table.h"
+#include "byre/benchmark/peak_memory.h"
 #include "byre/evaluation/distribution.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/formatted.h"
@@ -272,17 +274,54 @@ void measure(const Inputs& inputs, const std::vector<int>& sizes) {
   std::fputs(table.text().c_str(), stdout);
 }
 
-std::vector<int> sizes_in(int argc, char** argv) {
-  std::vector<int> sizes;
-  for (int i = 3; i < argc; ++i) {
-    int size = 0;
-    const auto [end, fault] = std::from_chars(argv[i], argv[i] + std::strlen(argv[i]), size);
-    if (fault != std::errc() || *end != '\0' || size < 1) {
-      throw InputError(argv[i], "is no number of keyframes", "name one or more, such as 100 1000 10000");
-    }
-    sizes.push_back(size);
+int size_in(const char* argument) {
+  int size = 0;
+  const auto [end, fault] = std::from_chars(argument, argument + std::strlen(argument), size);
+  if (fault != std::errc() || *end != '\0' || size < 1) {
+    throw InputError(argument, "is no number of keyframes", "name one or more, such as 100 1000 10000");
   }
+  return size;
+}
+
+std::vector<int> sizes_in(int argc, char** argv, int first) {
+  std::vector<int> sizes;
+  for (int i = first; i < argc; ++i) sizes.push_back(size_in(argv[i]));
   return sizes.empty() ? std::vector<int>{100, 1000, 10000} : sizes;
+}
+
+// Adjusts sites whose lanes cross, with a hundred points a pose, as far as a whole map is.
+void adjust_sites(const std::vector<int>& sizes) {
+  constexpr int kPointsOfPose = 100;
+  MarkdownTable table({"poses", "points", "observations", "iterations", "wall, s", "CPU, s", "position error, mm",
+                       "of it before, MB", "at most, MB"});
+  for (const int poses : sizes) {
+    const ConnectedSite site(poses, kPointsOfPose * poses);
+    BundleOptions options;
+    options.max_iterations = 14;
+    reset_peak_memory();
+    const double before = resident_memory_mb(), cpu_before = resources_used_so_far().cpu_seconds;
+    const Stopwatch watch;
+    const BundleResult result = bundle_adjust(site.problem(), options);
+    const double seconds = watch.seconds(), cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+    table.add({std::to_string(poses), std::to_string(site.problem().points.size()),
+               std::to_string(site.problem().observations.size()), std::to_string(result.iterations),
+               formatted("%.1f", seconds), formatted("%.1f", cpu_seconds),
+               formatted("%.2f", 1e3 * site.position_error(result.camera_from_world)), formatted("%.0f", before),
+               formatted("%.0f", peak_memory_mb().value_or(0.0))});
+  }
+  std::fputs(table.text().c_str(), stdout);
+}
+
+void run(int argc, char** argv) {
+  limit_image_threads(1);
+  if (std::strcmp(argv[1], "--adjust") == 0) return adjust_sites(sizes_in(argc, argv, 2));
+  const bool only_writes = std::strcmp(argv[1], "--write") == 0;
+  if (only_writes && argc != 5) throw InputError("--write", "needs a map, its keyframes and a file", "name all three");
+  if (only_writes) {
+    write_site({argv[2], {}, open_vocabulary({})}, size_in(argv[3]), argv[4]);
+  } else {
+    measure({argv[1], argv[2], open_vocabulary({})}, sizes_in(argc, argv, 3));
+  }
 }
 
 }  // namespace
@@ -290,13 +329,14 @@ std::vector<int> sizes_in(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fputs("usage: byre_site MAP RECORDING [KEYFRAMES...]\n", stderr);
+    std::fputs(
+        "usage: byre_site MAP RECORDING [KEYFRAMES...]\n       byre_site --write MAP KEYFRAMES SITE\n"
+        "       byre_site --adjust KEYFRAMES...\n",
+        stderr);
     return 2;
   }
   try {
-    byre::limit_image_threads(1);
-    const byre::Inputs inputs{argv[1], argv[2], byre::open_vocabulary({})};
-    byre::measure(inputs, byre::sizes_in(argc, argv));
+    byre::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "byre_site: %s\n", error.what());
     return 1;

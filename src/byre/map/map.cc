@@ -157,6 +157,11 @@ void Map::remove_keyframe(KeyframeId id) {
   --keyframe_count_;
 }
 
+Keyframe Map::take_keyframe(KeyframeId id) {
+  read_all();
+  return std::move(*slot(id).keyframe);
+}
+
 void Map::set_words(KeyframeId id, std::vector<Word> words) {
   read_all();
   Keyframe* keyframe = find_own_keyframe(id);

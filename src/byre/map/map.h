@@ -145,6 +145,10 @@ class Map {
   // the poses of the others hang from it.
   void remove_keyframe(KeyframeId id);
 
+  // For a map that is used up keyframe by keyframe: what it sees is no longer there, but all points are. Precondition:
+  // it is there.
+  Keyframe take_keyframe(KeyframeId id);
+
   void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // What was seen through a rig, as another calibration of the same camera has it: features, sightings and poses of its

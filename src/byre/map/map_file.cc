@@ -457,13 +457,28 @@ std::optional<PlanRegistration> load_plan_registration(const std::filesystem::pa
   return open.has(kPlan) ? std::optional(read_plan(open(kPlan))) : std::nullopt;
 }
 
-void save_map(const StoredMap& stored, const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = write_map(stored);
+namespace {
+
+StoredMap reread(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   try {
-    read_map(bytes, path.string());
+    return read_map(bytes, path.string());
   } catch (const InputError& error) {
     throw InputError(path.string(), "is not written: the map is unsound: " + error.reason(), "");
   }
+}
+
+}  // namespace
+
+void save_map(const StoredMap& stored, const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = write_map(stored);
+  reread(bytes, path);
+  replace_file(path, bytes);
+}
+
+void save_and_reread(StoredMap& stored, const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = write_map(stored);
+  stored = {};
+  stored = reread(bytes, path);
   replace_file(path, bytes);
 }
 

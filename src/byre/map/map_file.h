@@ -64,6 +64,8 @@ struct StoredMap {
 // another map's points are forgotten, and so are features that see no point, and patches that define none.
 // Precondition: a map without faults, whose features were made for an image of their rig's size.
 Map offline_copy(const Map& online);
+// The same of a map that is used up, keyframe by keyframe: the two are never there at once. Leaves it empty.
+Map offline_copy(Map&& online);
 
 // A copy with all lengths that images tell so many times as long: ways of cameras, points and baselines, so that
 // each image has every point where it was, disparity included. Arms to a body stay, as they were measured.
@@ -102,6 +104,9 @@ StoredMap open_map(const std::filesystem::path& path);
 
 // Where the map of a file lies on a floor plan, without reading the rest of it.
 std::optional<PlanRegistration> load_plan_registration(const std::filesystem::path& path);
+
 void save_map(const StoredMap& stored, const std::filesystem::path& path);
+// The same, after which the map is as it was read again from what is written: the two are never there at once.
+void save_and_reread(StoredMap& stored, const std::filesystem::path& path);
 
 }  // namespace byre

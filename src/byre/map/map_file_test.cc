@@ -350,6 +350,15 @@ TEST_F(MapFileOnDisk, HoldsTheMap) {
   EXPECT_EQ(write_map(load_map(folder_ / "barn.byre")), scene_bytes());
 }
 
+TEST_F(MapFileOnDisk, GivesTheMapBackThatWasWritten) {
+  StoredMap stored = StoredMapScene().stored();
+  save_and_reread(stored, folder_ / "barn.byre");
+  EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
+  EXPECT_EQ(write_map(stored), scene_bytes());
+  EXPECT_THROW(save_and_reread(stored, folder_ / "no_folder" / "barn.byre"), InputError);
+  EXPECT_EQ(write_map(stored), scene_bytes()) << "a map that could not be written is lost";
+}
+
 TEST_F(MapFileOnDisk, TellsOfAPlanWithoutReadingTheMap) {
   save_map(StoredMapScene().stored(), folder_ / "barn.byre");
   EXPECT_FALSE(load_plan_registration(folder_ / "barn.byre").has_value());

@@ -1,6 +1,7 @@
 #include "byre/map/map_file.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -28,9 +29,8 @@ class Renumbering {
 };
 
 // Features of a keyframe, ascending, whose patch defines a point.
-std::vector<int> features_that_define_points(const Map& map, KeyframeId id) {
+std::vector<int> features_that_define_points(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings) {
   std::vector<int> features;
-  const std::vector<Sighting>& sightings = map.find_keyframe(id)->sightings;
   for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {
     const std::optional<PointId>& point = sightings[static_cast<std::size_t>(i)].point;
     const MapPoint* const seen = point ? map.find_point(*point) : nullptr;
@@ -97,22 +97,24 @@ Matrix symmetric(const Matrix& covariance) {
   return covariance.template selfadjointView<Eigen::Upper>();
 }
 
-}  // namespace
-
-Map offline_copy(const Map& online) {
+// take gives each keyframe, ascending, and is_done is called when nothing more of the map is needed.
+Map made_offline(const Map& online, const std::function<Keyframe(KeyframeId)>& take,
+                 const std::function<void()>& is_done) {
   const Renumbering<KeyframeId> keyframes(online.keyframe_ids());
   const Renumbering<PointId> points(online.point_ids());
   MapParts parts{online.rigs(), {}, {}};
   std::vector<std::vector<int>> feature_numbers;  // new places of the features of each keyframe, by number
   for (const KeyframeId id : keyframes.ids()) {
-    Keyframe keyframe = *online.find_keyframe(id);
+    Keyframe keyframe = take(id);
     const Rig& rig = online.rigs()[static_cast<std::size_t>(keyframe.rig)];
+    const std::vector<int> defining = features_that_define_points(online, id, keyframe.sightings);
     for (Sighting& sighting : keyframe.sightings) sighting.point = points(sighting.point);
-    feature_numbers.push_back(keep_features_with_points(keyframe, rig, features_that_define_points(online, id)));
+    feature_numbers.push_back(keep_features_with_points(keyframe, rig, defining));
     keyframe.parent = keyframes(keyframe.parent);
     keyframe.covariance = symmetric(keyframe.covariance);
     parts.keyframes.push_back(std::move(keyframe));
   }
+  parts.points.reserve(points.ids().size());
   for (const PointId id : points.ids()) {
     MapPoint point = *online.find_point(id);
     point.reference.keyframe = keyframes(point.reference.keyframe).value();
@@ -121,7 +123,21 @@ Map offline_copy(const Map& online) {
     point.covariance = symmetric(point.covariance);
     parts.points.push_back(point);
   }
+  is_done();
   return Map(Origin::offline, std::move(parts));
+}
+
+}  // namespace
+
+Map offline_copy(const Map& online) {
+  return made_offline(
+      online, [&online](KeyframeId id) { return *online.find_keyframe(id); }, [] {});
+}
+
+Map offline_copy(Map&& online) {
+  return made_offline(
+      online, [&online](KeyframeId id) { return online.take_keyframe(id); },
+      [&online] { online = Map(online.origin()); });
 }
 
 }  // namespace byre

@@ -54,6 +54,14 @@ TEST_F(OfflineCopy, OfAMapWithoutGapsHasTheSameNumbers) {
   }
 }
 
+TEST_F(OfflineCopy, OfAMapThatIsUsedUpIsTheSame) {
+  online_.remove_keyframe(online_id(1));
+  StoredMap copied = scene_.stored(), taken = scene_.stored();
+  copied.map = offline_copy(online_);
+  taken.map = offline_copy(std::move(online_));
+  EXPECT_EQ(write_map(taken), write_map(copied));
+}
+
 TEST_F(OfflineCopy, ClosesGaps) {
   online_.remove_keyframe(online_id(1));
   online_.remove_point({Origin::online, 0});

@@ -1,16 +1,18 @@
 #include "byre/mapping/global_lane.h"
 
+#include "byre/slam/recent_map.h"
+
 #include <cassert>
 #include <utility>
 
 namespace byre {
 
-void GlobalLane::close_loops(const Map& map, const std::vector<LoopEdge>& loops,
+void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
                              const std::vector<KeyframeMotion>& motions) {
   assert(idle());
-  MapWindow whole = whole_map(map);
-  add_motions(whole, motions);
-  snapshot_ = std::make_shared<const MapWindow>(std::move(whole));
+  MapWindow recent = recent_map(map, first_new, loops);
+  add_motions(recent, motions);
+  snapshot_ = std::make_shared<const MapWindow>(std::move(recent));
   worker_.start([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
     return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
   });

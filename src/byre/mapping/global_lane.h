@@ -6,6 +6,7 @@
 #include "byre/workers/worker.h"
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -28,8 +29,10 @@ class GlobalLane {
   bool idle() const { return worker_.idle() && !outcome_; }
   bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
 
-  // Bends the map to close these loops; motions: see told_motions. Precondition: idle().
-  void close_loops(const Map& map, const std::vector<LoopEdge>& loops, const std::vector<KeyframeMotion>& motions);
+  // Bends the map to close these loops, around what came from a keyframe of this number on, see recent_map; motions:
+  // see told_motions. Precondition: idle().
+  void close_loops(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+                   const std::vector<KeyframeMotion>& motions);
 
   // Looks what the map says of the calibration of a rig of its. Precondition: idle().
   void calibrate(const MapView& map, const CalibrationState& state, int rig, const SelfCalibrationOptions& options);

@@ -1,8 +1,10 @@
 #include "byre/mapping/mapper.h"
 
 #include "byre/slam/keyframes.h"
+#include "byre/slam/recent_map.h"
 #include "byre/slam/start_beside.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -29,6 +31,7 @@ void Mapper::continue_map(Map online) {
   initialiser_.reset();
   for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
   newest_ = online_.keyframe_ids().back();
+  first_new_ = next_keyframe_number();
   submaps_.begin_in_map_frame(0);
 }
 
@@ -178,7 +181,7 @@ std::vector<KeyframeMotion> Mapper::all_motions() const {
 }
 
 void Mapper::bend() {
-  global_.close_loops(online_, loops(), all_motions());
+  global_.close_loops(online_, first_new_, loops(), all_motions());
 }
 
 std::optional<double> Mapper::collect() {
@@ -308,8 +311,10 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
+  const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
+  const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
   FinishReport report =
-      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}}, hooks);
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, hooks);
   loop_closer_.follow(report.length_changes);
   return report;
 }

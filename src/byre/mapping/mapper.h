@@ -99,6 +99,9 @@ class Mapper {
   std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);
   LengthChanges adjust_around_offline(const FinishHooks& hooks);
+  Map take_online() {
+    return std::exchange(online_, Map(Origin::online));
+  }  // the last of all: it has no map after that
 
  private:
   Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
@@ -107,7 +110,7 @@ class Mapper {
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
-  void bend();                                      // the whole map in the background
+  void bend();                                      // the map around what came, in the background
   void take_over(const MapDelta& delta);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
   void forget_patches();
@@ -131,6 +134,7 @@ class Mapper {
   std::optional<PlaceIndex> places_;
   LoopCloser loop_closer_;
   std::optional<KeyframeId> newest_;
+  std::uint32_t first_new_ = 0;  // number of the first keyframe that is not of the map gone on with
   std::vector<KeyframeId> pending_;
   std::optional<OnlineCorrection> waiting_correction_;  // until mapping has nothing in flight
 };

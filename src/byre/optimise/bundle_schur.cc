@@ -23,16 +23,8 @@ using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
 // One observation. What follows from it is worked out anew each time: kept, it would take several times the memory.
 struct Term {
-  const BundleObservation* seen = nullptr;  // owned by the caller, as is the rig
-  const Rig* rig = nullptr;
+  int seen = 0;   // index into the problem's observations
   int slot = -1;  // place of the pose in the reduced system; negative for one that stays
-
-  Eigen::Vector3d residual(const Eigen::Vector3d& point_in_camera) const {
-    return reprojection().residual(point_in_camera);
-  }
-  Reprojection reprojection() const {
-    return Reprojection(*rig, seen->measured, seen->pixel_sigma, seen->disparity_sigma);
-  }
 };
 
 // An observation's error at an estimate, and its slopes.
@@ -52,11 +44,30 @@ struct Track {
   std::size_t end = 0;
 };
 
-// What eliminating a point leaves to find it by, once the poses' steps are known.
-struct Eliminated {
-  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
-  Eigen::Vector3d gradient;
+// Most points whose equations are kept between the two times that they are needed. Those of a million would take as
+// much memory as all else that is known of these.
+constexpr std::size_t kMostKept = 100000;
+
+// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known.
+class PointEquations {
+ public:
+  void add(const Linear& linear) {
+    normal_.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
+    gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
+  }
+  // When all views are added.
+  void damp(double radius) {
+    damping = normal_.diagonal().unaryExpr(&bounded) / radius;
+    normal_.diagonal() += damping;
+    covariance = normal_.llt().solve(Eigen::Matrix3d::Identity());
+  }
+
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Vector3d damping;
+  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
+
+ private:
+  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
 };
 
 // Poses, points and the change of the calibration, and what is looked up again and again.
@@ -86,22 +97,13 @@ class SchurBundle {
  public:
   SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
               double huber_width)
-      : scale_(scale), huber_width_(huber_width) {
+      : problem_(problem), scale_(scale), huber_width_(huber_width) {
     give_slots(roles);
-    for (const BundlePose& pose : problem.poses) estimate_.poses.push_back(pose.camera_from_world);
-    for (const BundlePoint& point : problem.points) estimate_.points.push_back(point.position_in_world);
-    estimate_.update_rotations();
+    begin_estimate();
+    for (const BundlePose& pose : problem.poses) rigs_.push_back(&problem.rigs[static_cast<std::size_t>(pose.rig)]);
     for (const int i : roles.motions) motions_.push_back(&problem.motions[static_cast<std::size_t>(i)]);
-    for (const int i : roles.observations) {
-      const BundleObservation& seen = problem.observations[static_cast<std::size_t>(i)];
-      if (tracks_.empty() || tracks_.back().point != seen.point) {
-        tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
-      }
-      const Rig& rig = problem.rigs[static_cast<std::size_t>(problem.poses[static_cast<std::size_t>(seen.pose)].rig)];
-      terms_.push_back({&seen, &rig, slots_[static_cast<std::size_t>(seen.pose)]});
-      tracks_.back().end = terms_.size();
-    }
-    eliminated_.resize(tracks_.size());
+    make_tracks(roles);
+    if (tracks_.size() <= kMostKept) kept_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
     if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
   }
@@ -121,16 +123,29 @@ class SchurBundle {
 
  private:
   void give_slots(const BundleRoles& roles);
+  void begin_estimate();
+  void make_tracks(const BundleRoles& roles);
   std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
   Linear linearised(const Term& term, const Eigen::Vector3d& point) const;
-  void linearise_track(std::size_t index, double radius);
-  void eliminate(std::size_t index);
+  void linearise_track(std::size_t index);
+  void eliminate(std::size_t index, const PointEquations& equations);
+  bool solve_point(std::size_t index, Step& step);
   bool solve_poses(Step& step);
   void add_scale();
   void add_motion(const BundleMotion& motion);
   double cost_of_motions(const Estimate& estimate) const;
 
-  std::optional<HeldDistance> scale_;  // constant after construction, as are the next six
+  const BundleObservation& observation_of(const Term& term) const {
+    return problem_.observations[static_cast<std::size_t>(term.seen)];
+  }
+  Reprojection reprojection_of(const BundleObservation& seen) const {
+    return Reprojection(*rigs_[static_cast<std::size_t>(seen.pose)], seen.measured, seen.pixel_sigma,
+                        seen.disparity_sigma);
+  }
+
+  const BundleProblem& problem_;  // owned by the caller
+  std::vector<const Rig*> rigs_;  // one a pose; constant after construction, as are the next seven
+  std::optional<HeldDistance> scale_;
   double huber_width_ = 0.0;
   std::vector<int> slots_;  // one a pose
   int slot_count_ = 0;
@@ -140,12 +155,13 @@ class SchurBundle {
 
   Estimate estimate_;
   // As linearise leaves them.
-  std::optional<ReducedSystem> reduced_;     // with the points eliminated
-  std::vector<Matrix6> own_;                 // one a pose, before the points are eliminated
-  Eigen::VectorXd gradient_;                 // slopes by the poses
-  Eigen::VectorXd used_up_;                  // part of the gradient that finding the points uses up
-  Eigen::VectorXd damping_;                  // added to the diagonal of reduced_
-  std::vector<Eliminated> eliminated_;       // one a track
+  std::optional<ReducedSystem> reduced_;  // with the points eliminated
+  std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
+  Eigen::VectorXd gradient_;              // slopes by the poses
+  Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
+  Eigen::VectorXd damping_;               // added to the diagonal of reduced_
+  double radius_ = 0.0;
+  std::vector<PointEquations> kept_;         // one a track, or none where these are too many
   std::vector<Matrix63> between_;            // one a term of the track at hand: normal matrix between pose and point
   std::optional<CalibrationBorder> border_;  // empty where no calibration is sought
   double largest_slope_ = 0.0;
@@ -155,6 +171,27 @@ void SchurBundle::give_slots(const BundleRoles& roles) {
   slots_.assign(roles.pose_moves.size(), -1);
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (roles.pose_moves[i]) slots_[i] = slot_count_++;
+  }
+}
+
+void SchurBundle::begin_estimate() {
+  estimate_.poses.reserve(problem_.poses.size());
+  estimate_.points.reserve(problem_.points.size());
+  for (const BundlePose& pose : problem_.poses) estimate_.poses.push_back(pose.camera_from_world);
+  for (const BundlePoint& point : problem_.points) estimate_.points.push_back(point.position_in_world);
+  estimate_.update_rotations();
+}
+
+void SchurBundle::make_tracks(const BundleRoles& roles) {
+  terms_.reserve(roles.observations.size());
+  tracks_.reserve(problem_.points.size());
+  for (const int i : roles.observations) {
+    const BundleObservation& seen = problem_.observations[static_cast<std::size_t>(i)];
+    if (tracks_.empty() || tracks_.back().point != seen.point) {
+      tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
+    }
+    terms_.push_back({i, slots_[static_cast<std::size_t>(seen.pose)]});
+    tracks_.back().end = terms_.size();
   }
 }
 
@@ -194,37 +231,34 @@ std::vector<std::vector<int>> SchurBundle::neighbours() const {
 }
 
 Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) const {
-  const auto pose = static_cast<std::size_t>(term.seen->pose);
+  const BundleObservation& seen = observation_of(term);
+  const auto pose = static_cast<std::size_t>(seen.pose);
   const Eigen::Matrix3d& rotation = estimate_.rotations[pose];
   const Eigen::Vector3d turned = rotation * point;
   const Eigen::Vector3d point_in_camera = turned + estimate_.poses[pose].translation;
-  const Reprojection reprojection = term.reprojection();
+  const Reprojection reprojection = reprojection_of(seen);
   Linear linear;
   linear.residual = reprojection.residual(point_in_camera);
   if (border_) {
-    linear.by_calibration = border_->slope(*term.seen, point_in_camera);
+    linear.by_calibration = border_->slope(seen, point_in_camera);
     linear.residual += linear.by_calibration * estimate_.calibration;
   }
-  linear.weight = term.seen->weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
+  linear.weight = seen.weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
   const Eigen::Matrix3d by_camera = reprojection.jacobian(point_in_camera);
   linear.by_point = by_camera * rotation;
   if (term.slot >= 0) linear.by_pose << -by_camera * skew(turned), by_camera;
   return linear;
 }
 
-void SchurBundle::linearise_track(std::size_t index, double radius) {
+void SchurBundle::linearise_track(std::size_t index) {
   const Track& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
-  Eigen::Matrix3d point_point = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  PointEquations equations;
   between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const Term& term = terms_[i];
     const Linear linear = linearised(term, point);
-    if (track.moves) {
-      point_point.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
-      gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
-    }
+    if (track.moves) equations.add(linear);
     if (border_) {
       border_->add(linear.by_calibration, linear.weight, linear.residual);
       if (track.moves) border_->add_point(index, linear.weight * linear.by_point.transpose(), linear.by_calibration);
@@ -237,25 +271,21 @@ void SchurBundle::linearise_track(std::size_t index, double radius) {
     if (border_) border_->add_pose(term.slot, weighted, linear.by_calibration);
   }
   if (!track.moves) return;
-  Eliminated& eliminated = eliminated_[index];
-  eliminated.gradient = gradient;
-  eliminated.damping = point_point.diagonal().unaryExpr(&bounded) / radius;
-  point_point.diagonal() += eliminated.damping;
-  eliminated.covariance = point_point.llt().solve(Eigen::Matrix3d::Identity());
-  largest_slope_ = std::max(largest_slope_, gradient.cwiseAbs().maxCoeff());
-  eliminate(index);
+  equations.damp(radius_);
+  largest_slope_ = std::max(largest_slope_, equations.gradient.cwiseAbs().maxCoeff());
+  eliminate(index, equations);
+  if (!kept_.empty()) kept_[index] = equations;
 }
 
 // Takes from the other equations what finding the point uses up.
-void SchurBundle::eliminate(std::size_t index) {
+void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
   const Track& track = tracks_[index];
-  const Eliminated& eliminated = eliminated_[index];
-  if (border_) border_->eliminate(index, eliminated.covariance, eliminated.gradient);
+  if (border_) border_->eliminate(index, equations.covariance, equations.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
     if (row < 0) continue;
-    const Matrix63 gain = between_[i - track.begin] * eliminated.covariance;
-    used_up_.segment<6>(6 * row).noalias() += gain * eliminated.gradient;
+    const Matrix63 gain = between_[i - track.begin] * equations.covariance;
+    used_up_.segment<6>(6 * row).noalias() += gain * equations.gradient;
     if (border_) border_->eliminate_pose(row, index, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
@@ -319,8 +349,9 @@ double SchurBundle::linearise(double radius) {
   gradient_.setZero(size);
   used_up_.setZero(size);
   largest_slope_ = 0.0;
+  radius_ = radius;
   if (border_) border_->begin(estimate_.calibration);
-  for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i, radius);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) linearise_track(i);
   if (scale_) add_scale();
   for (const BundleMotion* const motion : motions_) add_motion(*motion);
   damping_.resize(size);
@@ -361,27 +392,42 @@ bool SchurBundle::solve_poses(Step& step) {
 std::optional<Step> SchurBundle::solve() {
   Step step;
   if (!solve_poses(step)) return std::nullopt;
+  step.points.reserve(tracks_.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    const Track& track = tracks_[t];
-    if (!track.moves) continue;
-    const Eliminated& point = eliminated_[t];
-    Eigen::Vector3d pull = -point.gradient;
-    for (std::size_t i = track.begin; i < track.end; ++i) {
-      const int slot = terms_[i].slot;
-      if (slot < 0) continue;
-      const Linear linear = linearised(terms_[i], estimate_.points[static_cast<std::size_t>(track.point)]);
-      const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
-      const Matrix63 between = weighted * linear.by_point;
-      pull.noalias() -= between.transpose() * step.poses.segment<6>(6 * slot);
-    }
-    if (border_) pull -= border_->pull_on(t, step.calibration);
-    const Eigen::Vector3d move = point.covariance * pull;
-    if (!move.allFinite()) return std::nullopt;
-    step.points.push_back(move);
-    step.expected_gain += 0.5 * move.dot(point.damping.cwiseProduct(move) - point.gradient);
-    step.squared_length += move.squaredNorm();
+    if (tracks_[t].moves && !solve_point(t, step)) return std::nullopt;
   }
   return step;
+}
+
+// The step of a point, given those of poses and calibration. False where it has none.
+bool SchurBundle::solve_point(std::size_t index, Step& step) {
+  const Track& track = tracks_[index];
+  const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
+  const bool is_kept = !kept_.empty();
+  PointEquations equations;
+  if (is_kept) equations = kept_[index];
+  between_.resize(track.end - track.begin);
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    if (is_kept && terms_[i].slot < 0) continue;
+    const Linear linear = linearised(terms_[i], point);
+    if (!is_kept) equations.add(linear);
+    if (terms_[i].slot < 0) continue;
+    const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
+    between_[i - track.begin].noalias() = weighted * linear.by_point;
+  }
+  if (!is_kept) equations.damp(radius_);
+  Eigen::Vector3d pull = -equations.gradient;
+  for (std::size_t i = track.begin; i < track.end; ++i) {
+    const int slot = terms_[i].slot;
+    if (slot >= 0) pull.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
+  }
+  if (border_) pull -= border_->pull_on(index, step.calibration);
+  const Eigen::Vector3d move = equations.covariance * pull;
+  if (!move.allFinite()) return false;
+  step.points.push_back(move);
+  step.expected_gain += 0.5 * move.dot(equations.damping.cwiseProduct(move) - equations.gradient);
+  step.squared_length += move.squaredNorm();
+  return true;
 }
 
 Estimate SchurBundle::moved(const Step& step) const {
@@ -407,12 +453,12 @@ double SchurBundle::cost_of(const Estimate& estimate) const {
   for (const Track& track : tracks_) {
     const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
     for (std::size_t i = track.begin; i < track.end; ++i) {
-      const Term& term = terms_[i];
-      const auto pose = static_cast<std::size_t>(term.seen->pose);
+      const BundleObservation& seen = observation_of(terms_[i]);
+      const auto pose = static_cast<std::size_t>(seen.pose);
       const Eigen::Vector3d point_in_camera = estimate.rotations[pose] * point + estimate.poses[pose].translation;
-      Eigen::Vector3d residual = term.residual(point_in_camera);
-      if (border_) residual += border_->slope(*term.seen, point_in_camera) * estimate.calibration;
-      twice += term.seen->weight * huber_cost(residual.squaredNorm(), huber_width_);
+      Eigen::Vector3d residual = reprojection_of(seen).residual(point_in_camera);
+      if (border_) residual += border_->slope(seen, point_in_camera) * estimate.calibration;
+      twice += seen.weight * huber_cost(residual.squaredNorm(), huber_width_);
     }
   }
   if (border_) twice += 2.0 * border_->cost(estimate.calibration);

@@ -64,13 +64,13 @@ ToldMotion told_motion(const MotionPrior& prior) {
           prior.to_keep(),   0};
 }
 
-void take_over_result(const Engine& engine, MapRun& run) {
+void take_over_result(Engine& engine, MapRun& run) {
   const Trajectory seen = engine.session().final_trajectory();
   run.final = engine.prior().completed(seen);
-  run.map = engine.kept_map();
   run.calibration = engine.calibration();
-  if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.told = told_motion(engine.prior());
+  run.map = engine.take_kept_map();
+  if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.told.led_afterwards = static_cast<int>(run.final.size() - seen.size());
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});

@@ -90,6 +90,7 @@ class Session {
 
   // The last search for loops and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishHooks& hooks);
+  Map take_online() { return mapper_.take_online(); }  // see Mapper
 
   // Adjusts all that was mapped beside the offline map at once, around that. Call it after finish().
   void finish_mission(const FinishHooks& hooks);

@@ -2,43 +2,102 @@
 #include "byre/geometry/median.h"
 #include "byre/slam/global_mapping.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
 namespace {
 
-using Positions = std::map<PointId, Eigen::Vector3d>;
+// A map as it was when the copy was made that was corrected.
+class Earlier {
+ public:
+  virtual ~Earlier() = default;
+  virtual std::vector<KeyframeId> keyframes() const = 0;  // ascending or not
+  virtual const Keyframe& keyframe(KeyframeId id) const = 0;
+  virtual std::vector<PointId> points_of(KeyframeId id) const = 0;
+  virtual const MapPoint* find_point(PointId id) const = 0;
+};
 
-Positions positions_of(const MapWindow& window) {
-  Positions positions;
-  for (const WindowPoint& point : window.points) {
-    if (point.id) positions[*point.id] = point.point.position_in_world;
+class EarlierWindow : public Earlier {
+ public:
+  explicit EarlierWindow(const MapWindow& window) : window_(window) {
+    for (const WindowKeyframe& keyframe : window.keyframes) keyframes_[keyframe.id] = &keyframe;
   }
-  return positions;
+
+  std::vector<KeyframeId> keyframes() const override {
+    std::vector<KeyframeId> ids;
+    for (const auto& [id, keyframe] : keyframes_) ids.push_back(id);
+    return ids;
+  }
+  const Keyframe& keyframe(KeyframeId id) const override { return keyframes_.at(id)->keyframe; }
+  std::vector<PointId> points_of(KeyframeId id) const override {
+    std::vector<PointId> points;
+    for (const int index : keyframes_.at(id)->point_of_feature) {
+      if (index >= 0) points.push_back(*window_.points[static_cast<std::size_t>(index)].id);
+    }
+    return points;
+  }
+  const MapPoint* find_point(PointId id) const override {
+    const auto found =
+        std::ranges::lower_bound(window_.points, id, {}, [](const WindowPoint& point) { return *point.id; });
+    return found != window_.points.end() && *found->id == id ? &found->point : nullptr;
+  }
+
+ private:
+  const MapWindow& window_;
+  std::map<KeyframeId, const WindowKeyframe*> keyframes_;
+};
+
+// Nothing has happened since to the map that these keyframes were copied from.
+class EarlierMap : public Earlier {
+ public:
+  EarlierMap(const Map& map, const MapWindow& copy) : map_(map) {
+    for (const WindowKeyframe& keyframe : copy.keyframes) keyframes_.push_back(keyframe.id);
+  }
+
+  std::vector<KeyframeId> keyframes() const override { return keyframes_; }
+  const Keyframe& keyframe(KeyframeId id) const override { return *map_.find_keyframe(id); }
+  std::vector<PointId> points_of(KeyframeId id) const override {
+    std::vector<PointId> points;
+    for (const Sighting& sighting : map_.find_keyframe(id)->sightings) {
+      if (sighting.point) points.push_back(*sighting.point);
+    }
+    return points;
+  }
+  const MapPoint* find_point(PointId id) const override { return map_.find_point(id); }
+
+ private:
+  const Map& map_;
+  std::vector<KeyframeId> keyframes_;
+};
+
+// What the correction has for a point; nullptr where it leaves it as it is. A difference names points in their order.
+const MapPoint* corrected_point(const MapDelta& correction, PointId id) {
+  const auto number_of = [](const UpdatedPoint& updated) { return updated.id.number; };
+  const auto found = std::ranges::lower_bound(correction.updated_points, id.number, {}, number_of);
+  return found != correction.updated_points.end() && PointId(found->id) == id ? &found->point : nullptr;
 }
 
-// Positions of the points that the correction leaves.
-Positions positions_after(const MapDelta& correction, const MapWindow& before) {
-  Positions positions = positions_of(before);
-  for (const UpdatedPoint& updated : correction.updated_points) positions[updated.id] = updated.point.position_in_world;
-  for (const OnlinePointId removed : correction.removed_points) positions.erase(removed);
-  return positions;
+bool is_removed(const MapDelta& correction, PointId id) {
+  return id.origin == Origin::online &&
+         std::ranges::binary_search(correction.removed_points, id.number, {}, &OnlinePointId::number);
 }
 
 // By what the depths that a keyframe sees have grown; empty where too few points tell.
-std::optional<double> growth_of_depths(const MapWindow& before, const WindowKeyframe& keyframe, const Pose& after,
-                                       const Positions& positions) {
+std::optional<double> growth_of_depths(const MapDelta& correction, const Earlier& before, KeyframeId id,
+                                       const Pose& after) {
   constexpr std::size_t kMinPoints = 10;
   std::vector<double> ratios;
-  for (const int index : keyframe.point_of_feature) {
-    if (index < 0) continue;
-    const WindowPoint& point = before.points[static_cast<std::size_t>(index)];
-    const auto position = point.id ? positions.find(*point.id) : positions.end();
-    if (position == positions.end()) continue;
-    const double then = (keyframe.keyframe.camera_from_world * point.point.position_in_world).z();
-    const double now = (after * position->second).z();
+  for (const PointId point_id : before.points_of(id)) {
+    const MapPoint* const earlier = before.find_point(point_id);
+    if (earlier == nullptr || is_removed(correction, point_id)) continue;
+    const MapPoint* const corrected = corrected_point(correction, point_id);
+    const double then = (before.keyframe(id).camera_from_world * earlier->position_in_world).z();
+    const double now = (after * (corrected ? corrected : earlier)->position_in_world).z();
     if (then > 0.0 && now > 0.0) ratios.push_back(now / then);
   }
   if (ratios.size() < kMinPoints) return std::nullopt;
@@ -49,29 +108,30 @@ std::optional<double> growth_of_depths(const MapWindow& before, const WindowKeyf
 // the keyframe's own motion, and as much longer as what it sees became farther away.
 class WorldMotion {
  public:
-  WorldMotion(const MapDelta& correction, const MapWindow& before, const Map& map) : map_(map) {
-    const bool may_grow = scale_may_drift(before);
-    const Positions positions = may_grow ? positions_after(correction, before) : Positions{};
-    std::map<KeyframeId, const WindowKeyframe*> keyframes_before;
-    for (const WindowKeyframe& keyframe : before.keyframes) {
-      motions_[keyframe.id] = Similarity{};
-      keyframes_before[keyframe.id] = &keyframe;
+  WorldMotion(const MapDelta& correction, const Earlier& before, bool may_grow, const Map& map) : map_(map) {
+    for (const KeyframeId id : before.keyframes()) {
+      newest_ = std::max(newest_, id.number);
+      motions_[id] = Similarity{};
     }
     for (const MovedKeyframe& moved : correction.moved_keyframes) {
-      const WindowKeyframe& keyframe = *keyframes_before.at(moved.id);
+      const Keyframe& keyframe = before.keyframe(moved.id);
       std::optional<double> growth = 1.0;
-      if (may_grow) growth = growth_of_depths(before, keyframe, moved.camera_from_world, positions);
-      if (!growth) growth = of(keyframe.keyframe.parent).scale;
-      motions_[moved.id] = {
-          *growth, inverse(moved.camera_from_world) * scale_lengths(keyframe.keyframe.camera_from_world, *growth)};
+      if (may_grow) growth = growth_of_depths(correction, before, moved.id, moved.camera_from_world);
+      if (!growth) growth = of(keyframe.parent).scale;
+      motions_[moved.id] = {*growth,
+                            inverse(moved.camera_from_world) * scale_lengths(keyframe.camera_from_world, *growth)};
     }
   }
+
+  // A keyframe that was there when the copy was made and is not in it stays where it is.
+  bool is_left_out(KeyframeId id) const { return id.number <= newest_ && !motions_.contains(id); }
 
   // Motion about a keyframe; for one that came later, that of its nearest ancestor. Parents are older, so this ends.
   Similarity of(std::optional<KeyframeId> id) const {
     while (id) {
       const auto known = motions_.find(*id);
       if (known != motions_.end()) return known->second;
+      if (is_left_out(*id)) return {};
       const Keyframe* const keyframe = map_.find_keyframe(*id);
       id = keyframe != nullptr ? keyframe->parent : std::nullopt;
     }
@@ -81,6 +141,7 @@ class WorldMotion {
  private:
   const Map& map_;
   std::map<KeyframeId, Similarity> motions_;
+  std::uint32_t newest_ = 0;  // number of the newest keyframe of the copy
 };
 
 struct PlacedPoint {
@@ -100,17 +161,15 @@ MapPoint carried_along(const Similarity& world_motion, const MapPoint& point) {
 }
 
 // Points that the correction does not place itself, as they lie after it: those made or moved since the copy was taken.
-std::vector<PlacedPoint> carried_points(const MapDelta& correction, const MapWindow& before, const WorldMotion& motion,
+std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlier& before, const WorldMotion& motion,
                                         const Map& map) {
-  const Positions positions_before = positions_of(before);
-  std::map<PointId, const MapPoint*> corrected;
-  for (const UpdatedPoint& updated : correction.updated_points) corrected[updated.id] = &updated.point;
   std::vector<PlacedPoint> carried;
   for (const PointId id : map.point_ids()) {
     const MapPoint& now = *map.find_point(id);
-    const auto then = positions_before.find(id);
-    const bool as_it_was = then != positions_before.end() && then->second == now.position_in_world;
-    if (as_it_was && corrected.contains(id)) continue;
+    const bool is_corrected = corrected_point(correction, id) != nullptr;
+    if (!is_corrected && motion.is_left_out(now.reference.keyframe)) continue;
+    const MapPoint* const then = is_corrected ? before.find_point(id) : nullptr;
+    if (then != nullptr && then->position_in_world == now.position_in_world) continue;
     carried.push_back({id, carried_along(motion.of(now.reference.keyframe), now)});
   }
   return carried;
@@ -119,6 +178,7 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const MapWin
 std::vector<MovedKeyframe> carried_keyframes(const WorldMotion& motion, const Map& map) {
   std::vector<MovedKeyframe> carried;
   for (const KeyframeId id : map.keyframe_ids()) {
+    if (motion.is_left_out(id)) continue;
     const Keyframe& keyframe = *map.find_keyframe(id);
     const Similarity world_motion = motion.of(id);
     carried.push_back({{id.number},
@@ -139,15 +199,12 @@ LengthChanges length_changes(const WorldMotion& motion, const Map& map) {
   }
 }
 
-}  // namespace
-
-LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online) {
-  const WorldMotion motion(correction, before, online);
+LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_grow, Map& online) {
+  const WorldMotion motion(correction, before, may_grow, online);
   const std::vector<PlacedPoint> points = carried_points(correction, before, motion, online);
   const LengthChanges changes = length_changes(motion, online);
-  MapDelta applied = correction;
-  applied.moved_keyframes = carried_keyframes(motion, online);
-  apply(applied, online);
+  correction.moved_keyframes = carried_keyframes(motion, online);
+  apply(correction, online);
   for (const auto& [id, growth] : changes) online.scale_removed_keyframe(id, growth);
   for (const PlacedPoint& placed : points) {
     MapPoint point = placed.point;
@@ -157,6 +214,22 @@ LengthChanges apply_correction(const MapDelta& correction, const MapWindow& befo
     online.update_point(placed.id, point);
   }
   return changes;
+}
+
+}  // namespace
+
+LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online) {
+  return apply_since(correction, EarlierWindow(before), scale_may_drift(before), online);
+}
+
+LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                             Map& online, const std::function<bool()>& should_stop) {
+  const bool may_grow = scale_may_drift(window);
+  adjust_window(window, loops, options, should_stop);
+  MapDelta correction = difference(online, window);
+  const EarlierMap before(online, window);
+  window = {};
+  return apply_since(std::move(correction), before, may_grow, online);
 }
 
 LoopEdge in_new_lengths(const LoopEdge& loop, const LengthChanges& changes) {

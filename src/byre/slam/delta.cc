@@ -1,5 +1,6 @@
 #include "byre/slam/delta.h"
 
+#include <array>
 #include <cassert>
 
 namespace byre {
@@ -19,13 +20,69 @@ bool same(const MapPoint& a, const MapPoint& b) {
          a.reference == b.reference;
 }
 
-void append_point_changes(const MapWindow& before, const MapWindow& after, MapDelta& delta) {
-  for (std::size_t i = 0; i < before.points.size(); ++i) {
-    const PointId id = *before.points[i].id;
+// A window as it was cut.
+class WindowBefore {
+ public:
+  explicit WindowBefore(const MapWindow& window) : window_(window) {}
+
+  std::size_t point_count() const { return window_.points.size(); }
+  const MapPoint& point(std::size_t index) const { return window_.points[index].point; }
+  const Pose& camera_from_world(std::size_t keyframe) const {
+    return window_.keyframes[keyframe].keyframe.camera_from_world;
+  }
+  const std::vector<int>& point_of_feature(std::size_t keyframe) const {
+    return window_.keyframes[keyframe].point_of_feature;
+  }
+
+ private:
+  const MapWindow& window_;
+};
+
+// The same, told by the map that it was cut of.
+class MapBefore {
+ public:
+  MapBefore(const Map& map, const MapWindow& after) : map_(map), after_(after) {
+    while (point_count_ < after.points.size() && after.points[point_count_].id) {
+      const PointId id = *after.points[point_count_].id;
+      std::vector<int>& index = index_of_[static_cast<std::size_t>(id.origin)];
+      if (index.size() <= id.number) index.resize(id.number + std::size_t{1}, kPointElsewhere);
+      index[id.number] = static_cast<int>(point_count_++);
+    }
+  }
+
+  std::size_t point_count() const { return point_count_; }
+  const MapPoint& point(std::size_t index) const { return *map_.find_point(*after_.points[index].id); }
+  const Pose& camera_from_world(std::size_t keyframe) const {
+    return map_.find_keyframe(after_.keyframes[keyframe].id)->camera_from_world;
+  }
+  std::vector<int> point_of_feature(std::size_t keyframe) const {
+    std::vector<int> points;
+    for (const Sighting& sighting : map_.find_keyframe(after_.keyframes[keyframe].id)->sightings) {
+      points.push_back(sighting.point ? index_of(*sighting.point) : kNoPoint);
+    }
+    return points;
+  }
+
+ private:
+  int index_of(PointId id) const {
+    const std::vector<int>& index = index_of_[static_cast<std::size_t>(id.origin)];
+    return id.number < index.size() ? index[id.number] : kPointElsewhere;
+  }
+
+  const Map& map_;
+  const MapWindow& after_;
+  std::size_t point_count_ = 0;               // points that are no new ones
+  std::array<std::vector<int>, 2> index_of_;  // by origin and number: the place in the window
+};
+
+template <typename Before>
+void append_point_changes(const Before& before, const MapWindow& after, MapDelta& delta) {
+  for (std::size_t i = 0; i < before.point_count(); ++i) {
+    const PointId id = *after.points[i].id;
     if (!is_online(id)) continue;
     if (after.points[i].removed) {
       delta.removed_points.push_back({id.number});
-    } else if (!same(before.points[i].point, after.points[i].point)) {
+    } else if (!same(before.point(i), after.points[i].point)) {
       delta.updated_points.push_back({{id.number}, after.points[i].point});
     }
   }
@@ -40,14 +97,15 @@ struct ChangedFeature {
 };
 
 // But for what becomes of points that are removed, or were made in the window: those are named as a whole.
-std::vector<ChangedFeature> changed_features(const MapWindow& before, const MapWindow& after, std::size_t keyframe) {
-  const std::vector<int>& then = before.keyframes[keyframe].point_of_feature;
+template <typename Before>
+std::vector<ChangedFeature> changed_features(const Before& before, const MapWindow& after, std::size_t keyframe) {
+  const std::vector<int>& then = before.point_of_feature(keyframe);
   const std::vector<int>& now = after.keyframes[keyframe].point_of_feature;
   std::vector<ChangedFeature> changed;
   for (std::size_t f = 0; f < then.size(); ++f) {
     if (then[f] == now[f]) continue;
     const bool was_lost = then[f] >= 0 && !after.points[static_cast<std::size_t>(then[f])].removed;
-    const bool is_known = now[f] >= 0 && static_cast<std::size_t>(now[f]) < before.points.size();
+    const bool is_known = now[f] >= 0 && static_cast<std::size_t>(now[f]) < before.point_count();
     changed.push_back({static_cast<int>(f), was_lost ? then[f] : kNoPoint, is_known ? now[f] : kNoPoint});
   }
   return changed;
@@ -59,13 +117,13 @@ Sighting sighting_of(const WindowKeyframe& keyframe, int feature, std::optional<
   return sighting;
 }
 
-void append_observation_changes(const MapWindow& before, const MapWindow& after, std::size_t keyframe,
-                                MapDelta& delta) {
+template <typename Before>
+void append_observation_changes(const Before& before, const MapWindow& after, std::size_t keyframe, MapDelta& delta) {
   const WindowKeyframe& now = after.keyframes[keyframe];
   const OnlineKeyframeId id{now.id.number};
   for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
     if (changed.then >= 0) {
-      const PointId point = *before.points[static_cast<std::size_t>(changed.then)].id;
+      const PointId point = *after.points[static_cast<std::size_t>(changed.then)].id;
       delta.removed_observations.push_back({id, changed.feature, point});
     }
     if (changed.now >= 0) {
@@ -76,13 +134,13 @@ void append_observation_changes(const MapWindow& before, const MapWindow& after,
 }
 
 // Changes about an offline keyframe: only what the online map keeps of its views can change.
-void append_foreign_view_changes(const MapWindow& before, const MapWindow& after, std::size_t keyframe,
-                                 MapDelta& delta) {
+template <typename Before>
+void append_foreign_view_changes(const Before& before, const MapWindow& after, std::size_t keyframe, MapDelta& delta) {
   const WindowKeyframe& now = after.keyframes[keyframe];
   for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
     const Observation observation{now.id, changed.feature};
     if (changed.then >= 0) {
-      const PointId point = *before.points[static_cast<std::size_t>(changed.then)].id;
+      const PointId point = *after.points[static_cast<std::size_t>(changed.then)].id;
       assert(is_online(point));
       delta.removed_foreign_views.push_back({{point.number}, observation});
     }
@@ -94,8 +152,8 @@ void append_foreign_view_changes(const MapWindow& before, const MapWindow& after
   }
 }
 
-void append_new_points(const MapWindow& before, const MapWindow& after, MapDelta& delta) {
-  for (std::size_t i = before.points.size(); i < after.points.size(); ++i) {
+void append_new_points(std::size_t known, const MapWindow& after, MapDelta& delta) {
+  for (std::size_t i = known; i < after.points.size(); ++i) {
     const WindowPoint& point = after.points[i];
     if (point.removed) continue;
     NewPoint made{point.point, {}, {}};
@@ -161,15 +219,13 @@ void remove_observations(const MapDelta& delta, Map& online) {
   }
 }
 
-}  // namespace
-
-MapDelta difference(const MapWindow& before, const MapWindow& after) {
+template <typename Before>
+MapDelta difference_to(const Before& before, const MapWindow& after) {
   MapDelta delta;
   append_point_changes(before, after, delta);
-  for (std::size_t i = 0; i < before.keyframes.size(); ++i) {
-    const WindowKeyframe& then = before.keyframes[i];
+  for (std::size_t i = 0; i < after.keyframes.size(); ++i) {
     const WindowKeyframe& now = after.keyframes[i];
-    if (is_offline(then)) {
+    if (is_offline(now)) {
       append_foreign_view_changes(before, after, i, delta);
       continue;
     }
@@ -177,13 +233,23 @@ MapDelta difference(const MapWindow& before, const MapWindow& after) {
       delta.removed_keyframes.push_back({now.id.number});
       continue;
     }
-    if (!same(then.keyframe.camera_from_world, now.keyframe.camera_from_world)) {
+    if (!same(before.camera_from_world(i), now.keyframe.camera_from_world)) {
       delta.moved_keyframes.push_back({{now.id.number}, now.keyframe.camera_from_world, now.keyframe.covariance});
     }
     append_observation_changes(before, after, i, delta);
   }
-  append_new_points(before, after, delta);
+  append_new_points(before.point_count(), after, delta);
   return delta;
+}
+
+}  // namespace
+
+MapDelta difference(const MapWindow& before, const MapWindow& after) {
+  return difference_to(WindowBefore(before), after);
+}
+
+MapDelta difference(const Map& before, const MapWindow& after) {
+  return difference_to(MapBefore(before, after), after);
 }
 
 void apply(const MapDelta& delta, Map& online) {

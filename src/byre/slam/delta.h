@@ -72,6 +72,8 @@ struct MapDelta {
 
 // What mapping has changed between a window as it was cut and as it is now.
 MapDelta difference(const MapWindow& before, const MapWindow& after);
+// The same, where the map is as it was when the window was cut of it. Precondition: all keyframes are online ones.
+MapDelta difference(const Map& before, const MapWindow& after);
 
 // Skips whatever the map no longer holds.
 void apply(const MapDelta& delta, Map& online);

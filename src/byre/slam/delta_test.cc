@@ -223,6 +223,21 @@ TEST_P(RandomDelta, MakesTheMapEqualToTheWindow) {
   EXPECT_THAT(find_faults(map_), IsEmpty());
 }
 
+TEST_P(RandomDelta, IsToldByTheMapAsByTheWindowBefore) {
+  Map by_window = map_;
+  apply(difference(before_, after_), by_window);
+  apply(difference(map_, after_), map_);
+  expect_same(map_, after_);
+  EXPECT_EQ(map_.point_ids(), by_window.point_ids());
+  for (const KeyframeId id : map_.keyframe_ids()) {
+    const Keyframe& keyframe = *map_.find_keyframe(id);
+    EXPECT_THAT(by_window.find_keyframe(id)->camera_from_world, PoseNear(keyframe.camera_from_world, 0.0, 0.0));
+    for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
+      EXPECT_EQ(by_window.find_keyframe(id)->sightings[i].point, keyframe.sightings[i].point);
+    }
+  }
+}
+
 TEST_P(RandomDelta, SkipsWhatIsGone) {
   const MapDelta delta = difference(before_, after_);
   change_meanwhile(map_, GetParam());

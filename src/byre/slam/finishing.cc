@@ -1,12 +1,14 @@
 #include "byre/slam/finishing.h"
 
 #include "byre/slam/mapping_steps.h"
+#include "byre/slam/recent_map.h"
 #include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -35,30 +37,40 @@ std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypoth
   return hypothesis;
 }
 
-LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
-                      const FinishHooks& hooks) {
-  MapWindow whole = whole_map(online);
-  add_motions(whole, options.motions);
-  return apply_correction(adjust_map(whole, edges, options.global, hooks.should_stop), whole, online);
+LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint32_t first_new,
+                      const FinishOptions& options, const FinishHooks& hooks) {
+  MapWindow recent = recent_map(online, first_new, edges);
+  add_motions(recent, options.motions);
+  return adjust_at_once(std::move(recent), edges, options.global, online, hooks.should_stop);
 }
 
-void thin_out(Map& online, const FinishOptions& options) {
-  const MapWindow whole = whole_map(online);
-  if (whole.keyframes.empty()) return;
-  MapWindow thinned = whole;
+// What lies around the keyframes that came first. Returns from which keyframe on the map was corrected.
+std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
+                             const FinishHooks& hooks, FinishReport& report) {
+  report.length_changes = correct(online, edges, options.first_new, options, hooks);
+  const auto disagrees = [&](const LoopEdge& edge) {
+    return disagreement(online, in_new_lengths(edge, report.length_changes)) > kMaxLoopDisagreement;
+  };
+  if (options.first_new == 0 || stopped(hooks) || std::ranges::none_of(edges, disagrees)) return options.first_new;
+  std::vector<LoopEdge> again;
+  for (const LoopEdge& edge : edges) again.push_back(in_new_lengths(edge, report.length_changes));
+  for (const auto& [id, growth] : correct(online, again, 0, options, hooks)) {
+    const auto [change, is_new] = report.length_changes.try_emplace(id, growth);
+    if (!is_new) change->second *= growth;
+  }
+  return 0;
+}
+
+void thin_out(Map& online, std::uint32_t first_new, const FinishOptions& options) {
+  MapWindow thinned = recent_map(online, first_new, {});
+  if (thinned.keyframes.empty()) return;
   const KeyframeId newest = thinned.keyframes.back().id;
   remove_weak_points(thinned, newest);
   remove_redundant_keyframes(thinned, options.global.mapping);
   remove_weak_points(thinned, newest);
-  apply(difference(whole, thinned), online);
-}
-
-double residual_of(const Map& map, const LoopEdge& edge) {
-  const Keyframe* const keyframe = map.find_keyframe(edge.keyframe);
-  const Keyframe* const place = map.find_keyframe(edge.place);
-  if (keyframe == nullptr || place == nullptr) return 0.0;
-  const Pose now = keyframe->camera_from_world * inverse(place->camera_from_world);
-  return (now * inverse(edge.keyframe_from_place)).translation.norm();
+  const MapDelta delta = difference(online, thinned);
+  thinned = {};
+  apply(delta, online);
 }
 
 int count_parts(const Map& map) {
@@ -114,6 +126,7 @@ std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& place
   std::set<KeyframeId> settled;
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   for (auto id = ids.rbegin(); id != ids.rend() && !stopped(hooks); ++id) {
+    if (id->number < options.first_new) break;
     if (settled.contains(*id)) continue;
     const auto found = find_loop(map, places, *id, options.loops, options.noise);
     const auto confirmed = found ? confirmed_by_neighbours(map, *found) : std::nullopt;
@@ -136,12 +149,13 @@ FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptio
     edges.push_back(*edge_of(loop, online));
   }
   report.loops = static_cast<int>(edges.size());
-  announce(hooks, "adjusting the whole map");
-  if (!stopped(hooks)) report.length_changes = correct(online, edges, options, hooks);
+  announce(hooks, options.first_new == 0 ? "adjusting the whole map" : "adjusting what came and lies around it");
+  std::uint32_t first_new = options.first_new;
+  if (!stopped(hooks)) first_new = correct_around(online, edges, options, hooks, report);
   announce(hooks, "removing what adds nothing");
-  if (!stopped(hooks)) thin_out(online, options);
+  if (!stopped(hooks)) thin_out(online, first_new, options);
   for (const LoopEdge& edge : edges) {
-    report.loop_residuals.push_back(residual_of(online, in_new_lengths(edge, report.length_changes)));
+    report.loop_residuals.push_back(disagreement(online, in_new_lengths(edge, report.length_changes)));
   }
   report.after = quality_of(online);
   report.keyframes_removed = report.before.keyframes - report.after.keyframes;

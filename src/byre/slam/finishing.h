@@ -4,6 +4,7 @@
 #include "byre/slam/loop_closing.h"
 #include "byre/slam/told_motions.h"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct FinishOptions {
   GlobalMappingOptions global;
   std::vector<KeyframeMotion> motions;  // see told_motions
   PlaceNoise noise;                     // noise put on the places that the search for loops is given
+  // Number of the first keyframe that came since the map was finished before: what lies far from all that came stays as
+  // it is, see recent_map. 0: all of the map came.
+  std::uint32_t first_new = 0;
 };
 
 // How sound a map is by what can be known without any truth.
@@ -44,13 +48,14 @@ struct FinishHooks {
 
 MapQuality quality_of(const Map& map);
 
-// Places that keyframes came back to without the map knowing it, each confirmed by the keyframes around. From the
-// newest keyframe backwards; those around one that has found a loop are not asked again.
+// Places that keyframes that came went back to without the map knowing it, each confirmed by the keyframes around. From
+// the newest keyframe backwards; those around one that has found a loop are not asked again.
 std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks);
 
-// What a mapping run ends with: a last search for loops among all keyframes, correction and bundle adjustment of the
-// whole map, removal of weak points and redundant keyframes.
+// What a mapping run ends with: a last search for loops from all keyframes that came, correction and bundle adjustment
+// of what lies around these, removal of weak points and redundant keyframes there. Where a loop disagrees after that,
+// all of the map is corrected.
 FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks);
 
 }  // namespace byre

@@ -248,15 +248,20 @@ MapWindow whole_map(const MapView& map) {
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop) {
   MapWindow adjusted = whole;
-  const bool has_parts = place_parts(adjusted);
-  if (has_parts || (scale_may_drift(adjusted) && !adjusted.motions.empty())) settle_by_motions(adjusted);
-  if (!loops.empty()) close_loops(adjusted, loops, options.mapping);
+  adjust_window(adjusted, loops, options, should_stop);
+  return difference(whole, adjusted);
+}
+
+void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                   const std::function<bool()>& should_stop) {
+  const bool has_parts = place_parts(window);
+  if (has_parts || (scale_may_drift(window) && !window.motions.empty())) settle_by_motions(window);
+  if (!loops.empty()) close_loops(window, loops, options.mapping);
   MappingOptions mapping = options.mapping;
   mapping.first_bundle_iterations = options.first_bundle_iterations;
   mapping.second_bundle_iterations = kSecondBundleIterations;
-  adjust_bundle(adjusted, mapping, should_stop);
-  refresh_points(adjusted);
-  return difference(whole, adjusted);
+  adjust_bundle(window, mapping, should_stop);
+  refresh_points(window);
 }
 
 }  // namespace byre

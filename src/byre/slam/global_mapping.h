@@ -35,6 +35,15 @@ MapWindow whole_map(const MapView& map);
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop = {});
 
+// The same to the copy itself.
+void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                   const std::function<bool()>& should_stop = {});
+
+// The same to a map that nobody changes in the meantime, of which the window is a copy: without a second one. What it
+// returns is as of apply_correction.
+LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                             Map& online, const std::function<bool()>& should_stop = {});
+
 // Applies what was found for a map as it was (before) to the map as it is now. Keyframes and points that came in the
 // meantime go along with those they hang from; what moved in the meantime keeps its motion. Returns the changes of
 // length by which whatever lies relative to a keyframe, such as a frame, is to follow; with stereo there are none.

@@ -102,6 +102,25 @@ TEST(AdjustMap, HoldsScaleToWhatIsTold) {
   EXPECT_LT(error_with(true), 0.02);
 }
 
+TEST(AdjustMap, DoesTheSameAtOnce) {
+  const SimulatedMission mission = lap();
+  Map in_two_steps = drifted_map(mission), at_once = in_two_steps;
+  const MapWindow whole = whole_map(in_two_steps);
+  const std::vector<LoopEdge> loops = {true_loop(at_once, mission)};
+  apply_correction(adjust_map(whole, loops, {}), whole, in_two_steps);
+  EXPECT_THAT(adjust_at_once(whole, loops, {}, at_once), testing::IsEmpty());
+  EXPECT_THAT(find_faults(at_once), testing::IsEmpty());
+  ASSERT_EQ(at_once.point_ids(), in_two_steps.point_ids());
+  for (const PointId id : at_once.point_ids()) {
+    EXPECT_EQ(at_once.find_point(id)->position_in_world, in_two_steps.find_point(id)->position_in_world);
+    EXPECT_EQ(at_once.observations(id), in_two_steps.observations(id));
+  }
+  for (const KeyframeId id : at_once.keyframe_ids()) {
+    EXPECT_EQ(at_once.find_keyframe(id)->camera_from_world.translation,
+              in_two_steps.find_keyframe(id)->camera_from_world.translation);
+  }
+}
+
 TEST(AdjustMap, StopsWhenItIsAskedTo) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
@@ -151,6 +170,23 @@ TEST_F(ShiftedHalf, TakesKeyframesAlongThatCameLater) {
   EXPECT_THAT(map_.find_keyframe(id)->camera_from_world,
               PoseNear(later.camera_from_world * inverse(kShift), 1e-9, 1e-9));
   EXPECT_THAT(find_faults(map_), testing::IsEmpty());
+}
+
+TEST_F(ShiftedHalf, LeavesAloneWhatTheCopyLeftOut) {
+  MapWindow part = window_of(map_, {{Origin::online, 10}, {Origin::online, 19}});
+  MapWindow after = part;
+  for (WindowKeyframe& keyframe : after.keyframes) {
+    keyframe.keyframe.camera_from_world = keyframe.keyframe.camera_from_world * inverse(kShift);
+  }
+  const Map before = map_;
+  apply_correction(difference(part, after), part, map_);
+  for (const std::uint32_t left_out : {9u, 11u, 18u}) {
+    const KeyframeId id{Origin::online, left_out};
+    EXPECT_EQ(map_.find_keyframe(id)->camera_from_world.translation,
+              before.find_keyframe(id)->camera_from_world.translation);
+  }
+  EXPECT_NE(map_.find_keyframe({Origin::online, 10})->camera_from_world.translation,
+            before.find_keyframe({Origin::online, 10})->camera_from_world.translation);
 }
 
 TEST_F(ShiftedHalf, KeepsTheMotionThatKeyframesHadMeanwhile) {

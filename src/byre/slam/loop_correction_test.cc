@@ -140,6 +140,18 @@ TEST(LoopWithStereo, ChangesNoLengths) {
   EXPECT_LT(lap.worst_error(map, Scale::fixed), 0.015);
 }
 
+// What came shows that the map before has drifted.
+TEST(LoopWithStereo, BendsWhatCameBeforeToo) {
+  const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
+  Map map = lap.map;
+  FinishOptions options = finish_options();
+  options.first_new = lap.newest().number - 1;
+  const FinishReport report = finish_map(map, lap.index, options, {});
+  EXPECT_GE(report.loops, 1);
+  EXPECT_LT(lap.worst_error(map, Scale::fixed), 0.015);
+  EXPECT_THAT(find_faults(map), IsEmpty());
+}
+
 // A correction by which the newer half of a map of one camera grows.
 class GrowingHalf : public testing::Test {
  protected:

@@ -50,9 +50,20 @@ BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
           move_covariance(told.motion.covariance, camera_from_body).inverse()};
 }
 
+// Lists that double as they grow would take twice the memory, which counts where a map has millions of observations.
+void make_room(const MapWindow& window, WindowBundle& bundle) {
+  std::size_t observations = 0;
+  for (const WindowPoint& point : window.points) observations += point.observations.size();
+  bundle.problem.poses.reserve(window.keyframes.size());
+  bundle.problem.points.reserve(window.points.size());
+  bundle.problem.observations.reserve(observations);
+  bundle.observations.reserve(observations);
+}
+
 // An anchor that sees an offline point has nothing to tell.
 WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
+  make_room(window, bundle);
   bundle.problem.rigs = window.rigs;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     bundle.problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, !keyframe.movable});

@@ -210,11 +210,13 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
   return window;
 }
 
-MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes) {
+MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes,
+                    const std::vector<KeyframeId>& others) {
   MapWindow window;
   window.rigs = rigs_of(map);
+  for (const KeyframeId id : others) append_keyframe(window, map, id, false, false);
   for (const KeyframeId id : keyframes) append_keyframe(window, map, id, false, false);
-  append_points(window, map, points_seen(window.keyframes, map));
+  append_points(window, map, points_seen(std::span(window.keyframes).subspan(others.size()), map));
   link_observations(window, map);
   link_foreign_views(window, map);
   return window;

@@ -69,8 +69,10 @@ struct WindowOptions {
 // bring all of theirs along, for what is new may be one of them.
 MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyframes, const WindowOptions& options);
 
-// The window of just these online keyframes and the points they see, none of them movable. Precondition: all exist.
-MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes);
+// The window of just these online keyframes and the points they see, none of them movable. First in it come others,
+// with what they see of these points. Precondition: all exist.
+MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes,
+                    const std::vector<KeyframeId>& others = {});
 
 // Many enough sightings of offline points tell where the world is. With fewer, the very first keyframe of the online
 // map becomes an anchor, or, should a window with a few have no online anchor at all, its oldest keyframe.

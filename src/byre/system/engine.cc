@@ -158,4 +158,8 @@ Map Engine::kept_map() const {
   return map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
 }
 
+Map Engine::take_kept_map() {
+  return session_.map().offline() ? kept_map() : offline_copy(session_.take_online());
+}
+
 }  // namespace byre

@@ -113,6 +113,8 @@ class Engine {
   KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep()}; }
   // What is kept of the map by now.
   Map kept_map() const;
+  // The same at last: the session has none after that, so that no map is there twice.
+  Map take_kept_map();
 
  private:
   void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);

@@ -1,19 +1,28 @@
 #include "byre/system/refine_map.h"
 
 #include "byre/slam/online_copy.h"
+#include "byre/system/resources.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
+
+#include <utility>
 
 namespace byre {
 
 Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
   const Stopwatch watch;
   Map online = online_copy(stored.map);
+  stored.map = Map(Origin::offline);  // hundreds of megabytes
   Finishing finishing;
-  finishing.report = finish_map(online, index_of(online, vocabulary), {}, hooks);
+  // What reading left free, and each step, is of another kind than the next step needs.
+  const FinishHooks frugal{hooks.should_stop, [&hooks](const char* step) {
+                             release_free_memory();
+                             if (hooks.before_step) hooks.before_step(step);
+                           }};
+  finishing.report = finish_map(online, index_of(online, vocabulary), {}, frugal);
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
-  stored.map = offline_copy(online);
+  stored.map = offline_copy(std::move(online));
   stored.pose_source = PoseSource::slam;
   finishing.faults = find_faults(stored);
   return finishing;

@@ -64,10 +64,15 @@ std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings)
 }
 
 void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site, const fs::path& path) {
+  save_for_use_and_reread(stored, vocabulary, site, path);
+}
+
+void save_for_use_and_reread(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
+                             const fs::path& path) {
   stored.notes["software"] = "byre " BYRE_VERSION;
   if (!site.empty()) stored.notes["site"] = site;
   add_words(stored, vocabulary);
-  save_map(stored, path);
+  save_and_reread(stored, path);
 }
 
 }  // namespace byre

@@ -32,5 +32,8 @@ std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings)
 // and the version of byre.
 void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site,
                   const std::filesystem::path& path);
+// The same, after which the map is as it was read again from what is written.
+void save_for_use_and_reread(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
+                             const std::filesystem::path& path);
 
 }  // namespace byre

@@ -33,20 +33,28 @@ struct MapRecord {
   fs::path path;
 };
 
-void save(Map offline, const KeptWithMap& kept, const MapRecord& record) {
+// The map is as it was read again after that.
+void save(Map& offline, const KeptWithMap& kept, const MapRecord& record) {
   const auto& [calibration, mounting] = kept;
   StoredMap stored = record.about;
   note_mounting(mounting, stored.notes);
   if (calibration) stored.recordings.back().refined = calibration;
-  stored.map = std::move(offline);
-  save_for_use(std::move(stored), *record.vocabulary, record.site, record.path);
+  stored.map = std::exchange(offline, Map(Origin::offline));
+  try {
+    save_for_use_and_reread(stored, *record.vocabulary, record.site, record.path);
+  } catch (...) {
+    offline = std::move(stored.map);
+    throw;
+  }
+  offline = std::move(stored.map);
 }
 
 MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, RecordFile& messages,
                         const InterruptCatcher& interrupt) {
   Autosave autosave(options.autosave_s.value_or(0.0), [&record](const Map& online, const KeptWithMap& kept) {
-    save(offline_copy(online), kept, record);
+    Map offline = offline_copy(online);
+    save(offline, kept, record);
   });
   MapRunHooks hooks;
   if (messages.is_wanted()) hooks.look = [&messages](const RunView& view) { messages.note(view); };
@@ -128,8 +136,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   const InterruptCatcher interrupt(options.outputs());
   RecordFile messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                       [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
-  const MapRun run =
-      run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
+  MapRun run = run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});

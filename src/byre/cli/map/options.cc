@@ -33,7 +33,8 @@ constexpr const char* kMapFooter = R"(Examples:
 inline runs mapping between the frames, paced beside them with the same result each time; both as fast as they can.
 live feeds the frames at their own time stamps, none is dropped; of cameras (--live) it takes the newest one. Trajectories are of the body: EuRoC's is the IMU,
 KITTI's the left camera. After the last frame loops are looked for once more, all of the map is adjusted, and weak
-points and redundant keyframes are removed. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
+points and redundant keyframes are removed. With --extend that is done to what came and to what lies around it; "byre
+refine" does it to all of the map. Ctrl-C or SIGTERM stops after the current frame, leaves this out and still
 writes all files, then the exit code is 130 or 143; "byre refine" makes up for it. A second one ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
@@ -63,7 +64,7 @@ void declare_map_content(CLI::App& command, MapOptions& options) {
 
 void declare_building(CLI::App& command, MapOptions& options) {
   add_input(command, Input::file, "--extend", options.extended,
-            "Go on with this map: the recording is found in it, and both are adjusted together")
+            "Go on with this map: the recording is found in it, and adjusted with what lies around")
       ->type_name("MAP");
   command
       .add_option("--autosave", options.autosave_s, "Also save the map so far, each time so many seconds have passed")

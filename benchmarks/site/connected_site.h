@@ -1,0 +1,42 @@
+#pragma once
+
+#include "byre/optimise/bundle_adjustment.h"
+
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace byre {
+
+// A bundle problem of a whole site. A camera that looks ahead drives all lanes of a square site up and down, first
+// those along, then those across. Where lanes cross, it sees again what it saw on the other one. So what is seen
+// connects the poses as a net, and all lanes must be cut to part the site in two.
+class ConnectedSite {
+ public:
+  ConnectedSite(int poses, int points);
+
+  const BundleProblem& problem() const { return problem_; }
+  // Root mean square, metres.
+  double position_error(const std::vector<Pose>& camera_from_world) const;
+
+ private:
+  using Cell = std::pair<int, int>;
+
+  Pose pose_after(double way, double length) const;
+  Vector6 random_motion(double metres, double radians);
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  double normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(generator_); }
+  bool sees(int pose, const Eigen::Vector3d& point_in_world) const;
+  std::vector<int> poses_that_see(const Eigen::Vector3d& point_in_world, int near, std::size_t most) const;
+  void add_point();
+  void add_observation(int pose);
+
+  int lanes_;  // in each direction
+  std::mt19937 generator_{1};
+  BundleProblem problem_;
+  std::map<Cell, std::vector<int>> cells_;  // poses by where they stand
+  std::vector<Pose> truth_;
+};
+
+}  // namespace byre
