@@ -158,6 +158,10 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
     const auto parent = keyframe.keyframe.parent ? index_of.find(*keyframe.keyframe.parent) : index_of.end();
     if (parent != index_of.end()) join(parent->second, i, kMinSharedPoints);
   }
+  // What lies around new keyframes has the lengths of the map, and keeps them; a whole map's first keyframe has none.
+  if (std::ranges::count(graph.nodes, true, &PoseGraphNode::fixed) > 1) {
+    for (PoseGraphNode& node : graph.nodes) node.scale_is_known = node.scale_is_known || node.fixed;
+  }
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
     if (place == index_of.end() || keyframe == index_of.end()) continue;

@@ -28,8 +28,8 @@ bool contradicts(const BodyMotion& told, const Pose& seen) {
 
 // Whether what is seen tells nothing of the way between them.
 bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
-  constexpr int kAll = std::numeric_limits<int>::max();
-  return std::ranges::none_of(online.covisible_keyframes(later, kAll),
+  constexpr int kEvery = std::numeric_limits<int>::max();
+  return std::ranges::none_of(online.covisible_keyframes(later, kEvery),
                               [&](const Covisible& other) { return other.keyframe == earlier; });
 }
 
