@@ -99,9 +99,8 @@ class Mapper {
   std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);
   LengthChanges adjust_around_offline(const FinishHooks& hooks);
-  Map take_online() {
-    return std::exchange(online_, Map(Origin::online));
-  }  // the last of all: it has no map after that
+  // The last of all: it has no map after that.
+  Map take_online() { return std::exchange(online_, Map(Origin::online)); }
 
  private:
   Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,

@@ -105,6 +105,19 @@ PlanarMotion planar(const MotionPair& motion, const Eigen::Quaterniond& level_fr
   return result;
 }
 
+std::vector<PlanarMotion> planar(const std::vector<MotionPair>& motions, const Eigen::Quaterniond& level_from_body) {
+  std::vector<PlanarMotion> result;
+  for (const MotionPair& motion : motions) result.push_back(planar(motion, level_from_body));
+  return result;
+}
+
+// Metres by the wheels.
+double way_of(const std::vector<PlanarMotion>& motions) {
+  double way = 0.0;
+  for (const PlanarMotion& motion : motions) way += motion.way;
+  return way;
+}
+
 // What was known of the unknowns.
 struct KnownUnknowns {
   Vector4 values = Vector4::Zero();
@@ -232,13 +245,8 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   std::vector<MotionPair> motions = told;
   for (MotionPair& motion : motions) motion.base = without_turn_errors(turn_errors, motion.base);
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
-  std::vector<PlanarMotion> planar_motions;
-  double way = 0.0;
-  for (const MotionPair& motion : motions) {
-    planar_motions.push_back(planar(motion, level_from_body));
-    way += planar_motions.back().way;
-  }
-  if (way < kLeastWay && !known) return {};
+  const std::vector<PlanarMotion> planar_motions = planar(motions, level_from_body);
+  if (way_of(planar_motions) < kLeastWay && !known) return {};
   const auto solved = solve(planar_motions, known_unknowns(known, *up));
   if (!solved) return {};
   auto mounting = mounting_of(*solved, level_from_body, kMaxSigma);
@@ -257,22 +265,17 @@ std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair
   const auto up = presumed_up(motions, up_in_body);
   if (!up) return {};
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
-  std::vector<PlanarMotion> planar_motions;
-  double way = 0.0;
-  for (const MotionPair& motion : motions) {
-    planar_motions.push_back(planar(motion, level_from_body));
-    way += planar_motions.back().way;
-  }
+  const std::vector<PlanarMotion> planar_motions = planar(motions, level_from_body);
+  if (way_of(planar_motions) < kLeastWay) return {};
   KnownUnknowns presumed;
   presumed.information.diagonal().tail<2>().setConstant(1.0 / (kArm * kArm));
   const auto solved = solve(planar_motions, presumed);
-  if (way < kLeastWay || !solved) return {};
-  const auto mounting = mounting_of(*solved, level_from_body, kMaxSigma);
+  if (!solved) return {};
+  auto mounting = mounting_of(*solved, level_from_body, kMaxSigma);
   if (!mounting) return {};
-  WheelMounting result = *mounting;
-  result.way_error = std::max(result.way_error, kLeastError);
-  result.turn_error = std::max(median_turn_error(motions, *up), kLeastError);
-  return result;
+  mounting->way_error = std::max(mounting->way_error, kLeastError);
+  mounting->turn_error = std::max(median_turn_error(motions, *up), kLeastError);
+  return mounting;
 }
 
 Pose without_turn_errors(const TurnErrors& errors, const Pose& base) {

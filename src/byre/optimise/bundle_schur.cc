@@ -1,6 +1,7 @@
 #include "byre/optimise/bundle_schur.h"
 
 #include "byre/optimise/bundle_motion.h"
+#include "byre/optimise/bundle_point.h"
 #include "byre/optimise/calibration_border.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reduced_system.h"
@@ -13,62 +14,14 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 namespace byre {
 namespace {
 
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
-using Matrix36 = Eigen::Matrix<double, 3, 6>;
-
-// One observation. What follows from it is worked out anew each time: kept, it would take several times the memory.
-struct Term {
-  int seen = 0;   // index into the problem's observations
-  int slot = -1;  // place of the pose in the reduced system; negative for one that stays
-};
-
-// An observation's error at an estimate, and its slopes.
-struct Linear {
-  Eigen::Vector3d residual;
-  double weight = 1.0;
-  Eigen::Matrix3d by_point;
-  Matrix36 by_pose;                         // for a pose that moves
-  CalibrationBorder::Slope by_calibration;  // where one is sought
-};
-
-// The observations of one point: terms [begin, end).
-struct Track {
-  int point = 0;
-  bool moves = false;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
 
 // Most points whose equations are kept between the two times that they are needed. Those of a million would take as
 // much memory as all else that is known of these.
 constexpr std::size_t kMostKept = 100000;
-
-// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known.
-class PointEquations {
- public:
-  void add(const Linear& linear) {
-    normal_.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
-    gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
-  }
-  // When all views are added.
-  void damp(double radius) {
-    damping = normal_.diagonal().unaryExpr(&bounded) / radius;
-    normal_.diagonal() += damping;
-    covariance = normal_.llt().solve(Eigen::Matrix3d::Identity());
-  }
-
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Vector3d damping;
-  Eigen::Matrix3d covariance;  // inverse of the damped normal matrix
-
- private:
-  Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
-};
 
 // Poses, points and the change of the calibration, and what is looked up again and again.
 struct Estimate {
@@ -126,7 +79,7 @@ class SchurBundle {
   void begin_estimate();
   void make_tracks(const BundleRoles& roles);
   std::vector<std::vector<int>> neighbours() const;  // see ReducedSystem
-  Linear linearised(const Term& term, const Eigen::Vector3d& point) const;
+  LinearObservation linearised(const BundleTerm& term, const Eigen::Vector3d& point) const;
   void linearise_track(std::size_t index);
   void eliminate(std::size_t index, const PointEquations& equations);
   bool solve_point(std::size_t index, Step& step);
@@ -135,7 +88,7 @@ class SchurBundle {
   void add_motion(const BundleMotion& motion);
   double cost_of_motions(const Estimate& estimate) const;
 
-  const BundleObservation& observation_of(const Term& term) const {
+  const BundleObservation& observation_of(const BundleTerm& term) const {
     return problem_.observations[static_cast<std::size_t>(term.seen)];
   }
   Reprojection reprojection_of(const BundleObservation& seen) const {
@@ -149,8 +102,8 @@ class SchurBundle {
   double huber_width_ = 0.0;
   std::vector<int> slots_;  // one a pose
   int slot_count_ = 0;
-  std::vector<Track> tracks_;
-  std::vector<Term> terms_;
+  std::vector<BundleTrack> tracks_;
+  std::vector<BundleTerm> terms_;
   std::vector<const BundleMotion*> motions_;  // owned by the caller
 
   Estimate estimate_;
@@ -230,14 +183,14 @@ std::vector<std::vector<int>> SchurBundle::neighbours() const {
   return neighbours;
 }
 
-Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) const {
+LinearObservation SchurBundle::linearised(const BundleTerm& term, const Eigen::Vector3d& point) const {
   const BundleObservation& seen = observation_of(term);
   const auto pose = static_cast<std::size_t>(seen.pose);
   const Eigen::Matrix3d& rotation = estimate_.rotations[pose];
   const Eigen::Vector3d turned = rotation * point;
   const Eigen::Vector3d point_in_camera = turned + estimate_.poses[pose].translation;
   const Reprojection reprojection = reprojection_of(seen);
-  Linear linear;
+  LinearObservation linear;
   linear.residual = reprojection.residual(point_in_camera);
   if (border_) {
     linear.by_calibration = border_->slope(seen, point_in_camera);
@@ -251,13 +204,13 @@ Linear SchurBundle::linearised(const Term& term, const Eigen::Vector3d& point) c
 }
 
 void SchurBundle::linearise_track(std::size_t index) {
-  const Track& track = tracks_[index];
+  const BundleTrack& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   PointEquations equations;
   between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
-    const Term& term = terms_[i];
-    const Linear linear = linearised(term, point);
+    const BundleTerm& term = terms_[i];
+    const LinearObservation linear = linearised(term, point);
     if (track.moves) equations.add(linear);
     if (border_) {
       border_->add(linear.by_calibration, linear.weight, linear.residual);
@@ -279,7 +232,7 @@ void SchurBundle::linearise_track(std::size_t index) {
 
 // Takes from the other equations what finding the point uses up.
 void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
-  const Track& track = tracks_[index];
+  const BundleTrack& track = tracks_[index];
   if (border_) border_->eliminate(index, equations.covariance, equations.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
@@ -401,7 +354,7 @@ std::optional<Step> SchurBundle::solve() {
 
 // The step of a point, given those of poses and calibration. False where it has none.
 bool SchurBundle::solve_point(std::size_t index, Step& step) {
-  const Track& track = tracks_[index];
+  const BundleTrack& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   const bool is_kept = !kept_.empty();
   PointEquations equations;
@@ -409,7 +362,7 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
   between_.resize(track.end - track.begin);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     if (is_kept && terms_[i].slot < 0) continue;
-    const Linear linear = linearised(terms_[i], point);
+    const LinearObservation linear = linearised(terms_[i], point);
     if (!is_kept) equations.add(linear);
     if (terms_[i].slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
@@ -442,7 +395,7 @@ Estimate SchurBundle::moved(const Step& step) const {
     moved.rotations[i] = pose.rotation.toRotationMatrix();
   }
   auto change = step.points.begin();
-  for (const Track& track : tracks_) {
+  for (const BundleTrack& track : tracks_) {
     if (track.moves) moved.points[static_cast<std::size_t>(track.point)] += *change++;
   }
   return moved;
@@ -450,7 +403,7 @@ Estimate SchurBundle::moved(const Step& step) const {
 
 double SchurBundle::cost_of(const Estimate& estimate) const {
   double twice = 0.0;
-  for (const Track& track : tracks_) {
+  for (const BundleTrack& track : tracks_) {
     const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
     for (std::size_t i = track.begin; i < track.end; ++i) {
       const BundleObservation& seen = observation_of(terms_[i]);
@@ -474,7 +427,7 @@ double SchurBundle::squared_length() const {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i] >= 0) squared += 1.0 + estimate_.poses[i].translation.squaredNorm();  // a quaternion's length is 1
   }
-  for (const Track& track : tracks_) {
+  for (const BundleTrack& track : tracks_) {
     if (track.moves) squared += estimate_.points[static_cast<std::size_t>(track.point)].squaredNorm();
   }
   return squared;

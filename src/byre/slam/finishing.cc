@@ -44,7 +44,8 @@ LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint
   return adjust_at_once(std::move(recent), edges, options.global, online, hooks.should_stop);
 }
 
-// What lies around the keyframes that came first. Returns from which keyframe on the map was corrected.
+// Corrects what lies around the keyframes that came, and then, where a loop still disagrees, the whole map. Returns
+// from which keyframe on the map was corrected.
 std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
                              const FinishHooks& hooks, FinishReport& report) {
   report.length_changes = correct(online, edges, options.first_new, options, hooks);

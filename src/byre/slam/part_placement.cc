@@ -2,6 +2,7 @@
 
 #include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
+#include "byre/slam/told_lengths.h"
 
 #include <algorithm>
 #include <map>
@@ -19,6 +20,7 @@ class Parts {
       if (point.removed || point.observations.empty()) continue;
       for (const WindowObservation& seen : point.observations) join(seen.keyframe, point.observations.front().keyframe);
     }
+    for (int& parent : parent_) parent = part_of(parent);
   }
 
   int part_of(int keyframe) const {
@@ -46,29 +48,17 @@ Pose world_from_body(const MapWindow& window, int keyframe) {
 // metres by itself.
 std::map<int, double> lengths_of_parts(const MapWindow& window, const Parts& parts) {
   constexpr int kFew = 3;
-  struct Sums {
-    int count = 0;
-    double told_squared = 0.0;
-    double seen_by_told = 0.0;
-  };
-  std::map<int, Sums> sums;
+  std::map<int, LengthRatio> ratios;
   for (const WindowMotion& motion : window.motions) {
     const int part = parts.part_of(motion.earlier);
     const WindowKeyframe& earlier = window.keyframes[static_cast<std::size_t>(motion.earlier)];
     if (part != parts.part_of(motion.later) || window.rig_of(earlier).is_stereo()) continue;
-    const Pose seen = inverse(world_from_body(window, motion.earlier)) * world_from_body(window, motion.later);
-    const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
-    const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
-    Sums& of_part = sums[part];
-    ++of_part.count;
-    of_part.told_squared += weight * told.squaredNorm();
-    of_part.seen_by_told += weight * seen.translation.dot(told);
+    ratios[part].add(motion.motion,
+                     inverse(world_from_body(window, motion.earlier)) * world_from_body(window, motion.later));
   }
   std::map<int, double> lengths;
-  for (const auto& [part, of_part] : sums) {
-    if (of_part.count >= kFew && of_part.seen_by_told > 0.0) {
-      lengths[part] = of_part.seen_by_told / of_part.told_squared;
-    }
+  for (const auto& [part, ratio] : ratios) {
+    if (ratio.count() >= kFew && ratio.value()) lengths[part] = *ratio.value();
   }
   return lengths;
 }
@@ -96,16 +86,10 @@ Similarity placement(const MapWindow& window, const WindowMotion& motion, double
                       inverse(scale_lengths(before, growth))};
 }
 
-void scale_motions(MapWindow& window, double scale) {
-  for (WindowMotion& motion : window.motions) {
-    motion.motion = {scale_lengths(motion.motion.last_from_body, scale),
-                     scale_lengths(motion.motion.covariance, scale)};
-  }
-}
-
 }  // namespace
 
 bool place_parts(MapWindow& window) {
+  if (window.motions.empty()) return false;
   const Parts parts(window);
   if (std::ranges::none_of(window.motions, [&](const WindowMotion& motion) {
         return parts.part_of(motion.earlier) != parts.part_of(motion.later);
@@ -129,7 +113,7 @@ bool place_parts(MapWindow& window) {
   const int first = window.motions.front().earlier;
   const double first_length = length_of(parts.part_of(first), 1.0);
   note_placed(first);
-  scale_motions(window, first_length);
+  for (WindowMotion& motion : window.motions) motion.motion = scale_lengths(motion.motion, first_length);
   for (const WindowMotion& motion : window.motions) {
     const int before = parts.part_of(motion.earlier), part = parts.part_of(motion.later);
     if (is_placed[static_cast<std::size_t>(part)] || !is_placed[static_cast<std::size_t>(before)]) continue;

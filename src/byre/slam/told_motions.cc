@@ -1,8 +1,8 @@
 #include "byre/slam/told_motions.h"
 
-#include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/loop_closing.h"
+#include "byre/slam/told_lengths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,20 +68,12 @@ std::vector<KeyframeMotion> told_motions(const Map& online, std::vector<Keyframe
 std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions) {
   constexpr std::size_t kMany = 20;
   if (motions.size() < kMany) return motions;
-  double told_squared = 0.0, seen_by_told = 0.0;
+  LengthRatio ratio;
   for (const KeyframeMotion& motion : motions) {
-    if (motion.is_unseen) continue;
-    const Eigen::Vector3d& told = motion.motion.last_from_body.translation;
-    const double weight = 1.0 / motion.motion.covariance.topLeftCorner<3, 3>().trace();
-    told_squared += weight * told.squaredNorm();
-    seen_by_told += weight * seen_between(online, motion.earlier, motion.later).translation.dot(told);
+    if (!motion.is_unseen) ratio.add(motion.motion, seen_between(online, motion.earlier, motion.later));
   }
-  if (!(seen_by_told > 0.0)) return motions;
-  const double factor = seen_by_told / told_squared;
-  for (KeyframeMotion& motion : motions) {
-    motion.motion = {scale_lengths(motion.motion.last_from_body, factor),
-                     scale_lengths(motion.motion.covariance, factor)};
-  }
+  if (!ratio.value()) return motions;
+  for (KeyframeMotion& motion : motions) motion.motion = scale_lengths(motion.motion, *ratio.value());
   return motions;
 }
 
