@@ -113,7 +113,7 @@ bool place_parts(MapWindow& window) {
   const int first = window.motions.front().earlier;
   const double first_length = length_of(parts.part_of(first), 1.0);
   note_placed(first);
-  for (WindowMotion& motion : window.motions) motion.motion = scale_lengths(motion.motion, first_length);
+  for (WindowMotion& motion : window.motions) motion.motion = scale_motion(motion.motion, first_length);
   for (const WindowMotion& motion : window.motions) {
     const int before = parts.part_of(motion.earlier), part = parts.part_of(motion.later);
     if (is_placed[static_cast<std::size_t>(part)] || !is_placed[static_cast<std::size_t>(before)]) continue;

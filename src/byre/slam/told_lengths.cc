@@ -16,7 +16,7 @@ std::optional<double> LengthRatio::value() const {
   return seen_by_told_ > 0.0 ? std::optional(seen_by_told_ / told_squared_) : std::nullopt;
 }
 
-BodyMotion scale_lengths(const BodyMotion& motion, double scale) {
+BodyMotion scale_motion(const BodyMotion& motion, double scale) {
   return {scale_lengths(motion.last_from_body, scale), scale_lengths(motion.covariance, scale)};
 }
 

@@ -22,6 +22,6 @@ class LengthRatio {
 };
 
 // A motion with all lengths times the scale.
-BodyMotion scale_lengths(const BodyMotion& motion, double scale);
+BodyMotion scale_motion(const BodyMotion& motion, double scale);
 
 }  // namespace byre

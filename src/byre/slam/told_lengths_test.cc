@@ -28,8 +28,8 @@ TEST(LengthRatio, IsNoneWhereWaysLeadBackwards) {
   EXPECT_FALSE(ratio.value());
 }
 
-TEST(ScaleLengths, OfAMotionScalesItsWayAndTheErrorOfThat) {
-  const BodyMotion scaled = scale_lengths(told(1.0, 0.1), 3.0);
+TEST(ScaleMotion, ScalesItsWayAndTheErrorOfThat) {
+  const BodyMotion scaled = scale_motion(told(1.0, 0.1), 3.0);
   EXPECT_NEAR(scaled.last_from_body.translation.x(), 3.0, 1e-12);
   EXPECT_NEAR(scaled.covariance(0, 0), 0.09, 1e-12);
   EXPECT_NEAR(scaled.covariance(5, 5), 0.01, 1e-12);

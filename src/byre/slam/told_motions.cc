@@ -73,7 +73,7 @@ std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<Keyfram
     if (!motion.is_unseen) ratio.add(motion.motion, seen_between(online, motion.earlier, motion.later));
   }
   if (!ratio.value()) return motions;
-  for (KeyframeMotion& motion : motions) motion.motion = scale_lengths(motion.motion, *ratio.value());
+  for (KeyframeMotion& motion : motions) motion.motion = scale_motion(motion.motion, *ratio.value());
   return motions;
 }
 
