@@ -5,8 +5,12 @@
 namespace byre {
 namespace {
 
-MapAlignment align_map(const Map& map, const MissionTruth& truth) {
-  return align_to_truth(truth.map_run ? *truth.map_run : keyframe_path(map), truth.map_scale, truth.of_map);
+// The path by which the map was made, of the body that the mission's cameras sit on.
+Trajectory path_of(const OfflineMap& offline, const std::optional<Trajectory>& map_run, const Calibration& given) {
+  Trajectory path = map_run ? *map_run : keyframe_path(offline.map());
+  const Pose map_body_from_body = known_body_from_body(offline.recordings(), given).value_or(Pose{});
+  for (StampedPose& pose : path) pose.world_from_body = pose.world_from_body * map_body_from_body;
+  return path;
 }
 
 }  // namespace
@@ -16,9 +20,13 @@ MissionOutcome judge_mission(const MapRun& run, const EngineOptions& options, co
   MissionOutcome mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
   if (!truth) return mission;
-  mission.errors = options.offline ? mission_errors(run, align_map(options.offline->map(), *truth), truth->of_frames)
-                                   : aligned_errors(run, recording.path_of(truth->of_frames),
-                                                    recording.is_metric ? Scale::fixed : Scale::free);
+  if (!options.offline) {
+    mission.errors =
+        aligned_errors(run, recording.path_of(truth->of_frames), recording.is_metric ? Scale::fixed : Scale::free);
+    return mission;
+  }
+  const Trajectory path = path_of(*options.offline, truth->map_run, recording.recording->calibration());
+  mission.errors = mission_errors(run, align_to_truth(path, truth->map_scale, truth->of_map), truth->of_frames);
   return mission;
 }
 

@@ -8,16 +8,24 @@
 namespace byre {
 namespace {
 
-std::string describe(const WheelMounting& wheels, const ToldMotion& told, bool is_metric) {
+// How long they tell a unit of the map to be. Nothing where they have told its metres: then it is one.
+std::string describe_lengths(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
+  const double share = 100.0 * wheels.scale_sigma;
+  if (sees_metres) {
+    return formatted("%.2f %% longer than seen (sigma %.2f %%); ", 100.0 * (wheels.metres_per_unit - 1.0), share);
+  }
+  if (run.is_metric) return "";
+  return formatted("a unit of the map is %.3f m (sigma %.2f %%); ", wheels.metres_per_unit, share);
+}
+
+std::string describe(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
+  const ToldMotion& told = run.told;
   const Eigen::Vector3d& arm = wheels.base_from_body.translation;
   std::string text =
       formatted("body %.2f m ahead and %.2f m to the left of the base; stamped %.0f ms after the images; ", arm.x(),
                 arm.y(), 1e3 * told.time_offset);
-  const double share = 100.0 * wheels.scale_sigma;
-  text += is_metric
-              ? formatted("%.2f %% longer than seen (sigma %.2f %%)", 100.0 * (wheels.metres_per_unit - 1.0), share)
-              : formatted("a unit of the map is %.3f m (sigma %.2f %%)", wheels.metres_per_unit, share);
-  text += formatted("; left out for slip %d times", told.slips);
+  text += describe_lengths(wheels, run, sees_metres);
+  text += formatted("left out for slip %d times", told.slips);
   return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
 }
 
@@ -27,11 +35,11 @@ bool is_bridged(const MappedFrame& frame) {
 
 }  // namespace
 
-std::string motion_rows(const MapRun& run, bool is_metric) {
+std::string motion_rows(const MapRun& run, bool sees_metres) {
   const ToldMotion& told = run.told;
   if (!told.is_told) return "";
   std::string text;
-  if (told.wheels) text += row("wheels", describe(*told.wheels, told, is_metric));
+  if (told.wheels) text += row("wheels", describe(*told.wheels, run, sees_metres));
   if (told.gyroscope) {
     text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
                                        told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));

@@ -45,13 +45,20 @@ std::string describe_refusals(const FrameCounts& counts) {
 std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
   if (protocol.is_metric) return "";
   std::string begun = "never";
-  if (!run.causal.empty()) {
-    const double seconds = to_seconds(run.causal.front().time - run.frames.front().time);
-    begun = formatted("%.2f s after the first frame, at frame %d", seconds, counts.frames_to_first.value_or(0));
+  const auto first = std::ranges::find_if(run.frames, [](const MappedFrame& frame) {
+    return frame.report && frame.report->has(SessionEvent::initialised);
+  });
+  if (first != run.frames.end()) {
+    const double seconds = to_seconds(first->time - run.frames.front().time);
+    begun =
+        formatted("%.2f s after the first frame, at frame %d", seconds, static_cast<int>(first - run.frames.begin()));
   }
   const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) begun += "; refused before: " + refusals;
-  return row("begun", begun) + row("scale", "of the map's own; \"byre scale\" makes it metres");
+  const std::string scale =
+      run.is_metric ? formatted("metres, as the wheels tell them (sigma %.2f %%)", 100.0 * run.told.wheels->scale_sigma)
+                    : "of the map's own; \"byre scale\" makes it metres";
+  return row("begun", begun) + row("scale", scale);
 }
 
 std::string describe_loops(const FrameCounts& counts) {
@@ -139,7 +146,7 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
   if (run.finishing) return calibration_row(run.calibration) + to_text(*run.finishing);
   if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
-  if (run.causal.empty()) return row("finishing", "left out, as there is no map");
+  if (run.final.empty()) return row("finishing", "left out, as there is no map");
   return row("finishing", "left out; \"byre refine\" does it");
 }
 
@@ -229,14 +236,14 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
   text += motion_rows(run, protocol.is_metric);
   text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
-                                protocol.is_metric ? "m" : "units", run.final.size()));
+                                run.is_metric ? "m" : "units", run.final.size()));
   text += cost_rows(run, protocol.options, resources);
   text += closing_rows(run, files);
   return text;
 }
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {
-  if (!run.causal.empty()) return;
+  if (!run.final.empty()) return;
   const FrameCounts counts = count_frames(run.frames);
   if (2 * counts.unreadable > counts.frames) {
     throw std::runtime_error(formatted("no frame got a pose: %d of %d could not be read; the warnings say why",

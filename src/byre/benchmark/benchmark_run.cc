@@ -215,7 +215,7 @@ class BenchmarkRunner {
     hooks_.before_run("map of " + name, recording->size());
     MapRun run = run_map(*recording, options_for(Arm::no_map, 0), run_hooks());
     if (hooks_.should_stop()) return;
-    if (run.causal.empty()) {
+    if (run.final.empty()) {
       failed_maps_.insert(name);
       return;
     }

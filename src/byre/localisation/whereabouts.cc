@@ -162,7 +162,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
 void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig,
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
-  if (bridge_ && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
+  if (bridge_ && !on_offline_map_ && !trajectory_.empty()) carried_ = {body, covariance_of_bridge()};
   bridge_ ? void(odometry_.follow(body, {})) : odometry_.correct(body);
   odometry_.remember_offset({});
   for (const KeyframeId id : keyframes) {
@@ -204,10 +204,24 @@ Pose Whereabouts::held_to(const DrivenGround& ground, const Rig& rig, const Pose
   return held.camera_from_world;
 }
 
+std::optional<Pose> Whereabouts::told_beginning() const {
+  if (on_offline_map_ || !trajectory_.empty() || !is_way_known_ || !last_told_) return std::nullopt;
+  return bridge_ ? bridge_->last_from_body * last_told_->last_from_body : last_told_->last_from_body;
+}
+
+// Once it is not told, nobody knows where the body is from where it began.
+void Whereabouts::wait_for_map() {
+  if (bridge_ && !last_told_) is_way_known_ = false;
+  if (!is_way_known_ || !last_told_) return bridge_.reset();
+  bridge_ = bridge_ ? *bridge_ * *last_told_ : *last_told_;
+  odometry_.go_by(last_told_->last_from_body, bridge_->last_from_body);
+}
+
 bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground) {
+  if (trajectory_.empty() && !on_offline_map_ && map.online().keyframe_count() == 0) wait_for_map();
   if (has_pose_ || !is_way_known_ || !motion_.told() || trajectory_.empty()) {
-    if (!has_pose_) bridge_.reset();
-    return false;
+    if (!has_pose_ && !trajectory_.empty()) bridge_.reset();
+    return bridge_.has_value();
   }
   if (!bridge_) bridge_begin_ = trajectory_.size() - 1;
   const AnchoredPose last = trajectory_.back();
@@ -259,7 +273,7 @@ void Whereabouts::settle_overdue(const MapView& map, const TrackOptions& trackin
 }
 
 std::optional<Pose> Whereabouts::follow_map(const Rig& rig, const MapView& map) {
-  if (!has_pose_ && !bridge_) return std::nullopt;
+  if (trajectory_.empty() || (!has_pose_ && !bridge_)) return std::nullopt;
   const Pose before = odometry_.map_from_body();
   const Pose body = body_pose(rig, camera_from_world(map, trajectory_.back()));
   odometry_.correct(body);

@@ -50,8 +50,10 @@ class Whereabouts {
   // The pose was lost, and it is known how the body has moved since, so well that points are found by it.
   bool may_be_led_back() const { return !has_pose_ && is_way_known_ && is_led_well(); }
   // The way from the last pose that was seen to where the body is by what is told; empty unless the last frame showed
-  // nothing.
+  // nothing. Before there is a map it is the way from the first frame that was told of, where the map's frame will be.
   std::optional<BodyMotion> bridge() const { return has_pose_ ? std::nullopt : bridge_; }
+  // Before there is a map: the body in the frame that a map which begins with this frame is to have.
+  std::optional<Pose> told_beginning() const;
   const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
@@ -112,6 +114,7 @@ class Whereabouts {
 
  private:
   FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
+  void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
   bool leads_well(const BodyMotion& told) const;

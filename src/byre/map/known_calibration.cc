@@ -7,15 +7,26 @@ namespace {
 
 // A map keeps nothing of a depth camera, and one camera may be the left one of a pair.
 bool is_of_these_cameras(const Calibration& known, const Calibration& given) {
-  return known.left == given.left && known.body_from_left == given.body_from_left &&
-         known.readout_time == given.readout_time && (!given.right || known.right == given.right);
+  return known.left == given.left && known.readout_time == given.readout_time &&
+         (!given.right || known.right == given.right);
 }
 
 }  // namespace
 
 bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given) {
-  return std::ranges::any_of(
-      recordings, [&](const SourceRecording& recording) { return is_of_these_cameras(recording.calibration, given); });
+  return std::ranges::any_of(recordings, [&](const SourceRecording& recording) {
+    const Calibration& known = recording.calibration;
+    return is_of_these_cameras(known, given) && known.body_from_left == given.body_from_left;
+  });
+}
+
+std::optional<Pose> known_body_from_body(const std::vector<SourceRecording>& recordings, const Calibration& given) {
+  if (is_by_cameras_of(recordings, given)) return Pose{};
+  for (auto recording = recordings.rbegin(); recording != recordings.rend(); ++recording) {
+    const Calibration& known = recording->calibration;
+    if (is_of_these_cameras(known, given)) return known.body_from_left * inverse(given.body_from_left);
+  }
+  return std::nullopt;
 }
 
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
@@ -25,6 +36,7 @@ std::optional<RefinedCalibration> known_calibration(const std::vector<SourceReco
     std::optional<RefinedCalibration> refined = recording->refined;
     if (!given.right) refined->calibration.right.reset();
     refined->calibration.depth = given.depth;
+    refined->calibration.body_from_left = given.body_from_left;
     return refined;
   }
   return std::nullopt;

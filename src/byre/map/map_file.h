@@ -33,8 +33,12 @@ struct SourceRecording {
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
                                                     const Calibration& given);
 
-// Whether one of the recordings was taken by these cameras, as given; the left one may be the only one.
+// Whether one of the recordings was taken by these cameras on this body, as given; the left one may be the only one.
 bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given);
+
+// The body of the newest recording by these cameras, from theirs: what one camera maps is of the camera, a mission of
+// the body that carries it. Empty where none is by these cameras.
+std::optional<Pose> known_body_from_body(const std::vector<SourceRecording>& recordings, const Calibration& given);
 
 // What the positions of a map are measured in.
 enum class MapScale : std::uint8_t {

@@ -57,6 +57,20 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
   return scaled;
 }
 
+void stretch(Map& map, double factor) {
+  assert(factor > 0.0);
+  for (KeyframeId id{map.origin(), 0}; map.living_ancestor(id); ++id.number) {
+    const Keyframe* const keyframe = map.find_keyframe(id);
+    if (keyframe == nullptr) {
+      map.scale_removed_keyframe(id, factor);
+    } else {
+      map.move_keyframe(id, scale_lengths(keyframe->camera_from_world, factor),
+                        scale_lengths(keyframe->covariance, factor));
+    }
+  }
+  for (const PointId id : map.point_ids()) map.update_point(id, scaled_copy(*map.find_point(id), factor));
+}
+
 double baseline_factor(const StoredMap& stored, std::size_t recording) {
   const Calibration& given = stored.recordings.at(recording).calibration;
   if (!given.right) return 1.0;

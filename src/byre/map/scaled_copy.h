@@ -13,6 +13,10 @@ Calibration scaled(const Calibration& calibration, double factor);
 // baseline.
 StoredMap scaled_copy(const StoredMap& stored, double factor);
 
+// All lengths of a map that images tell so many times as long, also from keyframes to those that were removed. Rigs
+// stay as they are. Precondition: a factor that is positive.
+void stretch(Map& map, double factor);
+
 // How many times as long as it was given the map has the baseline of a recording's pair: 1 unless its scale has been
 // corrected. Also 1 for one camera alone and for a recording without keyframes. Precondition: it is listed.
 double baseline_factor(const StoredMap& stored, std::size_t recording);

@@ -1,5 +1,6 @@
 #include "byre/map/scaled_copy.h"
 
+#include "byre/alignment.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/stored_map_scene.h"
 
@@ -126,6 +127,40 @@ TEST(KnownCalibration, OfAPairIsAlsoThatOfItsLeftCamera) {
   ASSERT_TRUE(known);
   EXPECT_EQ(known->calibration.left, left.left);
   EXPECT_FALSE(known->calibration.right);
+}
+
+TEST(KnownCalibration, IsOfTheSameCameraOnAnotherBody) {
+  StoredMap stored = scaled_copy(consistent_map(), kFactor);
+  Calibration given = consistent_map().recordings[0].calibration;
+  const Pose map_body_from_body{rotation_exp({0.1, 0.2, 0.3}), {0.3, 0.2, 0.1}};
+  EXPECT_TRUE(is_by_cameras_of(stored.recordings, given));
+  given.body_from_left = inverse(map_body_from_body) * given.body_from_left;
+  EXPECT_FALSE(is_by_cameras_of(stored.recordings, given));
+  const auto change = known_body_from_body(stored.recordings, given);
+  ASSERT_TRUE(change);
+  EXPECT_THAT(*change, PoseNear(map_body_from_body, 1e-9, 1e-9));
+  const auto known = known_calibration(stored.recordings, given);
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->calibration.body_from_left, given.body_from_left);
+  given.left.fx += 1.0;
+  EXPECT_FALSE(known_body_from_body(stored.recordings, given));
+}
+
+TEST(Stretch, ChangesLengthsAlsoFromKeyframesThatWereRemoved) {
+  Map map = consistent_map().map;
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  map.remove_keyframe(ids.back());
+  ASSERT_EQ(map.keyframe_count(), static_cast<int>(ids.size()) - 1);
+  const Map before = map;
+  stretch(map, 2.0);
+  for (const KeyframeId id : ids) {
+    EXPECT_THAT(map.camera_from_world(id), PoseNear(scale_lengths(before.camera_from_world(id), 2.0), 1e-9, 1e-9));
+  }
+  for (const PointId id : before.point_ids()) {
+    const MapPoint &point = *before.find_point(id), &now = *map.find_point(id);
+    EXPECT_TRUE(now.position_in_world.isApprox(2.0 * point.position_in_world, 1e-12));
+    EXPECT_TRUE(now.covariance.isApprox(4.0 * point.covariance, 1e-12));
+  }
 }
 
 }  // namespace

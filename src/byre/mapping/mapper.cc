@@ -1,5 +1,6 @@
 #include "byre/mapping/mapper.h"
 
+#include "byre/map/scaled_copy.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/recent_map.h"
 #include "byre/slam/start_beside.h"
@@ -39,7 +40,7 @@ void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationO
   calibrator_.emplace(given, options);
 }
 
-Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                 const AnchoredTrajectory& trajectory) {
   Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
                                     : begin_monocular(frame, camera_from_world, trajectory);
@@ -51,17 +52,17 @@ Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const Pose& 
 }
 
 // In a mission its place in the offline map is not known yet.
-Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                        const AnchoredTrajectory& trajectory) {
   auto first = initialise_stereo(frame, rig, options_.min_initial_points);
   if (!first) return {};
   offline_ ? submaps_.begin_in_own_frame(next_keyframe_number()) : submaps_.begin_in_map_frame(next_keyframe_number());
-  if (online_.keyframe_count() == 0) {
+  if (online_.keyframe_count() == 0 && !camera_from_world) {
     online_ = *std::move(first);
     return {{online_.keyframe_ids().front()}};
   }
   TrackedFrame tracked;
-  tracked.camera_from_world = camera_from_world;
+  tracked.camera_from_world = camera_from_world.value_or(inverse(rig.body_from_camera));
   Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig));
   keyframe.parent = parent_of_bridge(trajectory);
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
@@ -75,28 +76,39 @@ std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& tra
   return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
 }
 
-Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Pose& camera_from_world,
+Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const std::optional<Pose>& camera_from_world,
                                           const AnchoredTrajectory& trajectory) {
   MonocularAttempt attempt = initialiser_->try_start(frame);
-  if (!attempt.start) return {{}, attempt.failure};
+  if (!attempt.start) {
+    if (initialiser_->reference_time() == frame.time) told_reference_ = camera_from_world.value_or(Pose{});
+    return {{}, attempt.failure};
+  }
+  std::vector<KeyframeId> keyframes;
   if (online_.keyframe_count() > 0) {
-    const Timestamp first_time = attempt.start->map.find_keyframe(attempt.start->first)->frame.time;
-    const auto first = trajectory.camera_at(first_time, map());
-    if (!first) return {};
-    const std::uint32_t first_number = next_keyframe_number();
-    const auto keyframes = add_beside(*attempt.start, {*first, camera_from_world}, parent_of_bridge(trajectory),
-                                      options_.recording, online_);
+    keyframes = add_beside_map(*attempt.start, *camera_from_world, trajectory);
     if (keyframes.empty()) return {};
-    initialiser_.reset();
-    submaps_.begin_in_map_frame(first_number);
-    pending_.push_back(keyframes.back());
-    return {keyframes, attempt.failure};
+  } else {
+    MonocularStart start =
+        camera_from_world ? placed(*attempt.start, {told_reference_, *camera_from_world}) : std::move(*attempt.start);
+    keyframes = {start.first, start.second};
+    online_ = std::move(start.map);
+    submaps_.begin_in_map_frame(0);
   }
   initialiser_.reset();
-  online_ = std::move(attempt.start->map);
-  submaps_.begin_in_map_frame(0);
-  pending_.push_back(attempt.start->second);
-  return {{attempt.start->first, attempt.start->second}, attempt.failure};
+  pending_.push_back(keyframes.back());
+  return {keyframes, attempt.failure};
+}
+
+std::vector<KeyframeId> Mapper::add_beside_map(const MonocularStart& start, const Pose& camera_from_world,
+                                               const AnchoredTrajectory& trajectory) {
+  const Timestamp first_time = start.map.find_keyframe(start.first)->frame.time;
+  const auto first = trajectory.camera_at(first_time, map());
+  if (!first) return {};
+  const std::uint32_t first_number = next_keyframe_number();
+  auto keyframes =
+      add_beside(start, {*first, camera_from_world}, parent_of_bridge(trajectory), options_.recording, online_);
+  if (!keyframes.empty()) submaps_.begin_in_map_frame(first_number);
+  return keyframes;
 }
 
 void Mapper::expect_beginning_beside(const Rig& rig, bool is_told) {
@@ -324,6 +336,15 @@ LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   const MapWindow whole = whole_map(map());
   const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
   LengthChanges changes = apply_correction(adjusted, whole, online_);
+  loop_closer_.follow(changes);
+  return changes;
+}
+
+LengthChanges Mapper::stretch(double factor) {
+  assert(!offline_);
+  byre::stretch(online_, factor);
+  LengthChanges changes;
+  for (KeyframeId id{Origin::online, 0}; online_.living_ancestor(id); ++id.number) changes[id] = factor;
   loop_closer_.follow(changes);
   return changes;
 }

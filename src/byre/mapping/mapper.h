@@ -60,13 +60,14 @@ class Mapper {
   void continue_map(Map online);
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Begins a submap with a frame, seen from there or, in an empty map, from where the map's frame is. One camera knows
-  // no scale: it begins one map, and beside another where the trajectory goes on by what is told of the motion.
+  // Begins a submap with a frame, seen from there. In an empty map that is where the map's frame is, unless it is told
+  // how the body has moved since it was there. One camera knows no scale: it begins one map, and beside another where
+  // the trajectory goes on by what is told of the motion.
   struct Beginning {
     std::vector<KeyframeId> keyframes;  // empty: no submap was begun
     TwoViewFailure failure = TwoViewFailure::none;
   };
-  Beginning begin(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+  Beginning begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                   const AnchoredTrajectory& trajectory);
   bool can_begin(const Rig& rig) const { return rig.is_stereo() || initialiser_; }
   // One camera may begin beside what there is where it is told how it has moved since, or, is_told being false, may
@@ -99,13 +100,18 @@ class Mapper {
   std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);
   LengthChanges adjust_around_offline(const FinishHooks& hooks);
+  // All lengths so many times as long, as where it is known by now how long the unit of one camera's map is.
+  LengthChanges stretch(double factor);
   // The last of all: it has no map after that.
   Map take_online() { return std::exchange(online_, Map(Origin::online)); }
 
  private:
-  Beginning begin_stereo(const Frame& frame, const Rig& rig, const Pose& camera_from_world,
+  Beginning begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                          const AnchoredTrajectory& trajectory);
-  Beginning begin_monocular(const Frame& frame, const Pose& camera_from_world, const AnchoredTrajectory& trajectory);
+  Beginning begin_monocular(const Frame& frame, const std::optional<Pose>& camera_from_world,
+                            const AnchoredTrajectory& trajectory);
+  std::vector<KeyframeId> add_beside_map(const MonocularStart& start, const Pose& camera_from_world,
+                                         const AnchoredTrajectory& trajectory);
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
@@ -126,6 +132,7 @@ class Mapper {
   Worker<MapDelta> local_;
   GlobalLane global_;
   std::optional<MonocularInitialiser> initialiser_;  // until there is a map, with a rig without a baseline
+  Pose told_reference_;                              // camera_from_world of its reference frame, as it was told
   std::optional<Calibrator> calibrator_;
   Map online_{Origin::online};
   int revision_ = 0;

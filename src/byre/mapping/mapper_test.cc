@@ -34,7 +34,7 @@ class MapperOfAMission : public ::testing::Test {
 TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
   Mapper mapper = this->mapper(make_inline_executor());
   EXPECT_FALSE(mapper.newest_keyframe());
-  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
+  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   ASSERT_EQ(begun.keyframes.size(), 1u);
   EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[0]);
   EXPECT_TRUE(mapper.submaps().is_registered());
@@ -44,14 +44,14 @@ TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
 TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
   Mapper mapper = this->mapper(make_inline_executor());
   const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
-  EXPECT_THAT(mapper.begin(blank, mission_.rig, Pose{}, AnchoredTrajectory({})).keyframes, IsEmpty());
+  EXPECT_THAT(mapper.begin(blank, mission_.rig, {}, AnchoredTrajectory({})).keyframes, IsEmpty());
   EXPECT_TRUE(mapper.submaps().empty());
   EXPECT_EQ(mapper.revision(), 0);
 }
 
 TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
   Mapper mapper = this->mapper(make_paced_executor(2));
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const int begun = mapper.revision();
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const int added = mapper.revision();
@@ -78,7 +78,7 @@ Frame with_patches(const Frame& frame, const Rig& rig) {
 TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCame) {
   Mapper mapper = this->mapper(make_paced_executor(1000));
   const KeyframeId first =
-      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, Pose{}, AnchoredTrajectory({}))
+      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
           .keyframes.front();
   const auto patches_without_point = [&] {
     const Keyframe& keyframe = *mapper.online().find_keyframe(first);
@@ -101,7 +101,7 @@ TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCam
 
 TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(5));
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.add_keyframe(mission_.frames[8], track(mapper, 8), mission_.rig);
   EXPECT_EQ(mapper.pending(), 1);
@@ -111,7 +111,7 @@ TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
 
 TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
-  mapper.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({}));
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_FALSE(mapper.submaps().is_registered()) << "nobody knows yet where it lies";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const Pose offline_from_online{rotation_exp({0.0, 0.0, 0.4}), {1.0, 2.0, 0.0}};
@@ -139,12 +139,41 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
   std::size_t frame = 0;
   Mapper::Beginning begun;
   while (begun.keyframes.empty() && frame < mission.frames.size()) {
-    begun = mapper.begin(mission.frames[frame++], rig, Pose{}, AnchoredTrajectory({}));
+    begun = mapper.begin(mission.frames[frame++], rig, {}, AnchoredTrajectory({}));
   }
   ASSERT_EQ(begun.keyframes.size(), 2u);
   EXPECT_EQ(mapper.newest_keyframe(), begun.keyframes[1]);
   EXPECT_EQ(mapper.pending(), 1) << "its points wait for mapping";
   EXPECT_FALSE(mapper.can_begin(rig));
+}
+
+// Told how it moved, one camera begins where that has led, in the lengths that are told.
+TEST(MapperOfOneCamera, BeginsWhereItIsToldToBe) {
+  Rig rig = simulated_rig();
+  rig.baseline = 0.0;
+  SimulationOptions options;
+  options.landmarks = 8000;
+  options.noise_seed = 2;
+  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(60, 10.0, 2.0, 0.5), options);
+  const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};
+  Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
+  std::size_t frame = 0;
+  Mapper::Beginning begun;
+  Pose told;
+  while (begun.keyframes.empty() && frame < mission.frames.size()) {
+    told = inverse(world_from_truth * mission.truth[frame].world_from_body);
+    begun = mapper.begin(mission.frames[frame++], rig, told, AnchoredTrajectory({}));
+  }
+  ASSERT_EQ(begun.keyframes.size(), 2u);
+  const Map& map = mapper.online();
+  EXPECT_THAT(map.camera_from_world(begun.keyframes[1]), PoseNear(told, 1e-9, 1e-9));
+  const Timestamp first_time = map.find_keyframe(begun.keyframes[0])->frame.time;
+  const auto first = std::ranges::find(mission.truth, first_time, &StampedPose::time);
+  const double way = (first->world_from_body.translation - mission.truth[frame - 1].world_from_body.translation).norm();
+  const Pose seen = map.camera_from_world(begun.keyframes[0]) * inverse(map.camera_from_world(begun.keyframes[1]));
+  EXPECT_NEAR(seen.translation.norm(), way, 1e-9);
+  const auto faults = find_faults(map);
+  EXPECT_TRUE(faults.empty()) << faults.front();
 }
 
 }  // namespace

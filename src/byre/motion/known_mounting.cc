@@ -150,6 +150,20 @@ KnownMounting scaled(KnownMounting mounting, double factor) {
   return mounting;
 }
 
+KnownMounting moved(KnownMounting mounting, const Pose& before_from_after) {
+  if (mounting.wheels) {
+    Pose arm = before_from_after;
+    arm.translation *= mounting.wheels->metres_per_unit;
+    mounting.wheels->base_from_body = mounting.wheels->base_from_body * arm;
+    mounting.wheels->base_from_body.translation.z() = 0.0;
+  }
+  if (mounting.gyroscope) {
+    Eigen::Quaterniond& turned = mounting.gyroscope->body_from_gyroscope;
+    turned = before_from_after.rotation.conjugate() * turned;
+  }
+  return mounting;
+}
+
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found) {
   constexpr double kMostTilt = 0.06;         // radians between the axes
   constexpr double kMostSquaredSigmas = 18;  // sum over four numbers: one in 800 is beyond

@@ -29,6 +29,9 @@ KnownMounting mounting_in(const std::map<std::string, std::string>& notes);
 // The same for a map whose lengths are so many times as long.
 KnownMounting scaled(KnownMounting mounting, double factor);
 
+// The same for another place on the body, from which it lies so. How high that is above the base stays unknown.
+KnownMounting moved(KnownMounting mounting, const Pose& before_from_after);
+
 // Whether motions tell a mounting that is not the one that was known: they differ by more than both leave open, and
 // than a drive changes.
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found);

@@ -105,5 +105,21 @@ TEST(KnownMounting, IsContradictedByAnotherOneOnly) {
   EXPECT_TRUE(is_contradicted(known, found_on(tilted)));
 }
 
+TEST(KnownMounting, IsThatOfAnotherPlaceOnTheBodyWhereItIsMovedThere) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.5, .noise = 0.001};
+  const KnownMounting before = known_from_a_drive(drive);
+  const Pose before_from_after{rotation_exp({0.0, 0.3, 0.0}), {0.2, 0.0, 0.4}};  // in the map's lengths
+  const KnownMounting after = moved(before, before_from_after);
+  const Pose base{rotation_exp({0.0, 0.0, 0.7}), {0.5, 0.1, 0.0}};
+  const Pose motion_before = body_motion(*before.wheels, base), motion_after = body_motion(*after.wheels, base);
+  const Pose expected = inverse(before_from_after) * motion_before * before_from_after;
+  EXPECT_LT((motion_after.translation - expected.translation).norm(), 0.01);
+  EXPECT_LT(angle_between(motion_after.rotation, expected.rotation), 1e-9);
+  EXPECT_EQ(after.wheels->base_from_body.translation.z(), 0.0);
+  const Eigen::Vector3d rate(0.1, 0.2, 0.3);  // about the gyroscope's axes
+  const Eigen::Vector3d in_before = before.gyroscope->body_from_gyroscope * rate;
+  EXPECT_TRUE((before_from_after.rotation * (after.gyroscope->body_from_gyroscope * rate)).isApprox(in_before, 1e-9));
+}
+
 }  // namespace
 }  // namespace byre

@@ -95,6 +95,7 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
     return;
   }
   const StampedPose now{time, *odometry_from_body};
+  tells_before_sight_ = false;
   if (last_ && time - last_->time <= kMaxFrameGap) {
     velocity_ = log_pose(inverse(last_->world_from_body) * now.world_from_body) / to_seconds(time - last_->time);
   } else {
@@ -177,6 +178,11 @@ void MotionPrior::look_again(const Trajectory& seen) {
   if (const auto found = find_wheel_mounting(pairs, known_.wheels)) mounting_ = found;
 }
 
+void MotionPrior::stretch(double factor) {
+  mounting_ = scaled({mounting_, {}, 0.0}, factor).wheels;
+  known_ = scaled(known_, factor);
+}
+
 // Motions that tell the mounting by themselves are asked whether it is the known one.
 void MotionPrior::look_for_wheel_mounting() {
   constexpr int kLooks = 3;  // in a row that contradict it
@@ -200,7 +206,8 @@ void MotionPrior::presume_mounting() {
 
 const WheelMounting* MotionPrior::used_mounting() const {
   if (mounting_) return &*mounting_;
-  return presumed_ ? &*presumed_ : nullptr;
+  if (presumed_) return &*presumed_;
+  return tells_before_sight_ && before_sight_ ? &*before_sight_ : nullptr;
 }
 
 // One that all motions contradict from the start is another mounting. Wheels that slip do not do so for as long.

@@ -27,12 +27,18 @@ class MotionPrior {
   void begin_with(const KnownMounting& known);
   // Which axis of the body points up, about: by that the mounting is guessed from the first motions, until they tell
   // it. Without it nothing is told before. Call it before anything is told.
-  void presume_upright(const Eigen::Vector3d& up_in_body) { up_in_body_ = up_in_body; }
+  // ahead_in_body: about, the axis that looks to where the body drives.
+  void presume_upright(const Eigen::Vector3d& up_in_body, const Eigen::Vector3d& ahead_in_body) {
+    up_in_body_ = up_in_body;
+    before_sight_ = presume_looking_ahead(up_in_body, ahead_in_body);
+  }
   // A map is made: ways of up to half an hour ago will be asked for, not two minutes, and in the end poses of frames
-  // that were not seen are made anew by what is known then.
+  // that were not seen are made anew by what is known then. Before anything is seen wheels tell, too, as though the
+  // body looked to where it drives: how far it went, but hardly which way.
   void serve_mapping() {
     samples_kept_ = kMostKept;
     old_poses_ = UnseenWay::OldPoses::made_anew;
+    tells_before_sight_ = true;
   }
 
   void add(const StampedPose& wheels);
@@ -57,6 +63,9 @@ class MotionPrior {
   // After the last frame: the mounting that was known by what was seen as the map has it in the end. Poses of frames
   // that were not seen tell nothing: they are those that wheels told.
   void look_again(const Trajectory& seen);
+
+  // After that: the lengths of the map, and of what is told from here on, are so many times as long.
+  void stretch(double factor);
 
   // The final poses of frames that were seen, with those of frames that wheels lead to from them.
   Trajectory completed(Trajectory seen) const;
@@ -111,7 +120,9 @@ class MotionPrior {
   int looks_ = 0;                     // looks by which the mounting of wheels was known
   std::optional<WheelMounting> mounting_;
   std::optional<Eigen::Vector3d> up_in_body_;
-  std::optional<WheelMounting> presumed_;  // while mounting_ is not known
+  std::optional<WheelMounting> presumed_;      // while mounting_ is not known
+  std::optional<WheelMounting> before_sight_;  // until anything is seen
+  bool tells_before_sight_ = false;
   std::optional<GyroscopeMounting> gyroscope_;
   std::optional<double> time_offset_;
   bool is_slipping_ = false;

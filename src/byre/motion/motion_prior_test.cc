@@ -274,7 +274,7 @@ TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const auto last_told = [&](double dark, bool is_upright) {
     MotionPrior prior;
-    if (is_upright) prior.presume_upright(-Eigen::Vector3d::UnitY());
+    if (is_upright) prior.presume_upright(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
     std::mt19937 random(5);
     for (int i = 0; i <= 60; ++i) {
       const double t = 0.05 * i;
@@ -293,6 +293,41 @@ TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.1);  // metres, of 0.75
   EXPECT_LT(error.tail<3>().norm(), 0.1);
   EXPECT_LT(error.transpose() * told->covariance.ldlt().solve(error), 12.6);  // within 95 %
+}
+
+// A map is to begin, and nothing was seen yet: the length of the way is known, but hardly which way it goes.
+TEST(MotionPrior, TellsHowFarItWentBeforeAnythingIsSeenWhereAMapIsMade) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  for (const bool makes_map : {true, false}) {
+    MotionPrior prior;
+    if (makes_map) prior.serve_mapping();
+    prior.presume_upright(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+    for (int i = 0; i <= 40; ++i) {
+      prior.add(drive.wheels(0.05 * i));
+      prior.note(from_seconds(0.05 * i), {});
+    }
+    const auto told = prior.between(from_seconds(0.5), from_seconds(1.5));
+    ASSERT_EQ(told.has_value(), makes_map);
+    if (!told) continue;
+    const Pose truth = true_motion(drive, 0.5, 1.5);
+    EXPECT_NEAR(told->last_from_body.translation.norm(), truth.translation.norm(), 0.1);
+    EXPECT_GT(told->covariance(0, 0), 0.2 * truth.translation.squaredNorm());
+    EXPECT_LT(angle_between(told->last_from_body.rotation, truth.rotation), 0.05);
+    std::mt19937 random(5);
+    prior.note(from_seconds(2.05), drive.seen(2.05, random));
+    EXPECT_FALSE(prior.between(from_seconds(0.5), from_seconds(1.5))) << "from here on what is seen tells the mounting";
+  }
+}
+
+TEST(MotionPrior, TellsInTheLengthsOfAMapThatWasStretched) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 2.0, .noise = 0.001};
+  MotionPrior prior = followed(drive, {}, 40.0, 50.0);
+  const auto before = prior.between(from_seconds(45.0), from_seconds(46.0));
+  prior.stretch(2.0);
+  const auto after = prior.between(from_seconds(45.0), from_seconds(46.0));
+  ASSERT_TRUE(before && after);
+  EXPECT_NEAR(after->last_from_body.translation.norm(), 2.0 * before->last_from_body.translation.norm(), 1e-9);
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 1.0, 0.02);
 }
 
 TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {

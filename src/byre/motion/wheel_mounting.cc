@@ -278,6 +278,24 @@ std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair
   return mounting;
 }
 
+std::optional<WheelMounting> presume_looking_ahead(const Eigen::Vector3d& up_in_body,
+                                                   const Eigen::Vector3d& ahead_in_body) {
+  constexpr double kArm = 0.3;         // metres, standard deviation
+  constexpr double kLeastLevel = 0.5;  // sine of the angle between the two axes
+  constexpr double kTurnError = 0.3;   // share of turns, as the body may be tilted
+  const Eigen::Vector3d up = up_in_body.normalized();
+  const Eigen::Vector3d level = ahead_in_body.normalized() - up * up.dot(ahead_in_body.normalized());
+  if (level.norm() < kLeastLevel) return {};
+  Eigen::Matrix3d base_from_body;
+  base_from_body << level.normalized().transpose(), up.cross(level.normalized()).transpose(), up.transpose();
+  WheelMounting mounting;
+  mounting.base_from_body.rotation = Eigen::Quaterniond(base_from_body);
+  mounting.way_error = 1.0;
+  mounting.turn_error = kTurnError;
+  mounting.covariance.bottomRightCorner<2, 2>().diagonal().setConstant(kArm * kArm);
+  return mounting;
+}
+
 Pose without_turn_errors(const TurnErrors& errors, const Pose& base) {
   const double extra = (errors.scale - 1.0) * yaw_of(base) + errors.per_metre * base.translation.x();
   const Eigen::Quaterniond half = rotation_exp({0.0, 0.0, 0.5 * extra});

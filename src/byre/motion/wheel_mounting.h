@@ -56,6 +56,12 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
                                                     const Eigen::Vector3d& up_in_body);
 
+// A guess before anything is seen: the body is upright, looks to where the base drives, and stands above its middle;
+// lengths are metres. Axes in the body, about. Empty where it looks up or down. Its errors say that the body may look
+// elsewhere, so that no more than the length of the way is told.
+std::optional<WheelMounting> presume_looking_ahead(const Eigen::Vector3d& up_in_body,
+                                                   const Eigen::Vector3d& ahead_in_body);
+
 // The body's motion, in the map's lengths, by that of the base as it was.
 Pose body_motion(const WheelMounting& mounting, const Pose& base);
 

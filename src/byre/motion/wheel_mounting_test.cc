@@ -92,6 +92,16 @@ TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
   EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.1);
 }
 
+TEST(WheelMounting, IsPresumedToLookAheadBeforeAnythingIsSeen) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  const auto mounting = presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  ASSERT_TRUE(mounting);
+  EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.15);
+  EXPECT_EQ(mounting->way_error, 1.0) << "it may as well look aside";
+  EXPECT_FALSE(presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.0, -1.0, 0.1)))
+      << "a camera that looks up tells nothing of what is ahead";
+}
+
 TEST(WheelMounting, IsNotPresumedByTurningOnTheSpot) {
   const Drive drive{.base_from_body = camera_on_base()};
   std::vector<MotionPair> pairs = pairs_of(drive, 3.0);

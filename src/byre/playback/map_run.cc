@@ -69,6 +69,7 @@ void take_over_result(Engine& engine, MapRun& run) {
   run.final = engine.prior().completed(seen);
   run.calibration = engine.calibration();
   run.told = told_motion(engine.prior());
+  run.is_metric = engine.is_metric();
   run.map = engine.take_kept_map();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
   run.told.led_afterwards = static_cast<int>(run.final.size() - seen.size());
@@ -105,7 +106,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     note_jobs(engine, run);
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
     if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
-    is_begun = is_begun || has_pose(run.frames.back());
+    is_begun = is_begun || (has_pose(run.frames.back()) && engine.online().keyframe_count() > 0);
     if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.kept_with_map());
   }
   const std::size_t noted_jobs = engine.log().job_seconds.size();

@@ -44,6 +44,7 @@ struct MapRun {
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;
+  bool is_metric = true;              // lengths of the map and of final poses are metres
   std::vector<std::string> warnings;  // warnings of the recording
   std::vector<double> lateness;       // seconds by which late frames were fed too late, in a live run
   double wall_seconds = 0.0;          // wall time of the whole run

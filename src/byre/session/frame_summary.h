@@ -30,7 +30,9 @@ struct FrameSummary {
   bool is_registered() const { return mapper.submaps().is_registered(); }
   // The pose goes on by what is told, from one in the map.
   bool is_bridged_in_map() const {
-    return whereabouts.bridge() && mapper.submaps().frame(whereabouts.trajectory().back().submap) == Submaps::kMapFrame;
+    if (!whereabouts.bridge()) return false;
+    const AnchoredTrajectory& trajectory = whereabouts.trajectory();
+    return trajectory.empty() || mapper.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
   }
 };
 

@@ -1,5 +1,6 @@
 #include "byre/session/session.h"
 
+#include "byre/slam/body_pose.h"
 #include "byre/workers/stopwatch.h"
 
 #include <cassert>
@@ -243,10 +244,13 @@ bool Session::may_begin_submap(const InputFrame& input) const {
 
 Session::Located Session::begin_submap(const Frame& frame) {
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  const Pose camera_from_last =
-      trajectory.empty() ? Pose{}
-                         : whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
-  const Mapper::Beginning begun = mapper_.begin(frame, rig_, camera_from_last, trajectory);
+  std::optional<Pose> from_world;  // of the camera
+  if (!trajectory.empty()) {
+    from_world = whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
+  } else if (const auto told = whereabouts_.told_beginning()) {
+    from_world = camera_pose(rig_, *told);
+  }
+  const Mapper::Beginning begun = mapper_.begin(frame, rig_, from_world, trajectory);
   if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
   whereabouts_.begin(begun.keyframes, mapper_.submaps().present(), rig_, mapper_.online());
   tracker_.restart_from(begun.keyframes.back());

@@ -92,6 +92,9 @@ class Session {
   FinishReport finish_map(const FinishHooks& hooks);
   Map take_online() { return mapper_.take_online(); }  // see Mapper
 
+  // All lengths so many times as long. Call it after finish_map().
+  void stretch(double factor) { whereabouts_.follow(mapper_.stretch(factor)); }
+
   // Adjusts all that was mapped beside the offline map at once, around that. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 

@@ -202,5 +202,71 @@ TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
   EXPECT_LT(error->translation.rmse, 0.05);
 }
 
+// One camera begins its map after a second or so; wheels have told the way since the first frame.
+TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
+  Rig rig = simulated_rig();
+  rig.baseline = 0.0;
+  SimulationOptions visit;
+  visit.landmarks = 8000;
+  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(60, 10.0, 2.0, 0.5), visit);
+  for (const bool is_told : {true, false}) {
+    Session session(rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+    std::vector<FrameReport> reports;
+    for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+      std::optional<BodyMotion> motion;
+      if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+      reports.push_back(session.process(mission.frames[i], motion));
+    }
+    const auto begun = std::ranges::find_if(reports, [](const auto& r) { return r.has(SessionEvent::initialised); });
+    ASSERT_NE(begun, reports.end());
+    ASSERT_GT(begun - reports.begin(), 3);
+    for (std::size_t i = 1; i < reports.size(); ++i) {
+      const bool is_before = i < static_cast<std::size_t>(begun - reports.begin());
+      EXPECT_EQ(reports[i].map_from_body.has_value(), is_told || !is_before) << i;
+      EXPECT_EQ(reports[i].health.doubt == Doubt::bridged, is_told && is_before) << i;
+      EXPECT_EQ(reports[i].state == State::initialising, is_before) << i;
+      if (!is_told) continue;
+      EXPECT_LT(error_of(reports[i], mission, i), 0.05) << i << ", in metres from the first frame on";
+    }
+  }
+}
+
+// Once it is not told for a moment, nobody knows where the body is from where it began.
+TEST(ToldMotion, LeadsNobodyOnWhoWasNotToldOnce) {
+  const SimulatedMission mission = lap();
+  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  constexpr std::size_t kUntold = 5, kSeen = 8;
+  for (std::size_t i = 0; i <= kSeen; ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0 && i != kUntold) {
+      motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    }
+    const bool is_dark = i < kSeen;
+    const FrameReport report =
+        session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+    EXPECT_EQ(report.map_from_body.has_value(), (i > 0 && i < kUntold) || i == kSeen) << i;
+    if (!is_dark) {
+      EXPECT_LT(report.map_from_body->translation.norm(), 1e-9) << "the map begins where it is";
+    }
+  }
+}
+
+TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
+  const SimulatedMission mission = lap();
+  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  constexpr std::size_t kSeen = 8;
+  for (std::size_t i = 0; i < kSeen + 5; ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    const bool is_dark = i < kSeen;
+    const FrameReport report =
+        session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
+    ASSERT_EQ(report.map_from_body.has_value(), i > 0) << i;
+    if (i == 0) continue;
+    EXPECT_LT(error_of(report, mission, i), 0.02) << i;
+    EXPECT_TRUE(is_dark || report.health.position_sigma < 0.05) << "the map's frame is where it began";
+  }
+}
+
 }  // namespace
 }  // namespace byre

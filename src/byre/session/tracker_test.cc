@@ -15,7 +15,7 @@ class TrackerOnAMap : public ::testing::Test {
   Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), nullptr}};
   Tracker tracker_{{}};
 
-  void SetUp() override { mapper_.begin(mission_.frames[0], mission_.rig, Pose{}, AnchoredTrajectory({})); }
+  void SetUp() override { mapper_.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({})); }
 
   Tracker::Scene scene() const { return {mission_.rig, mapper_}; }
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame

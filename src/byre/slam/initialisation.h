@@ -41,6 +41,11 @@ class MonocularInitialiser {
   // Frames in the order of time. After a start the next frame is a new reference.
   MonocularAttempt try_start(const Frame& frame);
 
+  // The time of the frame that those which come are matched with; empty before the first.
+  std::optional<Timestamp> reference_time() const {
+    return reference_ ? std::optional(reference_->time) : std::nullopt;
+  }
+
  private:
   void begin_with(const Frame& frame);
   std::vector<Match> match_with_reference(const Features& features) const;

@@ -33,6 +33,22 @@ std::optional<Placement> placement_of(const MonocularStart& start, const StartPl
   return Placement{inverse(told.first_camera_from_world) * scale_lengths(first_from_start, scale), scale};
 }
 
+double way_of(const Pose& first_from_world, const Pose& second_from_world) {
+  return (first_from_world * inverse(second_from_world)).translation.norm();
+}
+
+// By how much the start is to be stretched; empty where what is told leaves it open.
+std::optional<double> told_scale(const MonocularStart& start, const StartPlaces& told) {
+  constexpr double kLeastWay = 0.05;   // metres
+  constexpr double kUsualArm = 0.3;    // metres
+  constexpr double kMostByArm = 0.25;  // share of the way
+  const Pose &first = told.first_camera_from_world, &second = told.second_camera_from_world;
+  const double way = way_of(first, second), turn = angle_between(first.rotation, second.rotation);
+  const double seen = way_of(start.map.camera_from_world(start.first), start.map.camera_from_world(start.second));
+  if (way < kLeastWay || kUsualArm * turn > kMostByArm * way || !(seen > 0.0)) return {};
+  return way / seen;
+}
+
 KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
                         const std::optional<KeyframeId>& parent, int recording, Map& map) {
   Keyframe keyframe = *start.map.find_keyframe(id);
@@ -58,17 +74,14 @@ MapPoint moved(const MapPoint& point, const Placement& placement) {
   return result;
 }
 
-}  // namespace
-
-std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlaces& told,
-                                   const std::optional<KeyframeId>& parent, int recording, Map& map) {
-  const auto placement = placement_of(start, told);
-  if (!placement) return {};
-  const KeyframeId first = add_keyframe(start, start.first, *placement, parent, recording, map);
-  const KeyframeId second = add_keyframe(start, start.second, *placement, first, recording, map);
+// The two keyframes.
+std::vector<KeyframeId> add_start(const MonocularStart& start, const Placement& placement,
+                                  const std::optional<KeyframeId>& parent, int recording, Map& map) {
+  const KeyframeId first = add_keyframe(start, start.first, placement, parent, recording, map);
+  const KeyframeId second = add_keyframe(start, start.second, placement, first, recording, map);
   const auto renamed = [&](KeyframeId id) { return id == start.first ? first : second; };
   for (const PointId id : start.map.point_ids()) {
-    MapPoint point = moved(*start.map.find_point(id), *placement);
+    MapPoint point = moved(*start.map.find_point(id), placement);
     point.reference.keyframe = renamed(point.reference.keyframe);
     const PointId added = map.add_point(point);
     for (const Observation& seen : start.map.observations(id)) {
@@ -78,6 +91,26 @@ std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlace
     }
   }
   return {first, second};
+}
+
+}  // namespace
+
+std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlaces& told,
+                                   const std::optional<KeyframeId>& parent, int recording, Map& map) {
+  const auto placement = placement_of(start, told);
+  return placement ? add_start(start, *placement, parent, recording, map) : std::vector<KeyframeId>{};
+}
+
+MonocularStart placed(const MonocularStart& start, const StartPlaces& told) {
+  const double scale = told_scale(start, told).value_or(1.0);
+  const Pose second_from_start = scale_lengths(start.map.camera_from_world(start.second), scale);
+  MonocularStart result = start;
+  result.map = Map(Origin::online);
+  const auto keyframes = add_start(start, {inverse(told.second_camera_from_world) * second_from_start, scale}, {},
+                                   start.map.find_keyframe(start.first)->recording, result.map);
+  result.first = keyframes.front();
+  result.second = keyframes.back();
+  return result;
 }
 
 }  // namespace byre

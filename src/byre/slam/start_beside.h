@@ -20,4 +20,9 @@ struct StartPlaces {
 std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlaces& told,
                                    const std::optional<KeyframeId>& parent, int recording, Map& map);
 
+// The first map of all moved to where its second camera is told to stand, in the lengths of the way that is told. It is
+// told before it is known how wheels are mounted, so which way that went counts for nothing. Where the camera turned so
+// much that an arm by which it sits off the axle would change its way, lengths stay what they are.
+MonocularStart placed(const MonocularStart& start, const StartPlaces& told);
+
 }  // namespace byre

@@ -29,11 +29,11 @@ std::optional<RefinedCalibration> known_before(const Calibration& given, const E
   return known_calibration(options.offline->recordings(), given);
 }
 
-// The body is that of the cameras.
 KnownMounting mounting_before(const Calibration& given, const EngineOptions& options) {
   if (!options.use_known_mounting) return {};
   if (!options.offline) return options.mounting;
-  return is_by_cameras_of(options.offline->recordings(), given) ? options.offline->mounting() : KnownMounting{};
+  const auto body = known_body_from_body(options.offline->recordings(), given);
+  return body ? moved(options.offline->mounting(), *body) : KnownMounting{};
 }
 
 // Other cameras than those of the map may sit at another height, and tilted.
@@ -73,11 +73,13 @@ std::string_view name_of(OfflinePolicy policy) {
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
     : known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
+      is_metric_(given.tells_metres() || options.offline || before),
       budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
       session_(extractor_.rig(), session_options(given, options),
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
   prior_.begin_with(mounting_before(given, options));
-  prior_.presume_upright(given.body_from_left.rotation * -Eigen::Vector3d::UnitY());
+  const Eigen::Quaterniond& body_from_left = given.body_from_left.rotation;
+  prior_.presume_upright(body_from_left * -Eigen::Vector3d::UnitY(), body_from_left * Eigen::Vector3d::UnitZ());
   if (!options.offline) prior_.serve_mapping();
   session_.hear([this](Timestamp earlier, Timestamp later) { return prior_.way_between(earlier, later); },
                 [this, is_metric = given.tells_metres()](Timestamp earlier, Timestamp later) {
@@ -137,9 +139,21 @@ Finishing Engine::finish_map(const FinishHooks& hooks) {
   Finishing finishing;
   finishing.report = session_.finish_map(hooks);
   prior_.look_again(session_.final_trajectory());
+  if (!is_metric_) measure_by_wheels();
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   return finishing;
+}
+
+// Where motions leave open how long the unit is, it stays the map's own.
+void Engine::measure_by_wheels() {
+  constexpr double kMaxSigma = 0.02;  // share
+  const auto& wheels = prior_.wheels();
+  if (!wheels || wheels->scale_sigma > kMaxSigma) return;
+  const double factor = wheels->metres_per_unit;
+  session_.stretch(factor);
+  prior_.stretch(factor);
+  is_metric_ = true;
 }
 
 double Engine::finish_mission(const FinishHooks& hooks) {

@@ -111,6 +111,8 @@ class Engine {
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
   KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep()}; }
+  // Whether lengths are metres. What one camera maps has them once it is finished, where wheels have told them.
+  bool is_metric() const { return is_metric_; }
   // What is kept of the map by now.
   Map kept_map() const;
   // The same at last: the session has none after that, so that no map is there twice.
@@ -118,6 +120,7 @@ class Engine {
 
  private:
   void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);
+  void measure_by_wheels();
   // The frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
@@ -125,6 +128,7 @@ class Engine {
   std::optional<RefinedCalibration> known_;  // before any frame
   Extractor extractor_;
   MotionPrior prior_;
+  bool is_metric_;
   std::optional<Timestamp> last_frame_;
   FrameBudget budget_;
   Session session_;

@@ -157,6 +157,7 @@ FrameReport Slam::Parts::dropped(Timestamp time) const {
 StoredMap Slam::Parts::kept() const {
   StoredMap stored = about;
   stored.map = engine.kept_map();
+  stored.scale = engine.is_metric() ? MapScale::metric : MapScale::unknown;
   stored.recordings.push_back(
       {options.recording, given, first_time.value_or(Timestamp{}), last_time, engine.calibration()});
   note_mounting(engine.prior().to_keep(), stored.notes);
@@ -287,7 +288,7 @@ Calibration Slam::calibration() const {
 }
 
 bool Slam::is_metric() const {
-  return parts_->about.scale == MapScale::metric;
+  return parts_->engine.is_metric();
 }
 
 int Slam::keyframes() const {

@@ -143,7 +143,8 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   const ResourceUse resources = resources_used_so_far();
   input.note_times(run, record.about.recordings.back());
   input.note_frames(run, protocol);
-  if (run.causal.empty()) options.map.reset();  // there is nothing to keep
+  record.about.scale = run.is_metric ? MapScale::metric : MapScale::unknown;
+  if (run.final.empty()) options.map.reset();  // there is nothing to keep
   OutputWriter outputs;
   outputs.attempt([&] {
     if (options.map) save(run.map, {run.calibration, run.told.to_keep}, record);
