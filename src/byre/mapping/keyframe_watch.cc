@@ -27,6 +27,7 @@ void KeyframeWatch::note_track(KeyframeId reference, int inliers) {
 void KeyframeWatch::restart() {
   frames_since_keyframe_ = 0;
   reference_.reset();
+  is_to_join_ = false;
 }
 
 KeyframeEvidence KeyframeWatch::evidence(const HybridTrack& track, const MapView& map, int pending) const {
@@ -44,6 +45,8 @@ KeyframeEvidence KeyframeWatch::evidence(const HybridTrack& track, const MapView
 
 bool KeyframeWatch::asks_for_keyframe(const HybridTrack& track, const KeyframeEvidence& evidence, const FrameCuts& cuts,
                                       const KeyframeOptions& options) {
+  constexpr std::size_t kEnoughToJoin = 50;  // points
+  if (is_to_join_ && track.tracked.features.size() >= kEnoughToJoin) return true;
   KeyframeEvidence judged = evidence;
   if (cuts.online_points) {
     judged.fresh_inliers = 0;

@@ -15,6 +15,9 @@ class KeyframeWatch {
   void note_frame(const Frame& frame, const Rig& rig);
   // The frame was tracked on so many points, with this reference keyframe.
   void note_track(KeyframeId reference, int inliers);
+  // The frame was found again, and it was told how the body has moved since it was lost: a keyframe is to join what was
+  // mapped before to that place by the way that was told.
+  void note_found() { is_to_join_ = true; }
   // A keyframe was made.
   void restart();
 
@@ -34,6 +37,7 @@ class KeyframeWatch {
   std::optional<KeyframeId> reference_;  // reference of the last frame tracked
   int fresh_inliers_ = 0;                // in the first frame tracked with that reference
   bool is_short_ = false;
+  bool is_to_join_ = false;
 };
 
 }  // namespace byre

@@ -102,6 +102,18 @@ TEST(KeyframeOfACutFrame, WaitsForDepthsWhereTheyWereMissing) {
   EXPECT_TRUE(watch.is_short());
 }
 
+// Without one, nothing would join what was mapped before the dark to the old place.
+TEST(KeyframeOfAFoundFrame, IsMadeWhereTheWayThereWasTold) {
+  KeyframeEvidence nothing_new = after_a_turn();
+  nothing_new.turn = 0.0;
+  KeyframeWatch watch;
+  EXPECT_FALSE(watch.asks_for_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
+  watch.note_found();
+  EXPECT_TRUE(watch.asks_for_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
+  watch.restart();
+  EXPECT_FALSE(watch.asks_for_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
+}
+
 TEST(KeyframeOfACutFrame, IsNotAskedForByFewPointsWhereFewWereLookedFor) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();

@@ -244,13 +244,13 @@ bool Session::may_begin_submap(const InputFrame& input) const {
 
 Session::Located Session::begin_submap(const Frame& frame) {
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
-  std::optional<Pose> from_world;  // of the camera
+  std::optional<Pose> predicted;  // camera_from_world
   if (!trajectory.empty()) {
-    from_world = whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
+    predicted = whereabouts_.motion().predict(camera_from_world(map(), trajectory.back()), rig_, 0.0);
   } else if (const auto told = whereabouts_.told_beginning()) {
-    from_world = camera_pose(rig_, *told);
+    predicted = camera_pose(rig_, *told);
   }
-  const Mapper::Beginning begun = mapper_.begin(frame, rig_, from_world, trajectory);
+  const Mapper::Beginning begun = mapper_.begin(frame, rig_, predicted, trajectory);
   if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
   whereabouts_.begin(begun.keyframes, mapper_.submaps().present(), rig_, mapper_.online());
   tracker_.restart_from(begun.keyframes.back());
@@ -261,6 +261,7 @@ Session::Located Session::begin_submap(const Frame& frame) {
 
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
   const HybridTrack& track = *located.track;
+  if (located.from_nothing && !mission_ && whereabouts_.motion().told()) keyframe_watch_.note_found();
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
                          located.is_by_hint},

@@ -26,11 +26,14 @@ bool contradicts(const BodyMotion& told, const Pose& seen) {
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
 }
 
-// Whether what is seen tells nothing of the way between them.
+// Whether what is seen tells nothing of the way between them. A few points tell nothing: where a frame is found again
+// in an old place, and that place lies elsewhere than drift has led, these are what was triangulated across the gap.
 bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
   constexpr int kEvery = std::numeric_limits<int>::max();
-  return std::ranges::none_of(online.covisible_keyframes(later, kEvery),
-                              [&](const Covisible& other) { return other.keyframe == earlier; });
+  constexpr int kFew = 30;
+  return std::ranges::none_of(online.covisible_keyframes(later, kEvery), [&](const Covisible& other) {
+    return other.keyframe == earlier && other.shared_points >= kFew;
+  });
 }
 
 Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {

@@ -22,7 +22,7 @@ struct KeyframeMotion {
   KeyframeId earlier;
   KeyframeId later;
   BodyMotion motion;
-  bool is_unseen = false;  // the two share no points, so that nothing else tells of the way between them
+  bool is_unseen = false;  // the two share hardly any points, so that nothing else tells of the way between them
 };
 
 // What is told of the ways between these keyframes, of those that one recording brought: from each to the next. A

@@ -70,6 +70,24 @@ TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
   EXPECT_THAT(told_motions(pair, {pair.keyframe_ids().front(), pair.keyframe_ids().back()}, 0, told()), SizeIs(1));
 }
 
+// A few points that two keyframes share may have been triangulated across a gap, and contradict nobody.
+TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
+  const KeyframeId earlier = map_.keyframe_ids()[3], later = map_.keyframe_ids()[4];
+  const auto seen_by = [&](const Observation& seen, KeyframeId id) { return seen.keyframe == id; };
+  int shared = 0;
+  for (const PointId point : map_.point_ids()) {
+    const std::vector<Observation> observations = map_.observations(point);
+    const auto of_later = std::ranges::find_if(observations, [&](const auto& seen) { return seen_by(seen, later); });
+    const bool is_shared = of_later != observations.end() &&
+                           std::ranges::any_of(observations, [&](const auto& seen) { return seen_by(seen, earlier); });
+    if (is_shared && ++shared > 20) map_.remove_observation(*of_later);
+  }
+  ASSERT_GT(shared, 60);
+  const auto motions = told_motions(map_, {earlier, later}, 0, told(3.0));
+  ASSERT_THAT(motions, SizeIs(1));
+  EXPECT_TRUE(motions.front().is_unseen);
+}
+
 TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
   const Map map = true_map(mission_, 1, Origin::online);
   const auto motions = in_lengths_of(map, told_motions(map, map.keyframe_ids(), 0, told(1.03)));
