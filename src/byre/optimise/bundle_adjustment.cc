@@ -22,11 +22,12 @@ BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const
                    const BundleOptions& options) {
   BundleResult result = unmoved(problem);
   if (roles.observations.empty()) return result;
-  const BundleSolution solution = solve_bundle(problem, roles, scale, options);
+  BundleSolution solution = solve_bundle(problem, roles, scale, options);
   result.iterations = solution.iterations;
   result.usable = solution.usable;
   if (!result.usable) return result;
   result.calibration_change = solution.calibration_change;
+  result.pose_covariances = std::move(solution.pose_covariances);
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (roles.pose_moves[i]) result.camera_from_world[i] = solution.camera_from_world[i];
   }

@@ -63,6 +63,8 @@ struct BundleOptions {
   int max_iterations = 10;
   double huber_width = 2.0;     // sigmas
   int covariance_of_pose = -1;  // index of the pose whose marginal covariance is wanted, or -1
+  // Indices of poses of which the same is wanted in a large problem, all at once. Precondition: observed, not fixed.
+  std::vector<int> covariances_of_poses;
   // Asked before the first and after each iteration, on the calling thread; true ends the solution there. The result is
   // usable: the best poses and points so far. May be empty.
   std::function<bool()> should_stop;
@@ -76,6 +78,7 @@ struct BundleResult {
   // Covariance of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones.
   // Empty when none was asked for, the pose did not move, or its observations do not determine it.
   std::optional<Matrix6> pose_covariance;
+  std::vector<Matrix6> pose_covariances;  // for each of those asked for; empty where they are not determined
   CalibrationVector calibration_change = CalibrationVector::Zero();  // change in the parameters' sigmas
   int iterations = 0;
   bool usable = false;  // false when the solver failed: then poses and points are as given

@@ -120,6 +120,23 @@ TEST(BundleAdjust, GivesNoCovarianceUnlessAsked) {
   EXPECT_FALSE(bundle_adjust(make_scene(8, {}).problem, {}).pose_covariance);
 }
 
+// The same whether one pose is asked for or several in a large problem.
+TEST(BundleAdjust, ReportsTheCovariancesOfSeveralPoses) {
+  const BundleScene scene =
+      make_scene(2, {.moving_poses = 5, .points = 60, .fixed_points = 10, .noise = 1.0, .start_position = 0.02});
+  BundleOptions options;
+  options.max_iterations = 30;
+  options.covariances_of_poses = {5, 3};
+  const BundleResult several = bundle_adjust(scene.problem, options);
+  ASSERT_EQ(several.pose_covariances.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    options.covariance_of_pose = options.covariances_of_poses[i];
+    const BundleResult one = bundle_adjust(scene.problem, options);
+    ASSERT_TRUE(one.pose_covariance);
+    EXPECT_TRUE(several.pose_covariances[i].isApprox(*one.pose_covariance, 1e-4));
+  }
+}
+
 // Normalised errors squared of repeated trials sum to chi-square; the bounds hold with 99.9 %.
 TEST(BundleAdjust, ReportsACovarianceThatMatchesItsErrors) {
   constexpr int kTrials = 200;

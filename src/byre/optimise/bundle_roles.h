@@ -30,6 +30,7 @@ struct BundleSolution {
   std::vector<Pose> camera_from_world;           // one per pose
   std::vector<Eigen::Vector3d> points_in_world;  // one per point
   CalibrationVector calibration_change = CalibrationVector::Zero();
+  std::vector<Matrix6> pose_covariances;  // see BundleResult
   int iterations = 0;
   bool usable = false;
 };

@@ -68,6 +68,8 @@ class SchurBundle {
   double linearise(double radius);
   // Empty where the equations have no solution.
   std::optional<Step> solve();
+  // Of delta in exp_pose(delta) * camera_from_world, for each of the poses. Empty where the equations have no solution.
+  std::vector<Matrix6> covariances(const std::vector<int>& poses);
   // The estimate after a step.
   Estimate moved(const Step& step) const;
   double cost_of(const Estimate& estimate) const;
@@ -352,6 +354,27 @@ std::optional<Step> SchurBundle::solve() {
   return step;
 }
 
+std::vector<Matrix6> SchurBundle::covariances(const std::vector<int>& poses) {
+  constexpr double kUndamped = 1e16;
+  if (poses.empty()) return {};
+  linearise(kUndamped);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(6 * slot_count_, 6 * static_cast<Eigen::Index>(poses.size()));
+  const auto slot_of = [&](std::size_t i) { return slots_[static_cast<std::size_t>(poses[i])]; };
+  for (std::size_t i = 0; i < poses.size(); ++i) columns.block<6, 6>(6 * slot_of(i), 6 * i).setIdentity();
+  const auto solved = reduced_->solve_several(columns);
+  if (!solved) return {};
+  std::vector<Matrix6> covariances;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Matrix6 delta_from_step = Matrix6::Zero();  // steps are a turn about the camera, then a shift
+    delta_from_step.topLeftCorner<3, 3>() = skew(estimate_.poses[static_cast<std::size_t>(poses[i])].translation);
+    delta_from_step.topRightCorner<3, 3>().setIdentity();
+    delta_from_step.bottomLeftCorner<3, 3>().setIdentity();
+    const Matrix6 of_step = solved->block<6, 6>(6 * slot_of(i), 6 * i);
+    covariances.push_back(delta_from_step * of_step * delta_from_step.transpose());
+  }
+  return covariances;
+}
+
 // The step of a point, given those of poses and calibration. False where it has none.
 bool SchurBundle::solve_point(std::size_t index, Step& step) {
   const BundleTrack& track = tracks_[index];
@@ -482,6 +505,7 @@ BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& rol
   solution.points_in_world = bundle.estimate().points;
   solution.calibration_change = bundle.estimate().calibration;
   solution.usable = progress != Progress::failed;
+  if (solution.usable) solution.pose_covariances = bundle.covariances(options.covariances_of_poses);
   return solution;
 }
 

@@ -175,15 +175,23 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlie
   return carried;
 }
 
-std::vector<MovedKeyframe> carried_keyframes(const WorldMotion& motion, const Map& map) {
+// Where lengths may grow, those that the correction moved have the covariance that it found.
+std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool may_grow, const WorldMotion& motion,
+                                             const Map& map) {
+  std::map<KeyframeId, const Matrix6*> found;
+  for (const MovedKeyframe& moved : correction.moved_keyframes) {
+    if (may_grow) found[moved.id] = &moved.covariance;
+  }
   std::vector<MovedKeyframe> carried;
   for (const KeyframeId id : map.keyframe_ids()) {
     if (motion.is_left_out(id)) continue;
     const Keyframe& keyframe = *map.find_keyframe(id);
     const Similarity world_motion = motion.of(id);
+    const auto of_correction = found.find(id);
     carried.push_back({{id.number},
                        move_camera(world_motion, keyframe.camera_from_world),
-                       scale_lengths(keyframe.covariance, world_motion.scale)});
+                       of_correction != found.end() ? *of_correction->second
+                                                    : scale_lengths(keyframe.covariance, world_motion.scale)});
   }
   return carried;
 }
@@ -203,7 +211,7 @@ LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_g
   const WorldMotion motion(correction, before, may_grow, online);
   const std::vector<PlacedPoint> points = carried_points(correction, before, motion, online);
   const LengthChanges changes = length_changes(motion, online);
-  correction.moved_keyframes = carried_keyframes(motion, online);
+  correction.moved_keyframes = carried_keyframes(correction, may_grow, motion, online);
   apply(correction, online);
   for (const auto& [id, growth] : changes) online.scale_removed_keyframe(id, growth);
   for (const PlacedPoint& placed : points) {

@@ -265,6 +265,7 @@ void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const 
   mapping.first_bundle_iterations = options.first_bundle_iterations;
   mapping.second_bundle_iterations = kSecondBundleIterations;
   adjust_bundle(window, mapping, should_stop);
+  if (scale_may_drift(window)) refresh_covariances(window, mapping);
   refresh_points(window);
 }
 

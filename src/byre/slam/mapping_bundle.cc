@@ -186,6 +186,33 @@ void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::
   if (any_movable) adjust_in_two_rounds(window, options, should_stop);
 }
 
+void refresh_covariances(MapWindow& window, const MappingOptions& options) {
+  constexpr std::size_t kFound = 32;
+  WindowBundle bundle = make_bundle(window, options.offline_weight);
+  std::vector<bool> is_observed(window.keyframes.size(), false);
+  for (const WindowObservation& seen : bundle.observations) is_observed[static_cast<std::size_t>(seen.keyframe)] = true;
+  std::vector<int> movable;
+  for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
+    if (window.keyframes[i].movable && is_observed[i]) movable.push_back(static_cast<int>(i));
+  }
+  BundleOptions bundle_options;
+  bundle_options.max_iterations = 0;
+  const std::size_t found = std::min(kFound, movable.size());
+  for (std::size_t i = 0; i < found; ++i) {
+    bundle_options.covariances_of_poses.push_back(movable[(2 * i + 1) * movable.size() / (2 * found)]);
+  }
+  const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
+  if (result.pose_covariances.empty()) return;
+  for (std::size_t i = 0; i < movable.size(); ++i) {
+    const std::size_t nearest = i * found / movable.size();
+    const auto other = static_cast<std::size_t>(bundle_options.covariances_of_poses[nearest]);
+    Keyframe& keyframe = window.keyframes[static_cast<std::size_t>(movable[i])].keyframe;
+    const Pose keyframe_from_other =
+        keyframe.camera_from_world * inverse(window.keyframes[other].keyframe.camera_from_world);
+    keyframe.covariance = move_covariance(result.pose_covariances[nearest], keyframe_from_other);
+  }
+}
+
 void adjust_points(MapWindow& window, const MappingOptions& options) {
   assert(std::ranges::none_of(window.keyframes, &WindowKeyframe::movable));
   adjust_in_two_rounds(window, options, {});

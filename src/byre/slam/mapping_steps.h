@@ -42,6 +42,10 @@ void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::
 // The same for the points alone. Precondition: no keyframe is movable.
 void adjust_points(MapWindow& window, const MappingOptions& options);
 
+// Covariances of an adjusted window's movable keyframes, relative to those that are not, as all that is seen and told
+// leaves them open. They are found for some, spread over the window; the others have that of the one nearest in order.
+void refresh_covariances(MapWindow& window, const MappingOptions& options);
+
 // Position covariance, descriptor, viewing direction and distances of the window's points, from their observations.
 void refresh_points(MapWindow& window);
 
