@@ -58,7 +58,7 @@ class SchurBundle {
     make_tracks(roles);
     if (tracks_.size() <= kMostKept) kept_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
-    if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
+    if (problem.calibration) border_.emplace(problem, slot_count_);
   }
 
   const Estimate& estimate() const { return estimate_; }
@@ -208,13 +208,14 @@ void SchurBundle::linearise_track(std::size_t index) {
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   PointEquations equations;
   between_.resize(track.end - track.begin);
+  if (border_) border_->begin_point();
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const BundleTerm& term = terms_[i];
     const LinearObservation linear = linearised(term, point);
     if (track.moves) equations.add(linear);
     if (border_) {
       border_->add(linear.by_calibration, linear.weight, linear.residual);
-      if (track.moves) border_->add_point(index, linear.weight * linear.by_point.transpose(), linear.by_calibration);
+      if (track.moves) border_->add_point(linear.weight * linear.by_point.transpose(), linear.by_calibration);
     }
     if (term.slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
@@ -233,13 +234,13 @@ void SchurBundle::linearise_track(std::size_t index) {
 // Takes from the other equations what finding the point uses up.
 void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
   const BundleTrack& track = tracks_[index];
-  if (border_) border_->eliminate(index, equations.covariance, equations.gradient);
+  if (border_) border_->eliminate(equations.covariance, equations.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
     if (row < 0) continue;
     const Matrix63 gain = between_[i - track.begin] * equations.covariance;
     used_up_.segment<6>(6 * row).noalias() += gain * equations.gradient;
-    if (border_) border_->eliminate_pose(row, index, gain);
+    if (border_) border_->eliminate_pose(row, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
       if (column < 0 || column > row) continue;
@@ -360,10 +361,12 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
   PointEquations equations;
   if (is_kept) equations = kept_[index];
   between_.resize(track.end - track.begin);
+  if (border_) border_->begin_point();
   for (std::size_t i = track.begin; i < track.end; ++i) {
-    if (is_kept && terms_[i].slot < 0) continue;
+    if (is_kept && terms_[i].slot < 0 && !border_) continue;
     const LinearObservation linear = linearised(terms_[i], point);
     if (!is_kept) equations.add(linear);
+    if (border_) border_->add_point(linear.weight * linear.by_point.transpose(), linear.by_calibration);
     if (terms_[i].slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
     between_[i - track.begin].noalias() = weighted * linear.by_point;
@@ -374,7 +377,7 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
     const int slot = terms_[i].slot;
     if (slot >= 0) pull.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
   }
-  if (border_) pull -= border_->pull_on(index, step.calibration);
+  if (border_) pull -= border_->pull_on_point(step.calibration);
   const Eigen::Vector3d move = equations.covariance * pull;
   if (!move.allFinite()) return false;
   step.points.push_back(move);
