@@ -183,9 +183,8 @@ void Session::take_turn(const RigTurn& turn) {
 }
 
 InputFrame Session::input_of(const Frame& rectified) {
-  Frame frame = rectified;
-  if (mapper_.calibrator()) frame = mapper_.calibrator()->corrected(rectified);
-  if (mission_ && mission_->calibrator()) frame = mission_->calibrator()->corrected(rectified);
+  Frame frame = mapper_.corrected(rectified);
+  if (mission_) frame = mission_->corrected(frame);
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
   const InputEvidence evidence = input_watch_.look_at(frame, rig_);
