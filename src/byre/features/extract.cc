@@ -6,11 +6,11 @@
 #include "byre/features/gaussian_blur.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
-#include "byre/features/shared_pool.h"
 #include "byre/features/stereo.h"
 #include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
+#include "byre/workers/shared_pool.h"
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ struct Extractor::State {
   std::array<cv::Mat, kOctaves> blurred;
   std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
-  std::vector<Keypoint> keypoints;  // of all octaves, the finest first, as the next
+  std::vector<Keypoint> keypoints;  // all octaves, the finest first; memory, as what follows
   std::vector<Descriptor> descriptors;
   SharedPool<std::vector<Patch>> patches_of_frames;
   SharedPool<Features> features_of_frames;
@@ -228,7 +228,7 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// Features of all octaves. Returns their patches.
+// All octaves, one after the other. Returns the patches.
 std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
   threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "byre/features.h"
-#include "byre/features/shared_pool.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/workers/executor.h"
+#include "byre/workers/shared_pool.h"
 
 #include <memory>
 #include <optional>

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "byre/features/rolling_shutter.h"
-#include "byre/features/shared_pool.h"
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 #include "byre/slam/readout_estimate.h"
+#include "byre/workers/shared_pool.h"
 
 #include <map>
 #include <optional>

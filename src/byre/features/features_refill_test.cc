@@ -1,6 +1,5 @@
-#include "byre/features/shared_pool.h"
-
 #include "byre/features.h"
+#include "byre/workers/shared_pool.h"
 
 #include <set>
 
@@ -59,7 +58,7 @@ Features made_of(Parts parts) {
   return {320, 240, std::move(parts.keypoints), std::move(parts.descriptors), std::move(parts.patches)};
 }
 
-TEST(SharedPool, GivesWhatTheConstructorMakes) {
+TEST(RefilledFeatures, GivesWhatTheConstructorMakes) {
   Pools pool;
   for (const int count : {50, 0, 90, 20, 1})
     expect_same(*pool.refilled(parts_of(count, 3)), made_of(parts_of(count, 3)));
@@ -68,7 +67,7 @@ TEST(SharedPool, GivesWhatTheConstructorMakes) {
   expect_same(*pool.refilled(without), made_of(without));
 }
 
-TEST(SharedPool, UsesTheMemoryOfThoseThatNobodyHolds) {
+TEST(RefilledFeatures, UsesTheMemoryOfThoseThatNobodyHolds) {
   Pools pool;
   const Features* const first = pool.refilled(parts_of(40, 1)).get();
   const Keypoint* const keypoints = first->keypoints().data();
@@ -77,14 +76,14 @@ TEST(SharedPool, UsesTheMemoryOfThoseThatNobodyHolds) {
   EXPECT_EQ(second->keypoints().data(), keypoints);
 }
 
-TEST(SharedPool, TakesTurnsAmongPatches) {
+TEST(RefilledFeatures, TakesTurnsAmongPatches) {
   Pools pool;
   std::set<const Patch*> seen;
   for (int seed = 0; seed < 10; ++seed) seen.insert(pool.refilled(parts_of(40, seed))->find_patch(0));
   EXPECT_LE(seen.size(), 3u) << "features hold the patches of a frame until the next one";
 }
 
-TEST(SharedPool, LeavesThoseAloneThatSomebodyHolds) {
+TEST(RefilledFeatures, LeavesThoseAloneThatSomebodyHolds) {
   Pools pool;
   std::vector<std::shared_ptr<const Features>> held;
   for (int seed = 0; seed < 10; ++seed) held.push_back(pool.refilled(parts_of(40, seed)));
@@ -93,14 +92,14 @@ TEST(SharedPool, LeavesThoseAloneThatSomebodyHolds) {
   }
 }
 
-TEST(SharedPool, LeavesPatchesAloneThatCopiesShare) {
+TEST(RefilledFeatures, LeavesPatchesAloneThatCopiesShare) {
   Pools pool;
   const Features copy = pool.refilled(parts_of(40, 1))->moved(made_of(parts_of(40, 1)).keypoints());
   pool.refilled(parts_of(40, 2));
   expect_same(copy, made_of(parts_of(40, 1)));
 }
 
-TEST(SharedPool, MovesFeaturesInTheMemoryThatThereIs) {
+TEST(RefilledFeatures, MovesFeaturesInTheMemoryThatThereIs) {
   Pools pool;
   const Features features = made_of(parts_of(40, 1));
   std::vector<Keypoint> keypoints = features.keypoints();
