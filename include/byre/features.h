@@ -74,6 +74,8 @@ class Features {
 
   // The same, but for the patches of other features. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
+  // The same with these patches and no others, one for each of the features.
+  Features with_patches(std::span<const int> features, std::vector<Patch> patches) const;
 
   int size() const { return static_cast<int>(keypoints_.size()); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }

@@ -149,17 +149,26 @@ void Features::note_moves(const std::vector<Keypoint>& keypoints) {
 }
 
 Features Features::with_patches_of(std::span<const int> features) const {
+  std::vector<int> of_features;
   std::vector<Patch> kept;
   kept.reserve(features.size());
-  Features result = *this;
-  result.patch_of_keypoint_.assign(keypoints_.size(), -1);
   for (const int i : features) {
     const Patch* const patch = find_patch(i);
     if (patch == nullptr) continue;
-    result.patch_of_keypoint_[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
+    of_features.push_back(i);
     kept.push_back(*patch);
   }
-  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(kept));
+  return with_patches(of_features, std::move(kept));
+}
+
+Features Features::with_patches(std::span<const int> features, std::vector<Patch> patches) const {
+  assert(features.size() == patches.size());
+  Features result = *this;
+  result.patch_of_keypoint_.assign(keypoints_.size(), -1);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    result.patch_of_keypoint_[static_cast<std::size_t>(features[i])] = static_cast<int>(i);
+  }
+  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(patches));
   return result;
 }
 
