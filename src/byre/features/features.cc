@@ -164,7 +164,7 @@ Features Features::with_patches_of(std::span<const int> features) const {
 Features Features::with_patches(std::span<const int> features, std::vector<Patch> patches) const {
   assert(features.size() == patches.size());
   Features result = *this;
-  result.patch_of_keypoint_.assign(keypoints_.size(), -1);
+  result.patch_of_keypoint_ = std::vector<int>(patches.empty() ? 0 : keypoints_.size(), -1);
   for (std::size_t i = 0; i < features.size(); ++i) {
     result.patch_of_keypoint_[static_cast<std::size_t>(features[i])] = static_cast<int>(i);
   }

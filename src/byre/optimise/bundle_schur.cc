@@ -61,7 +61,7 @@ class SchurBundle {
     if (problem.calibration) border_.emplace(problem, slot_count_);
   }
 
-  const Estimate& estimate() const { return estimate_; }
+  Estimate take_estimate() { return std::move(estimate_); }  // once, at the end
   double cost() const { return cost_of(estimate_); }
 
   // The normal equations at the estimate, damped, with the points eliminated. Returns the largest slope of the cost.
@@ -141,10 +141,11 @@ void SchurBundle::make_tracks(const BundleRoles& roles) {
   for (const int i : roles.observations) {
     const BundleObservation& seen = problem_.observations[static_cast<std::size_t>(i)];
     if (tracks_.empty() || tracks_.back().point != seen.point) {
-      tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
+      tracks_.push_back({seen.point, static_cast<std::uint32_t>(terms_.size()), 0,
+                         roles.point_moves[static_cast<std::size_t>(seen.point)]});
     }
     terms_.push_back({i, slots_[static_cast<std::size_t>(seen.pose)]});
-    tracks_.back().end = terms_.size();
+    tracks_.back().end = static_cast<std::uint32_t>(terms_.size());
   }
 }
 
@@ -481,9 +482,10 @@ BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& rol
     progress = iterate(bundle, region, cost);
     ++solution.iterations;
   }
-  solution.camera_from_world = bundle.estimate().poses;
-  solution.points_in_world = bundle.estimate().points;
-  solution.calibration_change = bundle.estimate().calibration;
+  Estimate found = bundle.take_estimate();
+  solution.camera_from_world = std::move(found.poses);
+  solution.points_in_world = std::move(found.points);
+  solution.calibration_change = found.calibration;
   solution.usable = progress != Progress::failed;
   return solution;
 }
