@@ -153,6 +153,7 @@ struct Extractor::State {
   Rectifier rectifier;
   ExtractOptions options;
   std::optional<DepthReader> depth;
+  // Working memory, see rest().
   Pyramid left;
   Pyramid right;
   Developed left_developed;
@@ -295,6 +296,21 @@ Extractor& Extractor::operator=(Extractor&&) noexcept = default;
 
 const Rig& Extractor::rig() const {
   return state_->rectifier.rig();
+}
+
+void Extractor::rest() {
+  state_->left = {};
+  state_->right = {};
+  state_->left_developed = {};
+  state_->right_developed = {};
+  state_->blurred = {};
+  state_->corners_of_octave = {};
+  state_->described = {};
+  state_->keypoints = {};
+  state_->descriptors = {};
+  state_->patches_of_frames = {};
+  state_->features_of_frames = {};
+  state_->stereo_matches = {};
 }
 
 Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
