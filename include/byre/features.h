@@ -60,14 +60,22 @@ class Features {
   Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
            std::vector<Patch> patches, std::vector<int> patch_of_keypoint);
 
+  // Becomes what the constructor makes of these, in the memory that it has.
+  void refill(int width, int height, const std::vector<Keypoint>& keypoints, const std::vector<Descriptor>& descriptors,
+              std::shared_ptr<const std::vector<Patch>> patches);
+
   // The order that features have: that of the constructor, indices into keypoints in any other.
   static std::vector<int> order_of(int width, int height, const std::vector<Keypoint>& keypoints);
 
   // The same corners in the same order, each a little elsewhere in the image. Precondition: as many as there are.
   Features moved(std::vector<Keypoint> keypoints) const;
+  // Becomes the same in the memory that it has.
+  void refill_moved(const Features& features, const std::vector<Keypoint>& keypoints);
 
   // The same, but for the patches of other features. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
+  // The same with these patches and no others, one for each of the features.
+  Features with_patches(std::span<const int> features, std::vector<Patch> patches) const;
 
   int size() const { return static_cast<int>(keypoints_.size()); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }
@@ -86,6 +94,8 @@ class Features {
   void visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave, Visitor visit) const;
 
  private:
+  void note_moves(const std::vector<Keypoint>& keypoints);
+
   int cell_size_ = 0;  // pixels
   int columns_ = 0;
   int rows_ = 0;

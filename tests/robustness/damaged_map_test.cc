@@ -32,7 +32,7 @@ std::vector<MapBytes> originals() {
   std::vector<MapBytes> files = {
       write_map({}), write_map(StoredMapScene().stored()), write_map(StoredMapScene(2, 3, 2).stored()),
       write_map(StoredMapScene(9, 30, 3).stored()), write_map(StoredMapScene(2, 3, 4).stored_with_plan())};
-  for (const char* const name : {"format_1.byre", "format_2.byre", "format_3.byre", "format_4.byre"}) {
+  for (const char* const name : {"format_1.byre", "format_2.byre", "format_3.byre", "format_4.byre", "format_6.byre"}) {
     files.push_back(read_file(std::filesystem::path(BYRE_SOURCE_DIR) / "tests/robustness/formats" / name));
   }
   return files;

@@ -92,17 +92,26 @@ TEST(OldFormats, FifthIsReadAndWrittenInTheNewest) {
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, SixthIsReadAndWrittenTheSame) {
+TEST(OldFormats, SixthIsReadAndWrittenInTheNewest) {
   const StoredMap stored = load_map(kFormats / "format_6.byre");
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.map.keyframe_count(), 5);
   EXPECT_EQ(stored.map.point_count(), 6);
   EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
-  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_6.byre"));
+  expect_to_be_written_in_the_newest(stored);
+}
+
+TEST(OldFormats, SeventhIsReadAndWrittenTheSame) {
+  const StoredMap stored = load_map(kFormats / "format_7.byre");
+  EXPECT_THAT(find_faults(stored), IsEmpty());
+  EXPECT_EQ(stored.map.keyframe_count(), 5);
+  EXPECT_EQ(stored.map.point_count(), 6);
+  EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
+  EXPECT_EQ(write_map(stored), read_file(kFormats / "format_7.byre"));
 }
 
 TEST(OldFormats, AreReadAsAWholeWhenTheyAreOpened) {
-  for (const int format : {1, 2, 3, 4, 5, 6}) {
+  for (const int format : {1, 2, 3, 4, 5, 6, 7}) {
     const auto file = kFormats / ("format_" + std::to_string(format) + ".byre");
     EXPECT_EQ(write_map(open_map(file)), write_map(load_map(file)));
   }

@@ -10,6 +10,7 @@
 #include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
+#include "byre/workers/shared_pool.h"
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
@@ -152,6 +153,7 @@ struct Extractor::State {
   Rectifier rectifier;
   ExtractOptions options;
   std::optional<DepthReader> depth;
+  // Working memory, see rest().
   Pyramid left;
   Pyramid right;
   Developed left_developed;
@@ -159,15 +161,19 @@ struct Extractor::State {
   std::array<cv::Mat, kOctaves> blurred;
   std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
+  std::vector<Keypoint> keypoints;  // all octaves, the finest first; memory, as what follows
+  std::vector<Descriptor> descriptors;
+  SharedPool<std::vector<Patch>> patches_of_frames;
+  SharedPool<Features> features_of_frames;
   std::vector<std::optional<StereoMatch>> stereo_matches;
   TaskThreads threads;
 
   void prepare(const ImageFrame& images, bool stereo, Frame& frame);
   void describe_octave(int octave, int quota);
-  Described describe_all();
-  void match_right(std::vector<Keypoint>& keypoints);
-  void read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const;
-  void time_rows(std::vector<Keypoint>& keypoints) const;
+  std::shared_ptr<const std::vector<Patch>> describe_all();
+  void match_right();
+  void read_depths(const DepthImage& image);
+  void time_rows();
 };
 
 // Both images rectified and developed, at every octave, and what they are like as they came. The right one is exposed
@@ -223,23 +229,24 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// Features of all octaves, the finest first.
-Described Extractor::State::describe_all() {
+// All octaves, one after the other. Returns the patches.
+std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
   threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });
-  Described all;
-  all.keypoints.reserve(static_cast<std::size_t>(options.max_features));
-  all.descriptors.reserve(static_cast<std::size_t>(options.max_features));
-  all.patches.reserve(static_cast<std::size_t>(options.max_features));
+  const std::shared_ptr<std::vector<Patch>>& patches = patches_of_frames.take();
+  keypoints.clear();
+  descriptors.clear();
+  patches->clear();
+  if (options.refinement == Refinement::all) patches->reserve(static_cast<std::size_t>(options.max_features));
   for (const Described& found : described) {
-    all.keypoints.insert(all.keypoints.end(), found.keypoints.begin(), found.keypoints.end());
-    all.descriptors.insert(all.descriptors.end(), found.descriptors.begin(), found.descriptors.end());
-    all.patches.insert(all.patches.end(), found.patches.begin(), found.patches.end());
+    keypoints.insert(keypoints.end(), found.keypoints.begin(), found.keypoints.end());
+    descriptors.insert(descriptors.end(), found.descriptors.begin(), found.descriptors.end());
+    patches->insert(patches->end(), found.patches.begin(), found.patches.end());
   }
-  return all;
+  return patches;
 }
 
-void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
+void Extractor::State::match_right() {
   constexpr std::size_t kAtOnce = 64;  // keypoints a task
   StereoOptions stereo_options;
   stereo_options.refine = options.refinement != Refinement::none;
@@ -257,12 +264,12 @@ void Extractor::State::match_right(std::vector<Keypoint>& keypoints) {
   });
 }
 
-void Extractor::State::read_depths(const DepthImage& image, std::vector<Keypoint>& keypoints) const {
+void Extractor::State::read_depths(const DepthImage& image) {
   require_size(image.width, image.height, image.units.size(), calibration.depth->camera.value_or(calibration.left));
   take_over<DepthReading>(depth->read(image, keypoints, options.depth), keypoints);
 }
 
-void Extractor::State::time_rows(std::vector<Keypoint>& keypoints) const {
+void Extractor::State::time_rows() {
   const auto height = static_cast<float>(calibration.left.height);
   for (Keypoint& keypoint : keypoints) {
     keypoint.row_time = (rectifier.source_row(keypoint.pixel) + 0.5f) / height - 0.5f;
@@ -291,6 +298,21 @@ const Rig& Extractor::rig() const {
   return state_->rectifier.rig();
 }
 
+void Extractor::rest() {
+  state_->left = {};
+  state_->right = {};
+  state_->left_developed = {};
+  state_->right_developed = {};
+  state_->blurred = {};
+  state_->corners_of_octave = {};
+  state_->described = {};
+  state_->keypoints = {};
+  state_->descriptors = {};
+  state_->patches_of_frames = {};
+  state_->features_of_frames = {};
+  state_->stereo_matches = {};
+}
+
 Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const Clock::time_point start = Clock::now();
   const TaskThreads::Shift shift(state_->threads);
@@ -301,14 +323,14 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   frame.time = images.time;
   state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
-  Described described = state_->describe_all();
+  std::shared_ptr<const std::vector<Patch>> patches = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
-  if (stereo) state_->match_right(described.keypoints);
-  if (calibration.depth && images.depth) state_->read_depths(*images.depth, described.keypoints);
-  state_->time_rows(described.keypoints);
-  frame.features =
-      std::make_shared<const Features>(images.left.width, images.left.height, std::move(described.keypoints),
-                                       std::move(described.descriptors), std::move(described.patches));
+  if (stereo) state_->match_right();
+  if (calibration.depth && images.depth) state_->read_depths(*images.depth);
+  state_->time_rows();
+  const std::shared_ptr<Features>& features = state_->features_of_frames.take();
+  features->refill(images.left.width, images.left.height, state_->keypoints, state_->descriptors, std::move(patches));
+  frame.features = features;
   extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),
                       seconds_between(extracted, Clock::now())};
   return extraction;

@@ -58,6 +58,9 @@ class Extractor {
   // calibration's.
   Extraction extract(const ImageFrame& images, ImagesUsed used = ImagesUsed::all);
 
+  // Lets its working memory go, which the next frame makes again: for when there is none for long.
+  void rest();
+
  private:
   struct State;
   std::unique_ptr<State> state_;

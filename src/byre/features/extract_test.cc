@@ -176,6 +176,16 @@ TEST(Extractor, GivesTheSameBytesTwice) {
   }
 }
 
+TEST(Extractor, GivesTheSameAfterARest) {
+  Extractor extractor(ideal_pair(), {});
+  const ImageFrame images = wall().seen_by(ideal_pair());
+  const Extraction before = extractor.extract(images);
+  extractor.rest();
+  const Extraction after = extractor.extract(images);
+  EXPECT_EQ(after.frame.features->descriptors(), before.frame.features->descriptors());
+  EXPECT_EQ(share_with_disparity(*after.frame.features), share_with_disparity(*before.frame.features));
+}
+
 TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
   const ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});

@@ -33,21 +33,31 @@ std::vector<int> one_each(std::size_t count) {
   return indices;
 }
 
+// The same, in the memory of the vector that it becomes.
+template <typename Item>
+void take_in_order(const std::vector<Item>& items, const std::vector<int>& order, std::vector<Item>& sorted) {
+  sorted.clear();
+  sorted.reserve(items.size());
+  for (const int i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
+}
+
 // Keypoints counted and sorted by the cells of a grid; stable, so equal input gives equal output.
 struct Cells {
   int size = 0;  // pixels
   int columns = 0;
   int rows = 0;
-  std::vector<int> begin;  // see Features::cell_begin_
+  std::vector<int>& begin;  // see Features::cell_begin_
   // Indices of keypoints. Memory of the thread, used again by the next that are sorted.
   std::vector<int>& order;
 
-  Cells(int width, int height, const std::vector<Keypoint>& keypoints)
+  // begin: memory.
+  Cells(int width, int height, const std::vector<Keypoint>& keypoints, std::vector<int>& cell_begin)
       : size(cell_size_for(width, height, keypoints.size())),
         columns((width + size - 1) / size),
         rows((height + size - 1) / size),
-        begin(static_cast<std::size_t>(columns * rows + 1), 0),
+        begin(cell_begin),
         order(memory()[0]) {
+    begin.assign(static_cast<std::size_t>(columns * rows + 1), 0);
     std::vector<int>& cells = memory()[1];
     std::vector<int>& next = memory()[2];
     order.resize(keypoints.size());
@@ -85,44 +95,80 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
                    std::vector<Patch> patches, std::vector<int> patch_of_keypoint)
     : patches_(std::make_shared<const std::vector<Patch>>(std::move(patches))) {
   if (keypoints.empty()) return;
-  Cells cells(width, height, keypoints);
+  const Cells cells(width, height, keypoints, cell_begin_);
   cell_size_ = cells.size;
   columns_ = cells.columns;
   rows_ = cells.rows;
-  cell_begin_ = std::move(cells.begin);
   keypoints_ = in_order(std::move(keypoints), cells.order);
   descriptors_ = in_order(std::move(descriptors), cells.order);
   if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_->size());
   patch_of_keypoint_ = in_order(std::move(patch_of_keypoint), cells.order);
 }
 
+void Features::refill(int width, int height, const std::vector<Keypoint>& keypoints,
+                      const std::vector<Descriptor>& descriptors, std::shared_ptr<const std::vector<Patch>> patches) {
+  patches_ = std::move(patches);
+  slack_ = 0.0f;
+  cell_begin_.clear();
+  patch_of_keypoint_.clear();
+  const Cells cells(width, height, keypoints, cell_begin_);
+  cell_size_ = cells.size;
+  columns_ = keypoints.empty() ? 0 : cells.columns;
+  rows_ = keypoints.empty() ? 0 : cells.rows;
+  take_in_order(keypoints, cells.order, keypoints_);
+  take_in_order(descriptors, cells.order, descriptors_);
+  if (!patches_->empty()) patch_of_keypoint_.assign(cells.order.begin(), cells.order.end());
+}
+
 std::vector<int> Features::order_of(int width, int height, const std::vector<Keypoint>& keypoints) {
-  return keypoints.empty() ? std::vector<int>{} : Cells(width, height, keypoints).order;
+  std::vector<int> begin;
+  return keypoints.empty() ? std::vector<int>{} : Cells(width, height, keypoints, begin).order;
 }
 
 Features Features::moved(std::vector<Keypoint> keypoints) const {
   assert(keypoints.size() == keypoints_.size());
   Features result = *this;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    const float shift = (keypoints[i].pixel - keypoints_[i].pixel).cwiseAbs().maxCoeff();
-    result.slack_ = std::max(result.slack_, slack_ + shift);
-  }
+  result.note_moves(keypoints);
   result.keypoints_ = std::move(keypoints);
   return result;
 }
 
+void Features::refill_moved(const Features& features, const std::vector<Keypoint>& keypoints) {
+  assert(keypoints.size() == features.keypoints_.size());
+  *this = features;
+  note_moves(keypoints);
+  keypoints_ = keypoints;
+}
+
+void Features::note_moves(const std::vector<Keypoint>& keypoints) {
+  float farthest = 0.0f;
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    farthest = std::max(farthest, (keypoints[i].pixel - keypoints_[i].pixel).cwiseAbs().maxCoeff());
+  }
+  slack_ += farthest;
+}
+
 Features Features::with_patches_of(std::span<const int> features) const {
+  std::vector<int> of_features;
   std::vector<Patch> kept;
   kept.reserve(features.size());
-  Features result = *this;
-  result.patch_of_keypoint_.assign(keypoints_.size(), -1);
   for (const int i : features) {
     const Patch* const patch = find_patch(i);
     if (patch == nullptr) continue;
-    result.patch_of_keypoint_[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
+    of_features.push_back(i);
     kept.push_back(*patch);
   }
-  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(kept));
+  return with_patches(of_features, std::move(kept));
+}
+
+Features Features::with_patches(std::span<const int> features, std::vector<Patch> patches) const {
+  assert(features.size() == patches.size());
+  Features result = *this;
+  result.patch_of_keypoint_ = std::vector<int>(patches.empty() ? 0 : keypoints_.size(), -1);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    result.patch_of_keypoint_[static_cast<std::size_t>(features[i])] = static_cast<int>(i);
+  }
+  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(patches));
   return result;
 }
 

@@ -25,6 +25,13 @@ Features recalibrated(const Features& features, const RectifiedChange& change) {
   return features.moved(std::move(keypoints));
 }
 
+void recalibrate_into(const Features& features, const RectifiedChange& change, Features& result) {
+  thread_local std::vector<Keypoint> keypoints;  // memory
+  keypoints = features.keypoints();
+  for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
+  result.refill_moved(features, keypoints);
+}
+
 Eigen::Vector2f recalibrated(const Eigen::Vector2f& pixel, const RectifiedChange& change) {
   return change({{pixel.x(), pixel.y(), -1.0}, 0.0}).pixel.head<2>().cast<float>();
 }

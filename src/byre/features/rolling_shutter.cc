@@ -26,4 +26,12 @@ Features seen_at_once(const Features& features, const Rig& rig, const CameraMoti
   return features.moved(std::move(keypoints));
 }
 
+void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
+                 Features& result) {
+  thread_local std::vector<Keypoint> keypoints;  // memory
+  keypoints = features.keypoints();
+  for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
+  result.refill_moved(features, keypoints);
+}
+
 }  // namespace byre

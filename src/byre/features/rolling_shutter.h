@@ -13,5 +13,8 @@ struct CameraMotion {
 // A rolling shutter reads row after row, so that each corner is where the camera was at its row's time: the corners as
 // all of them would be at the time of the middle row. readout_time in seconds, see Calibration.
 Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time);
+// The same; refills `result`.
+void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
+                 Features& result);
 
 }  // namespace byre

@@ -35,12 +35,10 @@ std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_fr
   return near.empty() ? std::nullopt : std::optional(near.front());
 }
 
-std::vector<PointId> Mission::candidates(const std::vector<PointId>& around) const {
-  std::vector<PointId> candidates;
-  candidates.reserve(around.size());
+void Mission::append_candidates(const std::vector<PointId>& around, std::vector<PointId>& candidates) const {
+  candidates.reserve(candidates.size() + around.size());
   std::ranges::copy_if(around, std::back_inserter(candidates),
                        [this](PointId id) { return !moved_points_.is_suspended(id); });
-  return candidates;
 }
 
 void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {

@@ -48,7 +48,7 @@ class Mission {
   // the last frame, or around the one nearest to the pose.
   std::optional<KeyframeId> keyframe_near(const Pose& predicted_camera_from_world) const;
   // The points around it that are looked for.
-  std::vector<PointId> candidates(const std::vector<PointId>& around) const;
+  void append_candidates(const std::vector<PointId>& around, std::vector<PointId>& candidates) const;
 
   // A frame was tracked, so many metres from the one before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);

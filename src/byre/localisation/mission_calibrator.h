@@ -15,7 +15,7 @@ class MissionCalibrator {
  public:
   MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor);
 
-  Frame corrected(const Frame& frame) const { return calibrator_.corrected(frame); }
+  Frame corrected(const Frame& frame) { return calibrator_.corrected(frame); }
   const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
 
   // A frame, as corrected, whose pose is beyond doubt.

@@ -37,6 +37,8 @@ class OfflineTracker {
 
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
+  // The frame as the calibration that is refined has it; itself without one.
+  Frame corrected(const Frame& frame) { return calibrator_ ? calibrator_->corrected(frame) : frame; }
   bool is_focal_length_off() const { return focal_check_.is_off(); }
   // What the body is held to; nullptr where nothing is known of it, or the last pose does not lie in the map's frame.
   const DrivenGround* ground_under(const Whereabouts& whereabouts, const Mapper& mapper) const;

@@ -37,13 +37,13 @@ void put_at(MapBytes& bytes, std::size_t place, T value) {
   std::memcpy(bytes.data() + place, &value, sizeof(T));
 }
 
-inline constexpr std::uint32_t kNewestFormat = 6;
+inline constexpr std::uint32_t kNewestFormat = 7;
 
 // Precondition: the bytes are at least as many as the smallest header's. Bytes of no known format count as format 1.
 inline std::size_t section_count(const MapBytes& bytes) {
   const auto format = value_at<std::uint32_t>(bytes, kFormatAt);
   if (format < 1 || format > kNewestFormat) return 10;
-  return format < 6 ? 9 + format : 10 + format;
+  return format < 6 ? 9 + format : 16;
 }
 inline std::size_t header_checksum_at(const MapBytes& bytes) {
   return kTableAt + section_count(bytes) * kTableEntrySize;

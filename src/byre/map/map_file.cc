@@ -19,10 +19,11 @@ namespace {
 
 // As PNG's: a byte that is no text, and line ends that transfers as text would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 6;              // the newest that is read, and the one that is written
+constexpr std::uint32_t kFormat = 7;              // the newest that is read, and the one that is written
 constexpr std::uint32_t kFirstFormat = 1;         // the oldest that is read
 constexpr std::uint32_t kFirstRoundedFormat = 5;  // from here on, what keyframes see and points are rounded to quanta
 constexpr std::uint32_t kFirstFormatWithLookup = 6;  // from here on, a keyframe or point can be read without the others
+constexpr std::uint32_t kFirstPackedFormat = 7;      // from here on, patches are packed
 
 enum Section : std::size_t {
   kSummary,
@@ -51,11 +52,11 @@ constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
-// Each format has a section more than the one before, the one with a lookup two.
+// Each format up to the one with a lookup has a section more than the one before, that one two.
 constexpr std::size_t section_count(std::uint32_t format) {
-  return kPlan + format - kFirstFormat + (format >= kFirstFormatWithLookup ? 1 : 0);
+  return format >= kFirstFormatWithLookup ? kSectionCount : kPlan + format - kFirstFormat;
 }
-static_assert(section_count(kFormat) == kSectionCount);
+static_assert(section_count(kFirstFormatWithLookup - 1) == kObservers);
 
 // With its own checksum.
 constexpr std::size_t header_bytes(std::size_t sections) {
@@ -191,7 +192,10 @@ struct SectionPlace {
   std::size_t size = 0;
   std::uint64_t checksum = 0;
 };
-using SectionTable = std::vector<SectionPlace>;  // all sections of the file's format
+struct SectionTable {
+  std::uint32_t format = kFormat;
+  std::vector<SectionPlace> places;  // all sections of the format
+};
 
 std::uint32_t read_format(ByteReader& header, const std::string& name) {
   const auto format = header.read<std::uint32_t>();
@@ -230,17 +234,18 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   }
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
-  const std::size_t sections = section_count(read_format(header, name));
+  SectionTable table;
+  table.format = read_format(header, name);
+  const std::size_t sections = section_count(table.format);
   const std::size_t header_size = header_bytes(sections);
   if (header.read<std::uint32_t>() != sections) header.fail("has not the sections of its format");
   if (header.read<std::uint64_t>() != file_size) {
     header.fail("is of a file of another length than its " + std::to_string(file_size) + " bytes");
   }
-  SectionTable table;
   std::size_t offset = header_size;
   for (std::size_t i = 0; i < sections; ++i) {
-    table.push_back(read_place(header, kSectionNames[i], offset, file_size));
-    offset += table[i].size;
+    table.places.push_back(read_place(header, kSectionNames[i], offset, file_size));
+    offset += table.places[i].size;
   }
   const std::uint64_t expected = checksum(bytes.first(header_size - sizeof(std::uint64_t)));
   if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
@@ -261,12 +266,13 @@ class SectionOpener {
             read_table(bytes, bytes.size(), name),
             [bytes](std::size_t offset, std::size_t size) { return bytes.subspan(offset, size); }, name) {}
 
-  bool is_rounded() const { return table_.size() >= section_count(kFirstRoundedFormat); }
-  bool has_lookup() const { return table_.size() >= section_count(kFirstFormatWithLookup); }
-  bool has(Section section) const { return section < table_.size() && !is_left_empty(section); }
+  bool is_rounded() const { return table_.format >= kFirstRoundedFormat; }
+  bool has_lookup() const { return table_.format >= kFirstFormatWithLookup; }
+  bool has_packed_patches() const { return table_.format >= kFirstPackedFormat; }
+  bool has(Section section) const { return section < table_.places.size() && !is_left_empty(section); }
 
   ByteReader operator()(Section section) const {
-    const auto& [offset, size, expected_checksum] = table_[section];
+    const auto& [offset, size, expected_checksum] = place_of(section);
     const Bytes content = bring_(offset, size);
     ByteReader reader(content, name_ + ": section " + std::string(kSectionNames[section]), offset);
     if (checksum(content) != expected_checksum) reader.fail("has a wrong checksum");
@@ -274,14 +280,14 @@ class SectionOpener {
   }
 
   // Not checked.
-  Bytes bytes_of(Section section) const { return bring_(table_[section].offset, table_[section].size); }
-  const SectionPlace& place_of(Section section) const { return table_[section]; }
+  Bytes bytes_of(Section section) const { return bring_(place_of(section).offset, place_of(section).size); }
+  const SectionPlace& place_of(Section section) const { return table_.places[section]; }
 
  private:
   // Sections that not every map has, where others follow them.
   bool is_left_empty(Section section) const {
-    return (section == kPlan || section == kRefinedCalibrations) && section + 1 < table_.size() &&
-           table_[section].size == 0;
+    return (section == kPlan || section == kRefinedCalibrations) && section + 1 < table_.places.size() &&
+           place_of(section).size == 0;
   }
 
   SectionTable table_;
@@ -297,8 +303,9 @@ void read_exact_parts(const SectionOpener& open, MapParts& parts) {
 }
 void read_rounded_parts(const SectionOpener& open, MapParts& parts, PartSizes& sizes) {
   RoundedPoints points = read_rounded_points(open(kPoints), sizes);
-  read_views({open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors)}, points, parts.rigs,
-             parts.keyframes, sizes);
+  const ViewSections views = {open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors),
+                              open.has_packed_patches()};
+  read_views(views, points, parts.rigs, parts.keyframes, sizes);
   parts.points = std::move(points.points);
 }
 
@@ -348,9 +355,10 @@ void require_checksums(const ReadAt& read_at, std::size_t size, const std::strin
   std::vector<std::byte> header(std::min(size, header_bytes(kSectionCount)));
   read_at(0, header);
   const SectionTable table = read_table(header, size, name);
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (checksum_of_file(read_at, table[i].offset, table[i].size) == table[i].checksum) continue;
-    ByteReader({}, name + ": section " + std::string(kSectionNames[i]), table[i].offset).fail("has a wrong checksum");
+  for (std::size_t i = 0; i < table.places.size(); ++i) {
+    const SectionPlace& place = table.places[i];
+    if (checksum_of_file(read_at, place.offset, place.size) == place.checksum) continue;
+    ByteReader({}, name + ": section " + std::string(kSectionNames[i]), place.offset).fail("has a wrong checksum");
   }
 }
 
@@ -365,6 +373,7 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
   file.points = open.place_of(kPoints).offset;
   file.observers = open.place_of(kObservers).offset;
   file.lookup = open.place_of(kLookup).offset;
+  file.has_packed_patches = open.has_packed_patches();
   return file;
 }
 
@@ -432,9 +441,9 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
 }
 
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
-  const SectionTable table = read_table(bytes, bytes.size(), name);
-  std::vector<SectionSize> sizes = {{"header", header_bytes(table.size())}};
-  for (std::size_t i = 0; i < table.size(); ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
+  const std::vector<SectionPlace> places = read_table(bytes, bytes.size(), name).places;
+  std::vector<SectionSize> sizes = {{"header", header_bytes(places.size())}};
+  for (std::size_t i = 0; i < places.size(); ++i) sizes.push_back({std::string(kSectionNames[i]), places[i].size});
   return sizes;
 }
 

@@ -87,7 +87,8 @@ Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare
   }
   Keyframe keyframe = bare;
   read_view(
-      {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView]},
+      {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView],
+       file_.has_packed_patches},
       number, file_.rigs[static_cast<std::size_t>(bare.rig)], file_.point_count,
       [this](std::uint32_t point_number) -> const ObservedPoint& { return point(point_number); }, keyframe);
   if (keyframe.sightings.size() != known.features) {

@@ -25,6 +25,7 @@ class MapFileSource : public MapSource {
     std::uint32_t point_count = 0;
     std::vector<Rig> rigs;
     WordsHead words;
+    bool has_packed_patches = true;  // from format 7 on
   };
 
   MapFileSource(File file, Lookup lookup);

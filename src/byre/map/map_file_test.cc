@@ -119,7 +119,7 @@ TEST(MapFile, TakesAFewBytesForWhatIsSeenOfAPoint) {
   const auto observations = static_cast<std::size_t>(12 * 399);
   EXPECT_LE(section_of(bytes, "observations").size, 9 * observations);
   EXPECT_LE(section_of(bytes, "points").size, 78 * observations / 3 + 4);
-  EXPECT_LE(section_of(bytes, "patches").size, 134u * 12 * 200);
+  EXPECT_LE(section_of(bytes, "patches").size, 113u * 12 * 200);  // half of them noise
 }
 
 TEST(MapFile, IsTheSameAfterASecondSave) {
@@ -145,8 +145,8 @@ TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
 }
 
 TEST(MapFile, IsOfTheNewestFormatWithAPlanAndWithout) {
-  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 6u);
-  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 6u);
+  EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 7u);
+  EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 7u);
   EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
 }
 
@@ -261,10 +261,10 @@ TEST(MapFile, RefusesWhatIsNoMap) {
 
 TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   MapBytes bytes = scene_bytes();
-  put_at(bytes, kFormatAt, std::uint32_t{7});
+  put_at(bytes, kFormatAt, std::uint32_t{8});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 7, this program knows formats up to 6 "
+            "barn.byre: header: has format 8, this program knows formats up to 7 "
             "(use the version of byre that wrote it, or a newer one)");
 }
 

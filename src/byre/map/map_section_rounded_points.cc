@@ -1,4 +1,4 @@
-// Points, as format 5 has them.
+// Points, as formats from 5 on have them.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_quanta.h"

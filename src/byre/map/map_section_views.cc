@@ -1,4 +1,5 @@
-// Reads what the keyframes see, as format 5 has it: keypoints, descriptors, patches and sightings, rounded to quanta.
+// Reads what the keyframes see, as formats from 5 on have it: keypoints, descriptors, patches and sightings, rounded to
+// quanta.
 
 #include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
@@ -8,6 +9,7 @@
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
 #include "byre/map/map_view_layout.h"
+#include "byre/map/packed_steps.h"
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
@@ -99,12 +101,16 @@ std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<S
   return descriptors;
 }
 
-Patch read_patch(ByteReader& reader, std::size_t keyframe) {
+Patch read_patch(ByteReader& reader, bool is_packed, std::size_t keyframe) {
   PatchCode code;
   code.darkest = reader.read<std::uint8_t>();
   code.brightest = reader.read<std::uint8_t>();
   reader.read_all<std::uint16_t>(code.centre);
-  reader.read_all<std::uint8_t>(code.steps);
+  if (is_packed) {
+    code.steps = read_packed_steps(reader);
+  } else {
+    reader.read_all<std::uint8_t>(code.steps);
+  }
   const std::optional<Patch> patch = patch_of(code);
   require_no_fault(reader, patch ? fault_in(*patch) : "has a patch that is none", "keyframe", keyframe);
   return *patch;
@@ -115,7 +121,8 @@ struct RoundedPatches {
   std::vector<int> patch_of_keypoint;  // -1: none
 };
 
-RoundedPatches read_rounded_patches(ByteReader& reader, const std::vector<std::uint8_t>& bits, std::size_t keyframe) {
+RoundedPatches read_rounded_patches(ViewSections& sections, const std::vector<std::uint8_t>& bits,
+                                    std::size_t keyframe) {
   RoundedPatches kept;
   kept.patch_of_keypoint.assign(bits.size(), -1);
   kept.patches.reserve(
@@ -123,7 +130,7 @@ RoundedPatches read_rounded_patches(ByteReader& reader, const std::vector<std::u
   for (std::size_t i = 0; i < bits.size(); ++i) {
     if ((bits[i] & kHasPatch) == 0) continue;
     kept.patch_of_keypoint[i] = static_cast<int>(kept.patches.size());
-    kept.patches.push_back(read_patch(reader, keyframe));
+    kept.patches.push_back(read_patch(sections.patches, sections.has_packed_patches, keyframe));
   }
   return kept;
 }
@@ -170,7 +177,7 @@ class ViewReader {
     std::vector<Descriptor> descriptors =
         read_descriptors(sections_.descriptors, keyframe.sightings,
                          [this](std::uint32_t point) -> const Descriptor& { return points_[point].descriptor; });
-    part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
+    part.patches = read_rounded_patches(sections_, part.keypoints.bits, number);
     keyframe.frame.features =
         features_of_view(sections_.features, std::move(part), std::move(descriptors), rig, number);
     set_taken(before, remaining(sections_), sizes);
@@ -180,7 +187,7 @@ class ViewReader {
   PartOfView read_part(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
     PartOfView part{read_keypoints(sections_.features, rig, number), {}};
     keyframe.sightings = read_observed(part.keypoints, number);
-    part.patches = read_rounded_patches(sections_.patches, part.keypoints.bits, number);
+    part.patches = read_rounded_patches(sections_, part.keypoints.bits, number);
     return part;
   }
 
@@ -203,6 +210,15 @@ class ViewReader {
   PointObservers observers_;
 };
 
+void skip_patch(ViewSections& sections) {
+  if (!sections.has_packed_patches) {
+    sections.patches.take(kPatchHeadBytes + sizeof(PatchCode::steps));
+    return;
+  }
+  sections.patches.take(kPatchHeadBytes);
+  skip_packed_steps(sections.patches);
+}
+
 // Goes through so many features of a keyframe without looking at values: calls visit for each, with the point that it
 // sees or nullptr.
 template <typename Visitor>
@@ -211,7 +227,7 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto bits = sections.features.read<std::uint8_t>();
     sections.features.take(pixel_bytes + ((bits & kHasDisparity) != 0 ? kDisparityBytes + 1 : 0));
-    if ((bits & kHasPatch) != 0) sections.patches.take(kRoundedPatchBytes);
+    if ((bits & kHasPatch) != 0) skip_patch(sections);
     if ((bits & kSeesPoint) == 0) {
       visit(nullptr);
       continue;
@@ -392,7 +408,7 @@ void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::si
   std::vector<Descriptor> descriptors =
       read_descriptors(parts.descriptors, keyframe.sightings,
                        [&](std::uint32_t point) -> const Descriptor& { return find_point(point).point.descriptor; });
-  part.patches = read_rounded_patches(parts.patches, part.keypoints.bits, number);
+  part.patches = read_rounded_patches(parts, part.keypoints.bits, number);
   keyframe.frame.features = features_of_view(parts.features, std::move(part), std::move(descriptors), rig, number);
   for (const ByteReader* const read : {&parts.features, &parts.patches, &parts.observations, &parts.descriptors}) {
     read->require_end();

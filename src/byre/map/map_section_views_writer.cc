@@ -1,9 +1,10 @@
-// Writes what the keyframes see, as format 5 has it; map_section_views.cc reads it.
+// Writes what the keyframes see, as format 7 has it; map_section_views.cc reads it.
 
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_view_layout.h"
+#include "byre/map/packed_steps.h"
 
 namespace byre {
 namespace {
@@ -54,7 +55,7 @@ void write_patch(const Patch& patch, ByteWriter& writer) {
   writer.write(code.darkest);
   writer.write(code.brightest);
   writer.write_all<std::uint16_t>(code.centre);
-  writer.write_all<std::uint8_t>(code.steps);
+  write_packed_steps(code.steps, writer);
 }
 
 ViewSizes written(const ViewWriters& sections) {

@@ -80,7 +80,7 @@ struct PartSizes {
   std::vector<std::uint32_t> points;                            // by block of kPointsOfBlock points
 };
 
-// As format 5 has them, rounded to quanta. Points come first of what fills in the sizes, words last.
+// As formats from 5 on have them, rounded to quanta. Points come first of what fills in the sizes, words last.
 void write_rounded_points(const Map& map, ByteWriter& writer, PartSizes& sizes);
 struct RoundedPoints {
   std::vector<MapPoint> points;           // without references
@@ -96,6 +96,7 @@ struct ViewWriters {
 };
 struct ViewSections {
   ByteReader features, patches, observations, descriptors;
+  bool has_packed_patches = true;  // from format 7 on
 };
 void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes);
 // Fills in the features and sightings of the keyframes, and the references of the points.

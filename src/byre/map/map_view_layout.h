@@ -22,7 +22,7 @@ inline constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch
 
 inline constexpr std::size_t kLeastKeypointBytes = 1 + 2;
 inline constexpr std::size_t kDisparityBytes = 3;
-inline constexpr std::size_t kRoundedPatchBytes = 2 + sizeof(PatchCode::centre) + sizeof(PatchCode::steps);
+inline constexpr std::size_t kPatchHeadBytes = 2 + sizeof(PatchCode::centre);  // before its steps
 
 // Bytes that hold all numbers below count.
 inline std::size_t bytes_for(std::uint64_t count) {

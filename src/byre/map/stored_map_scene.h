@@ -85,6 +85,16 @@ class StoredMapScene {
     return keypoint;
   }
 
+  // Noise, or a slope with a little of it.
+  Patch patch(bool is_noise) {
+    Patch patch;
+    for (std::uint64_t i = 0; i < patch.pixels.size(); ++i) {
+      patch.pixels[i] = static_cast<std::uint8_t>(is_noise ? random_() >> 56 : (random_() >> 59) + 12 * (i % 16));
+    }
+    patch.centre = Eigen::Vector2f::Constant(Patch::kSize / 2);
+    return patch;
+  }
+
   // Every second feature has a patch.
   std::shared_ptr<const Features> features(const Rig& rig) {
     const auto count = static_cast<std::size_t>(features_);
@@ -97,10 +107,7 @@ class StoredMapScene {
       if (i % 2 == 0) patch_of_keypoint[static_cast<std::size_t>(i)] = i / 2;
     }
     for (Descriptor& descriptor : descriptors) std::ranges::generate(descriptor, std::ref(random_));
-    for (Patch& patch : patches) {
-      for (std::uint8_t& grey : patch.pixels) grey = static_cast<std::uint8_t>(random_() >> 56);
-      patch.centre = Eigen::Vector2f::Constant(Patch::kSize / 2);
-    }
+    for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = patch(i % 2 == 0);
     return std::make_shared<const Features>(rig.width, rig.height, keypoints, descriptors, patches, patch_of_keypoint);
   }
 

@@ -6,10 +6,12 @@
 
 namespace byre {
 
-Frame Calibrator::corrected(const Frame& frame) const {
+Frame Calibrator::corrected(const Frame& frame) {
   if (!from_given_) return frame;
   Frame result = frame;
-  result.features = std::make_shared<const Features>(recalibrated(*frame.features, *from_given_));
+  const std::shared_ptr<Features>& features = features_of_frames_.take();
+  recalibrate_into(*frame.features, *from_given_, *features);
+  result.features = features;
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include "byre/geometry/rectified_change.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/workers/executor.h"
+#include "byre/workers/shared_pool.h"
 
 #include <memory>
 #include <optional>
@@ -23,7 +24,7 @@ class Calibrator {
   const SelfCalibrationOptions& options() const { return options_; }
 
   // The frame as the present calibration has it; itself while that is the one given.
-  Frame corrected(const Frame& frame) const;
+  Frame corrected(const Frame& frame);
 
   // Whether a map of so many keyframes has grown enough since the last time for another look. The first ones are close
   // together, as all that was trusted before a calibration is found to be wrong was trusted wrongly.
@@ -49,6 +50,7 @@ class Calibrator {
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the one given
   std::optional<int> last_keyframes_;          // map's size at the last look
+  SharedPool<Features> features_of_frames_;    // memory
 };
 
 }  // namespace byre

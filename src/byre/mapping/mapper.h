@@ -49,6 +49,8 @@ class Mapper {
   const PlaceIndex* places() const { return places_ ? &*places_ : nullptr; }  // index of online keyframes
   const std::vector<LoopEdge>& loops() const { return loop_closer_.loops(); }
   const Calibrator* calibrator() const { return calibrator_ ? &*calibrator_ : nullptr; }
+  // The frame as the calibration that is refined has it; itself without one.
+  Frame corrected(const Frame& frame) { return calibrator_ ? calibrator_->corrected(frame) : frame; }
   std::optional<KeyframeId> newest_keyframe() const { return newest_; }
   std::optional<KeyframeId> newest_in_present_frame() const;
   int pending() const { return static_cast<int>(pending_.size()); }  // keyframes that mapping has not worked on

@@ -20,7 +20,9 @@ Frame Shutter::corrected(const Frame& frame, const Rig& rig, const CameraMotion&
   motion_ = motion;
   if (!is_rolling() || motion.velocity.isZero(0.0)) return frame;
   Frame result = frame;
-  result.features = std::make_shared<const Features>(seen_at_once(*frame.features, rig, motion, readout_time_));
+  const std::shared_ptr<Features>& features = features_of_frames_.take();
+  see_at_once(*frame.features, rig, motion, readout_time_, *features);
+  result.features = features;
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/map.h"
 #include "byre/slam/readout_estimate.h"
+#include "byre/workers/shared_pool.h"
 
 #include <map>
 #include <optional>
@@ -44,6 +45,7 @@ class Shutter {
   std::optional<ReadoutEstimator> estimator_;   // where it is refined; ahead of it until that is taken over
   CameraMotion motion_;                         // while the last frame was taken
   std::map<KeyframeId, CameraMotion> motions_;  // while keyframes were
+  SharedPool<Features> features_of_frames_;     // memory
 };
 
 }  // namespace byre

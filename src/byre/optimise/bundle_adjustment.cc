@@ -5,6 +5,7 @@
 #include "byre/optimise/bundle_schur.h"
 
 #include <limits>
+#include <utility>
 
 namespace byre {
 
@@ -12,6 +13,8 @@ namespace {
 
 BundleResult unmoved(const BundleProblem& problem) {
   BundleResult result;
+  result.camera_from_world.reserve(problem.poses.size());
+  result.points_in_world.reserve(problem.points.size());
   for (const BundlePose& pose : problem.poses) result.camera_from_world.push_back(pose.camera_from_world);
   for (const BundlePoint& point : problem.points) result.points_in_world.push_back(point.position_in_world);
   result.usable = true;
@@ -20,20 +23,17 @@ BundleResult unmoved(const BundleProblem& problem) {
 
 BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
                    const BundleOptions& options) {
-  BundleResult result = unmoved(problem);
-  if (roles.observations.empty()) return result;
+  if (roles.observations.empty()) return unmoved(problem);
   BundleSolution solution = solve_bundle(problem, roles, scale, options);
+  BundleResult result;
+  if (!solution.usable) result = unmoved(problem);
   result.iterations = solution.iterations;
   result.usable = solution.usable;
   if (!result.usable) return result;
   result.calibration_change = solution.calibration_change;
   result.pose_covariances = std::move(solution.pose_covariances);
-  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-    if (roles.pose_moves[i]) result.camera_from_world[i] = solution.camera_from_world[i];
-  }
-  for (std::size_t i = 0; i < problem.points.size(); ++i) {
-    if (roles.point_moves[i]) result.points_in_world[i] = solution.points_in_world[i];
-  }
+  result.camera_from_world = std::move(solution.camera_from_world);
+  result.points_in_world = std::move(solution.points_in_world);
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include "byre/optimise/calibration_border.h"
 #include "byre/optimise/trust_region.h"
 
-#include <cstddef>
+#include <cstdint>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -19,9 +19,9 @@ struct BundleTerm {
 // The observations of one point: terms [begin, end).
 struct BundleTrack {
   int point = 0;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
   bool moves = false;
-  std::size_t begin = 0;
-  std::size_t end = 0;
 };
 
 // An observation's error at an estimate, and its slopes.

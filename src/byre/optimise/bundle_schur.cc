@@ -58,10 +58,10 @@ class SchurBundle {
     make_tracks(roles);
     if (tracks_.size() <= kMostKept) kept_.resize(tracks_.size());
     reduced_.emplace(slot_count_, neighbours());
-    if (problem.calibration) border_.emplace(problem, slot_count_, tracks_.size());
+    if (problem.calibration) border_.emplace(problem, slot_count_);
   }
 
-  const Estimate& estimate() const { return estimate_; }
+  Estimate take_estimate() { return std::move(estimate_); }  // once, at the end
   double cost() const { return cost_of(estimate_); }
 
   // The normal equations at the estimate, damped, with the points eliminated. Returns the largest slope of the cost.
@@ -143,10 +143,11 @@ void SchurBundle::make_tracks(const BundleRoles& roles) {
   for (const int i : roles.observations) {
     const BundleObservation& seen = problem_.observations[static_cast<std::size_t>(i)];
     if (tracks_.empty() || tracks_.back().point != seen.point) {
-      tracks_.push_back({seen.point, roles.point_moves[static_cast<std::size_t>(seen.point)], terms_.size(), 0});
+      tracks_.push_back({seen.point, static_cast<std::uint32_t>(terms_.size()), 0,
+                         roles.point_moves[static_cast<std::size_t>(seen.point)]});
     }
     terms_.push_back({i, slots_[static_cast<std::size_t>(seen.pose)]});
-    tracks_.back().end = terms_.size();
+    tracks_.back().end = static_cast<std::uint32_t>(terms_.size());
   }
 }
 
@@ -210,13 +211,14 @@ void SchurBundle::linearise_track(std::size_t index) {
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   PointEquations equations;
   between_.resize(track.end - track.begin);
+  if (border_) border_->begin_point();
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const BundleTerm& term = terms_[i];
     const LinearObservation linear = linearised(term, point);
     if (track.moves) equations.add(linear);
     if (border_) {
       border_->add(linear.by_calibration, linear.weight, linear.residual);
-      if (track.moves) border_->add_point(index, linear.weight * linear.by_point.transpose(), linear.by_calibration);
+      if (track.moves) border_->add_point(linear.weight * linear.by_point.transpose(), linear.by_calibration);
     }
     if (term.slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
@@ -235,13 +237,13 @@ void SchurBundle::linearise_track(std::size_t index) {
 // Takes from the other equations what finding the point uses up.
 void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
   const BundleTrack& track = tracks_[index];
-  if (border_) border_->eliminate(index, equations.covariance, equations.gradient);
+  if (border_) border_->eliminate(equations.covariance, equations.gradient);
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int row = terms_[i].slot;
     if (row < 0) continue;
     const Matrix63 gain = between_[i - track.begin] * equations.covariance;
     used_up_.segment<6>(6 * row).noalias() += gain * equations.gradient;
-    if (border_) border_->eliminate_pose(row, index, gain);
+    if (border_) border_->eliminate_pose(row, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
       if (column < 0 || column > row) continue;
@@ -383,10 +385,12 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
   PointEquations equations;
   if (is_kept) equations = kept_[index];
   between_.resize(track.end - track.begin);
+  if (border_) border_->begin_point();
   for (std::size_t i = track.begin; i < track.end; ++i) {
-    if (is_kept && terms_[i].slot < 0) continue;
+    if (is_kept && terms_[i].slot < 0 && !border_) continue;
     const LinearObservation linear = linearised(terms_[i], point);
     if (!is_kept) equations.add(linear);
+    if (border_) border_->add_point(linear.weight * linear.by_point.transpose(), linear.by_calibration);
     if (terms_[i].slot < 0) continue;
     const Matrix63 weighted = linear.weight * linear.by_pose.transpose();
     between_[i - track.begin].noalias() = weighted * linear.by_point;
@@ -397,7 +401,7 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
     const int slot = terms_[i].slot;
     if (slot >= 0) pull.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
   }
-  if (border_) pull -= border_->pull_on(index, step.calibration);
+  if (border_) pull -= border_->pull_on_point(step.calibration);
   const Eigen::Vector3d move = equations.covariance * pull;
   if (!move.allFinite()) return false;
   step.points.push_back(move);
@@ -501,9 +505,10 @@ BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& rol
     progress = iterate(bundle, region, cost);
     ++solution.iterations;
   }
-  solution.camera_from_world = bundle.estimate().poses;
-  solution.points_in_world = bundle.estimate().points;
-  solution.calibration_change = bundle.estimate().calibration;
+  Estimate found = bundle.take_estimate();
+  solution.camera_from_world = std::move(found.poses);
+  solution.points_in_world = std::move(found.points);
+  solution.calibration_change = found.calibration;
   solution.usable = progress != Progress::failed;
   if (solution.usable) solution.pose_covariances = bundle.covariances(options.covariances_of_poses);
   return solution;

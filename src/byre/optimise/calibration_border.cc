@@ -6,10 +6,8 @@
 
 namespace byre {
 
-CalibrationBorder::CalibrationBorder(const BundleProblem& problem, int poses, std::size_t points)
-    : problem_(problem), calibration_(*problem.calibration), with_poses_(6 * poses, kCalibrationParameters) {
-  with_point_.resize(points);
-}
+CalibrationBorder::CalibrationBorder(const BundleProblem& problem, int poses)
+    : problem_(problem), calibration_(*problem.calibration), with_poses_(6 * poses, kCalibrationParameters) {}
 
 CalibrationBorder::Slope CalibrationBorder::slope(const BundleObservation& seen,
                                                   const Eigen::Vector3d& point_in_camera) const {
@@ -39,7 +37,6 @@ void CalibrationBorder::begin(const CalibrationVector& change) {
   used_up_own_.setZero();
   used_up_gradient_.setZero();
   with_poses_.setZero();
-  for (ByPoint& with_point : with_point_) with_point.setZero();
 }
 
 void CalibrationBorder::add(const Slope& slope, double weight, const Eigen::Vector3d& residual) {
@@ -51,19 +48,18 @@ void CalibrationBorder::add_pose(int slot, const Eigen::Matrix<double, 6, 3>& we
   with_poses_.middleRows<6>(6 * slot).noalias() += weighted_by_pose * slope;
 }
 
-void CalibrationBorder::add_point(std::size_t point, const Eigen::Matrix3d& weighted_by_point, const Slope& slope) {
-  with_point_[point].noalias() += weighted_by_point * slope;
+void CalibrationBorder::add_point(const Eigen::Matrix3d& weighted_by_point, const Slope& slope) {
+  with_point_.noalias() += weighted_by_point * slope;
 }
 
-void CalibrationBorder::eliminate(std::size_t point, const Eigen::Matrix3d& covariance,
-                                  const Eigen::Vector3d& gradient) {
-  const ByPoint gain = covariance * with_point_[point];
-  used_up_own_.noalias() += with_point_[point].transpose() * gain;
+void CalibrationBorder::eliminate(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& gradient) {
+  const ByPoint gain = covariance * with_point_;
+  used_up_own_.noalias() += with_point_.transpose() * gain;
   used_up_gradient_.noalias() += gain.transpose() * gradient;
 }
 
-void CalibrationBorder::eliminate_pose(int slot, std::size_t point, const Eigen::Matrix<double, 6, 3>& gain) {
-  with_poses_.middleRows<6>(6 * slot).noalias() -= gain * with_point_[point];
+void CalibrationBorder::eliminate_pose(int slot, const Eigen::Matrix<double, 6, 3>& gain) {
+  with_poses_.middleRows<6>(6 * slot).noalias() -= gain * with_point_;
 }
 
 std::optional<CalibrationBorder::Step> CalibrationBorder::solve(ReducedSystem& poses,

@@ -79,7 +79,7 @@ class NoisyCalibratedBundle : public CalibratedBundle {
 
   // The robust cost by another change of the calibration than the one found.
   double cost(const BundleResult& result, const CalibrationVector& change, double huber_width) const {
-    const CalibrationBorder border(scene_.problem, 0, 0);
+    const CalibrationBorder border(scene_.problem, 0);
     double cost = border.cost(change);
     for (const BundleObservation& seen : scene_.problem.observations) {
       const Eigen::Vector3d point_in_camera = result.camera_from_world[static_cast<std::size_t>(seen.pose)] *

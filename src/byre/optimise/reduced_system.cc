@@ -14,7 +14,7 @@ namespace byre {
 struct ReducedSystem::Sparse {
   std::vector<std::vector<int>> columns;  // columns that each row has blocks in, ascending, its own last
   std::vector<std::size_t> begin;         // index of each row's first block
-  std::vector<Matrix6> blocks;
+  std::vector<Matrix6> blocks;            // none once they are in the matrix, which takes as much again to be factored
   Eigen::SparseMatrix<double> lower;
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor;
 
@@ -23,10 +23,12 @@ struct ReducedSystem::Sparse {
       begin.push_back(begin.empty() ? 0 : begin.back() + columns[row - 1].size());
       columns[row].push_back(static_cast<int>(row));
     }
-    blocks.resize(begin.empty() ? 0 : begin.back() + columns.back().size());
+    set_zero();
     const auto size = static_cast<Eigen::Index>(6 * columns.size());
     lower.resize(size, size);
   }
+
+  void set_zero() { blocks.assign(begin.empty() ? 0 : begin.back() + columns.back().size(), Matrix6::Zero()); }
 
   Matrix6& at(int row, int column) {
     const std::vector<int>& of_row = columns[static_cast<std::size_t>(row)];
@@ -35,7 +37,7 @@ struct ReducedSystem::Sparse {
     return blocks[begin[static_cast<std::size_t>(row)] + static_cast<std::size_t>(place - of_row.begin())];
   }
 
-  // The lower triangle, column by column.
+  // The lower triangle, column by column. Uses up the blocks.
   void fill_lower() {
     std::vector<std::vector<std::pair<int, const Matrix6*>>> rows_of_column(columns.size());
     for (std::size_t row = 0; row < columns.size(); ++row) {
@@ -52,6 +54,7 @@ struct ReducedSystem::Sparse {
       }
     }
     lower.finalize();
+    blocks = {};
   }
 
   void append(int row, int column, int c, const Matrix6& block) {
@@ -84,8 +87,11 @@ ReducedSystem::ReducedSystem(ReducedSystem&&) noexcept = default;
 ReducedSystem& ReducedSystem::operator=(ReducedSystem&&) noexcept = default;
 
 void ReducedSystem::set_zero() {
-  dense_.setZero();
-  if (sparse_) std::ranges::fill(sparse_->blocks, Matrix6::Zero());
+  // The upper triangle is never touched, so that nearly half of a large matrix takes no memory.
+  for (Eigen::Index first = 0; first < dense_.cols(); first += 6) {
+    dense_.block(first, first, dense_.rows() - first, 6).setZero();
+  }
+  if (sparse_) sparse_->set_zero();
 }
 
 ReducedSystem::Block ReducedSystem::at(int row, int column) {

@@ -110,7 +110,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   if (!std::exchange(is_error_told_, is_error) && is_error) report.events.push_back(SessionEvent::navigation_error);
 
   whereabouts_.settle_overdue(map(), options_.track);
-  seen_ = located.track ? byre::seen_points(located.track->tracked) : std::vector<SeenPoint>{};
+  seen_.clear();
+  if (located.track) append_seen_points(located.track->tracked, seen_);
   report.map_seconds = seconds_before + mapping_after.seconds();
   return report;
 }
@@ -184,9 +185,8 @@ void Session::take_turn(const RigTurn& turn) {
 }
 
 InputFrame Session::input_of(const Frame& rectified) {
-  Frame frame = rectified;
-  if (mapper_.calibrator()) frame = mapper_.calibrator()->corrected(rectified);
-  if (mission_ && mission_->calibrator()) frame = mission_->calibrator()->corrected(rectified);
+  Frame frame = mapper_.corrected(rectified);
+  if (mission_) frame = mission_->corrected(frame);
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
   const InputEvidence evidence = input_watch_.look_at(frame, rig_);
@@ -230,7 +230,8 @@ Session::Located Session::locate(const InputFrame& input) {
     if (located.track) mapper_.begin_where_found(*located.track);
   }
   mapper_.expect_beginning_beside(rig_, !located.track && whereabouts_.bridge());
-  return located.track || !may_begin_submap(input) ? located : begin_submap(frame);
+  if (!located.track && may_begin_submap(input)) return begin_submap(frame);
+  return located;
 }
 
 bool Session::may_begin_submap(const InputFrame& input) const {

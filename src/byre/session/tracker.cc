@@ -86,12 +86,12 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
     return tracked ? std::optional(found_in(Origin::online, *std::move(tracked))) : std::nullopt;
   }
-  std::vector<PointId> candidates;
+  candidates_.clear();
   if (scene.mapper.submaps().is_registered()) {
-    candidates = scene.mission->candidates(offline_points_around(predicted, *scene.mission));
+    scene.mission->append_candidates(offline_points_around(predicted, *scene.mission), candidates_);
   }
-  candidates.insert(candidates.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, scene.rig, map, candidates, options_.track, limits, scene.weigh_focal_lengths);
+  candidates_.insert(candidates_.end(), online.begin(), online.end());
+  return track_hybrid(frame, predicted, scene.rig, map, candidates_, options_.track, limits, scene.weigh_focal_lengths);
 }
 
 std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,

@@ -83,7 +83,8 @@ class Tracker {
   int last_inliers_ = 0;                 // in the last frame tracked
   PointsAround online_;
   PointsAround offline_;
-  std::vector<PointId> few_;  // online points looked for where time is short
+  std::vector<PointId> few_;         // online points looked for where time is short
+  std::vector<PointId> candidates_;  // memory
 };
 
 }  // namespace byre

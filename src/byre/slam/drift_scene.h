@@ -17,16 +17,24 @@ inline Rig monocular_rig() {
   return rig;
 }
 
-// A lap and a fifth, with a keyframe every third frame. The first half of it is where it should be; from there on the
+struct LapOptions {
+  int frames = 72;  // all of them
+  int step = 3;     // frames from keyframe to keyframe
+  // Keyframes that see a point; those after them see another one there, as round many corners.
+  std::size_t max_views = 1000;
+};
+
+// A lap and a fifth. The first half of it is where it should be; from there on the
 // drift grows evenly.
 class DriftedLap {
  public:
-  DriftedLap(const Rig& rig, const Similarity& whole_drift)
-      : mission(simulate_mission(rig, circling_trajectory(72, 10.0, 2.0, 1.2),
+  DriftedLap(const Rig& rig, const Similarity& whole_drift, const LapOptions& options = {})
+      : mission(simulate_mission(rig, circling_trajectory(options.frames, 10.0, 2.0, 1.2),
                                  {.pixel_sigma = 0.2, .disparity_sigma = 0.1})),
         index(vocabulary_of(mission)),
-        whole_drift_(whole_drift) {
-    const Map truth = true_map(mission, 3, Origin::online);
+        whole_drift_(whole_drift),
+        max_views_(options.max_views) {
+    const Map truth = true_map(mission, options.step, Origin::online);
     map.add_rig(rig);
     keyframes_ = truth.keyframe_count();
     for (const KeyframeId id : truth.keyframe_ids()) add_keyframe(*truth.find_keyframe(id), id);
@@ -80,7 +88,9 @@ class DriftedLap {
     constexpr std::uint32_t kLongestGap = 4;  // keyframes
     std::vector<Observation> visit;
     for (const Observation& seen : truth.observations(id)) {
-      if (!visit.empty() && seen.keyframe.number > visit.back().keyframe.number + kLongestGap) {
+      const bool is_over = visit.size() == max_views_ ||
+                           (!visit.empty() && seen.keyframe.number > visit.back().keyframe.number + kLongestGap);
+      if (is_over) {
         add_point(*truth.find_point(id), visit);
         visit.clear();
       }
@@ -104,6 +114,7 @@ class DriftedLap {
   }
 
   Similarity whole_drift_;
+  std::size_t max_views_;
   int keyframes_ = 0;
 };
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <span>
 #include <utility>
 
 namespace byre {
@@ -16,15 +16,6 @@ namespace {
 constexpr double kMaxApparentShift = 2.0;      // pixels
 constexpr double kMaxSquaredDeviation = 30.0;  // squared sigmas, of six degrees of freedom
 
-// What is needed at every step.
-struct Query {
-  const Frame& frame;
-  const Rig& rig;
-  const MapView& map;
-  const TrackOptions& options;
-  HybridLimits limits{};
-};
-
 // One value for the points of each map.
 template <typename Value>
 struct ByMap {
@@ -32,21 +23,54 @@ struct ByMap {
   Value online;
 };
 
-ByMap<std::vector<PointId>> split(const std::vector<PointId>& candidates) {
-  ByMap<std::vector<PointId>> result;
-  result.offline.reserve(candidates.size());
-  result.online.reserve(candidates.size());
-  for (const PointId id : candidates) (id.origin == Origin::offline ? result.offline : result.online).push_back(id);
-  return result;
+// What was looked for around the guesses, and found.
+struct Found {
+  ByMap<std::vector<ExpectedPoint>> expected;
+  ByMap<MeasuredPoints> measured;
+};
+
+// Memory of a thread, which each frame uses again.
+struct Memory {
+  ByMap<std::vector<PointId>> points;
+  ByMap<std::vector<ExpectedPoint>> at_prediction;
+  std::vector<ExpectedPoint> all_at_prediction;
+  std::vector<GuidedMatch> matches;
+  Found found;
+  PartedPoints parted;
+  MeasuredPoints joined;
+  std::vector<double> depths;
+  std::vector<PointId> offline_inliers;
+  SharedPoints shared;
+};
+
+Memory& memory_of_thread() {
+  thread_local Memory memory;
+  return memory;
+}
+
+// What is needed at every step.
+struct Query {
+  const Frame& frame;
+  const Rig& rig;
+  const MapView& map;
+  const TrackOptions& options;
+  HybridLimits limits{};
+  Memory& memory = memory_of_thread();
+};
+
+void split(const std::vector<PointId>& candidates, ByMap<std::vector<PointId>>& points) {
+  points.offline.clear();
+  points.online.clear();
+  for (const PointId id : candidates) (id.origin == Origin::offline ? points.offline : points.online).push_back(id);
 }
 
 double median_depth(const Query& query, const std::vector<ExpectedPoint>& points, const Pose& camera_from_world) {
-  std::vector<double> depths;
-  depths.reserve(points.size());
+  std::vector<double>& depths = query.memory.depths;
+  depths.clear();
   for (const ExpectedPoint& point : points) {
     depths.push_back((camera_from_world * query.map.find_point(point.id)->position_in_world).z());
   }
-  return depths.empty() ? 1.0 : std::max(1e-3, median(std::move(depths)));
+  return depths.empty() ? 1.0 : std::max(1e-3, median_of(std::span(depths)));
 }
 
 // Pixels by which two poses see a point at this depth apart.
@@ -72,10 +96,10 @@ std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::
   return std::nullopt;
 }
 
-ByMap<std::vector<ExpectedPoint>> project(const Query& query, const ByMap<std::vector<PointId>>& candidates,
-                                          const ByMap<Pose>& camera_from_world) {
-  return {project_points(query.map, candidates.offline, camera_from_world.offline, query.rig),
-          project_points(query.map, candidates.online, camera_from_world.online, query.rig)};
+void project(const Query& query, const ByMap<Pose>& camera_from_world, ByMap<std::vector<ExpectedPoint>>& expected) {
+  const ByMap<std::vector<PointId>>& points = query.memory.points;
+  project_points(query.map, points.offline, camera_from_world.offline, query.rig, expected.offline);
+  project_points(query.map, points.online, camera_from_world.online, query.rig, expected.online);
 }
 
 // Rows of columns and fences look the same a bay farther on, where offline points fit a pose as well.
@@ -86,9 +110,9 @@ bool is_another_place(const Pose& offline, const std::optional<Pose>& online, co
 }
 
 // A first pose for each kind of points: the same one, unless they contradict each other within the limits.
-std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted,
-                                       const ByMap<std::vector<PointId>>& points) {
-  const ByMap<std::vector<ExpectedPoint>> expected = project(query, points, {predicted, predicted});
+std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted) {
+  ByMap<std::vector<ExpectedPoint>>& expected = query.memory.at_prediction;
+  project(query, {predicted, predicted}, expected);
   if (query.options.offline_policy == OfflinePolicy::first) {
     if (const auto offline = guess(query, predicted, expected.offline)) {
       const double depth = median_depth(query, expected.offline, predicted);
@@ -102,45 +126,39 @@ std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted
       return ByMap<Pose>{*offline, contradict ? *online : *offline};
     }
   }
-  std::vector<ExpectedPoint> all = expected.offline;
+  std::vector<ExpectedPoint>& all = query.memory.all_at_prediction;
+  all = expected.offline;
   all.insert(all.end(), expected.online.begin(), expected.online.end());
   const auto both = guess(query, predicted, all);
   if (!both) return std::nullopt;
   return ByMap<Pose>{*both, *both};
 }
 
-// What was looked for around the guesses, and found.
-struct Found {
-  ByMap<std::vector<ExpectedPoint>> expected;
-  ByMap<MeasuredPoints> measured;
-};
-
-MeasuredPoints match_and_measure(const Query& query, const std::vector<ExpectedPoint>& expected,
-                                 const Pose& camera_from_world) {
+void match_and_measure(const Query& query, const std::vector<ExpectedPoint>& expected, const Pose& camera_from_world,
+                       MeasuredPoints& measured) {
   const SearchOptions search{kNarrowRadius, 90, 0.9f};
-  const std::vector<GuidedMatch> matches = match_expected(*query.frame.features, query.map, expected, search);
-  return measure_matches(query.frame, camera_from_world, query.rig, query.map, matches);
+  match_expected(*query.frame.features, query.map, expected, search, query.memory.matches);
+  measure_matches(query.frame, camera_from_world, query.rig, query.map, query.memory.matches, measured);
 }
 
-Found look_for(const Query& query, const ByMap<std::vector<PointId>>& points, const ByMap<Pose>& guesses) {
-  Found found;
-  found.expected = project(query, points, guesses);
-  found.measured.offline = match_and_measure(query, found.expected.offline, guesses.offline);
-  found.measured.online = match_and_measure(query, found.expected.online, guesses.online);
+const Found& look_for(const Query& query, const ByMap<Pose>& guesses) {
+  Found& found = query.memory.found;
+  project(query, guesses, found.expected);
+  match_and_measure(query, found.expected.offline, guesses.offline, found.measured.offline);
+  match_and_measure(query, found.expected.online, guesses.online, found.measured.online);
   return found;
 }
 
 // A feature that shows a point of each map is left to the offline one.
-MeasuredPoints join(const ByMap<MeasuredPoints>& measured, double offline_weight) {
-  MeasuredPoints both = measured.offline;
+void join(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight, MeasuredPoints& both) {
+  both = offline;
   for (PoseObservation& observation : both.observations) observation.weight = offline_weight;
-  for (std::size_t i = 0; i < measured.online.features.size(); ++i) {
-    const int feature = measured.online.features[i].feature;
-    if (std::ranges::binary_search(measured.offline.features, feature, {}, &TrackedFeature::feature)) continue;
-    both.observations.push_back(measured.online.observations[i]);
-    both.features.push_back(measured.online.features[i]);
+  for (std::size_t i = 0; i < online.features.size(); ++i) {
+    const int feature = online.features[i].feature;
+    if (std::ranges::binary_search(offline.features, feature, {}, &TrackedFeature::feature)) continue;
+    both.observations.push_back(online.observations[i]);
+    both.features.push_back(online.features[i]);
   }
-  return both;
 }
 
 // The pose of one kind of points alone; empty when it is not sound.
@@ -189,37 +207,41 @@ bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoi
 
 // How many of the matches fit a pose by noise and systematic errors alone.
 std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
-  return part_by_agreement(camera_from_world, query.rig, measured, 1.0).agreeing.features.size();
+  PartedPoints& parted = query.memory.parted;
+  part_by_agreement(camera_from_world, query.rig, measured, 1.0, parted);
+  return parted.agreeing.features.size();
 }
 
-// The pose that is believed, the points it was refined on, and matches that were left out of that.
+// The pose that is believed, the points it was refined on, and matches that were left out of that. Points are borrowed
+// from the memory of the query.
 struct Solution {
   PoseRefinement refined;
-  MeasuredPoints measured;
-  std::vector<TrackedFeature> left_out;
+  const MeasuredPoints* measured = nullptr;
+  std::span<const TrackedFeature> left_out;
 };
 
-std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world,
-                                       const ByMap<MeasuredPoints>& measured) {
-  MeasuredPoints both = join(measured, query.options.offline_weight);
-  const auto refined = refine_pose(camera_from_world, query.rig, both.observations, {}, query.limits.prior);
+std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world, const MeasuredPoints& offline,
+                                       const MeasuredPoints& online) {
+  MeasuredPoints& both = query.memory.joined;
+  join(offline, online, query.options.offline_weight, both);
+  auto refined = refine_pose(camera_from_world, query.rig, both.observations, {}, query.limits.prior);
   if (!refined || !is_sound(*refined, both.observations.size(), query.options)) return std::nullopt;
-  return Solution{*refined, std::move(both), {}};
+  return Solution{*std::move(refined), &both, {}};
 }
 
 // The pose of one map's points, refined on those and what agrees of the other's.
 Solution solve_led(const Query& query, const PoseRefinement& leader, Origin leading,
                    const ByMap<MeasuredPoints>& measured) {
   const bool offline_leads = leading == Origin::offline;
-  PartedPoints followers = part_by_agreement(
-      leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline, leader.variance_factor);
-  const ByMap<MeasuredPoints> agreeing = offline_leads
-                                             ? ByMap<MeasuredPoints>{measured.offline, std::move(followers.agreeing)}
-                                             : ByMap<MeasuredPoints>{std::move(followers.agreeing), measured.online};
-  auto solution = solve_together(query, leader.camera_from_world, agreeing);
-  if (!solution) solution = Solution{leader, offline_leads ? measured.offline : measured.online, {}};
-  solution->left_out = std::move(followers.disagreeing);
-  return *solution;
+  const MeasuredPoints& of_leader = offline_leads ? measured.offline : measured.online;
+  PartedPoints& followers = query.memory.parted;
+  part_by_agreement(leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline,
+                    leader.variance_factor, followers);
+  auto solution = offline_leads ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
+                                : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
+  if (!solution) solution = Solution{leader, &of_leader, {}};
+  solution->left_out = followers.disagreeing;
+  return *std::move(solution);
 }
 
 // What each map says by itself, and of the other.
@@ -258,10 +280,11 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
                               const ByMap<MeasuredPoints>& measured) {
   if (opinions.offline_stands) return solve_led(query, *opinions.offline, Origin::offline, measured);
   if (opinions.maps_disagree) return solve_led(query, *opinions.online, Origin::online, measured);
-  auto together = solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured);
+  auto together =
+      solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured.offline, measured.online);
   if (together) return together;
-  if (opinions.online) return Solution{*opinions.online, measured.online, {}};
-  if (opinions.offline) return Solution{*opinions.offline, measured.offline, {}};
+  if (opinions.online) return Solution{*opinions.online, &measured.online, {}};
+  if (opinions.offline) return Solution{*opinions.offline, &measured.offline, {}};
   return std::nullopt;
 }
 
@@ -272,18 +295,19 @@ void sort_by_feature(std::vector<TrackedFeature>& features) {
 // What the solution says of each offline match. Elsewhere is a point only when its very patch was found there, not just
 // a corner that resembles it.
 void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
-  std::vector<PointId> inliers;
-  inliers.reserve(result.tracked.features.size());
+  std::vector<PointId>& inliers = query.memory.offline_inliers;
+  inliers.clear();
   for (const TrackedFeature& feature : result.tracked.features) {
     if (feature.point.origin == Origin::offline) inliers.push_back(feature.point);
   }
   std::ranges::sort(inliers);
   result.offline_inliers = static_cast<int>(inliers.size());
+  result.offline_moved.reserve(measured.offline.features.size());
   for (const TrackedFeature& feature : measured.offline.features) {
     if (std::ranges::binary_search(inliers, feature.point)) continue;
     if (shows_patch(feature, *query.frame.features)) result.offline_moved.push_back(feature.point);
   }
-  result.offline_agreed = std::move(inliers);
+  result.offline_agreed = inliers;
 }
 
 ByImageRegion<PointsInView> by_region(const std::vector<ExpectedPoint>& expected,
@@ -311,15 +335,17 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
   result.maps_disagree = opinions.maps_disagree;
   result.offline_stands = opinions.offline_stands;
 
-  std::vector<TrackedFeature> inliers = inliers_of(solution.refined, solution.measured);
+  std::vector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
   sort_by_feature(inliers);
-  const SharedPoints shared = count_shared_points(query.map, inliers);
+  SharedPoints& shared = query.memory.shared;
+  count_shared_points(query.map, inliers, shared);
   result.offline_reference = most_shared(shared, Origin::offline);
   result.online_reference = most_shared(shared, Origin::online);
   result.tracked =
       tracked_frame(solution.refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), query.map);
-  result.tracked.outliers = outliers_of(solution.refined, solution.measured);
-  std::ranges::copy(solution.left_out, std::back_inserter(result.tracked.outliers));
+  std::vector<TrackedFeature>& outliers = result.tracked.outliers;
+  outliers = outliers_of(solution.refined, *solution.measured);
+  outliers.insert(outliers.end(), solution.left_out.begin(), solution.left_out.end());
 
   result.offline_expected = static_cast<int>(found.expected.offline.size());
   result.offline_matches = static_cast<int>(found.measured.offline.features.size());
@@ -345,10 +371,10 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
                                         const TrackOptions& options, const HybridLimits& limits,
                                         bool weighs_focal_lengths) {
   const Query query{frame, rig, map, options, limits};
-  const ByMap<std::vector<PointId>> points = split(candidates);
-  const auto guesses = guess_poses(query, predicted_camera_from_world, points);
+  split(candidates, query.memory.points);
+  const auto guesses = guess_poses(query, predicted_camera_from_world);
   if (!guesses) return std::nullopt;
-  const Found found = look_for(query, points, *guesses);
+  const Found& found = look_for(query, *guesses);
   const Opinions opinions = ask_each(query, *guesses, found);
   const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
@@ -364,9 +390,11 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
 PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                              const std::vector<PointId>& points, const TrackOptions& options) {
   const Query query{frame, rig, map, options};
-  const std::vector<ExpectedPoint> expected = project_points(map, points, camera_from_world, rig);
-  const MeasuredPoints measured = match_and_measure(query, expected, camera_from_world);
-  const PartedPoints parted = part_by_agreement(camera_from_world, rig, measured, 1.0);
+  Found& found = query.memory.found;
+  project_points(map, points, camera_from_world, rig, found.expected.offline);
+  match_and_measure(query, found.expected.offline, camera_from_world, found.measured.offline);
+  PartedPoints& parted = query.memory.parted;
+  part_by_agreement(camera_from_world, rig, found.measured.offline, 1.0, parted);
   PlacedPoints placed;
   for (const TrackedFeature& feature : parted.agreeing.features) placed.agreed.push_back(feature.point);
   for (const TrackedFeature& feature : parted.disagreeing) {

@@ -3,6 +3,9 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/drift_scene.h"
 #include "byre/slam/finishing.h"
+#include "byre/slam/recent_map.h"
+
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -150,6 +153,45 @@ TEST(LoopWithStereo, BendsWhatCameBeforeToo) {
   EXPECT_GE(report.loops, 1);
   EXPECT_LT(lap.worst_error(map, Scale::fixed), 0.015);
   EXPECT_THAT(find_faults(map), IsEmpty());
+}
+
+// The same on a way so long that what lies around both ends of the loop is a small part of it.
+class LongLap : public testing::Test {
+ protected:
+  FinishOptions options_of_what_came() const {
+    FinishOptions options = finish_options();
+    options.first_new = lap_.newest().number - 1;
+    return options;
+  }
+
+  const DriftedLap lap_{simulated_rig(), {1.0, drift_of_pose()}, {.frames = 200, .step = 1, .max_views = 4}};
+  const FinishOptions options_ = options_of_what_came();
+  const LoopEdge edge_ = *edge_of(*find_loop(lap_.map, lap_.index, lap_.newest(), options_.loops), lap_.map);
+  const MapWindow recent_ = recent_map(lap_.map, options_.first_new, {edge_});
+};
+
+TEST_F(LongLap, StillDisagreesOnceWhatLiesAroundTheLoopIsAdjusted) {
+  ASSERT_LT(2 * recent_.keyframes.size(), static_cast<std::size_t>(lap_.map.keyframe_count()));
+  Map map = lap_.map;
+  adjust_at_once(recent_, {edge_}, options_.global, map);
+  EXPECT_GT(disagreement(map, edge_), kMaxLoopDisagreement);
+}
+
+TEST_F(LongLap, IsBentAsAWholeThen) {
+  Map map = lap_.map;
+  const FinishReport report = finish_map(map, lap_.index, options_, {});
+  ASSERT_GE(report.loops, 1);
+  for (const double residual : report.loop_residuals) EXPECT_LT(residual, kMaxLoopDisagreement);
+  EXPECT_THAT(find_faults(map), IsEmpty());
+  std::set<KeyframeId> around;
+  for (const WindowKeyframe& keyframe : recent_.keyframes) around.insert(keyframe.id);
+  int moved = 0;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    if (around.contains(id)) continue;
+    const Pose change = map.camera_from_world(id) * inverse(lap_.map.camera_from_world(id));
+    moved += change.translation.norm() > 1e-6 ? 1 : 0;
+  }
+  EXPECT_GT(moved, lap_.map.keyframe_count() / 3) << "far from the loop";
 }
 
 // A correction by which the newer half of a map of one camera grows.

@@ -11,10 +11,15 @@
 namespace byre {
 namespace {
 
-// A bundle problem and which window observation each of its observations is.
+// A bundle problem, and by which feature of its keyframe each observation is. Poses are those of the window's
+// keyframes, points its points.
 struct WindowBundle {
   BundleProblem problem;
-  std::vector<WindowObservation> observations;
+  std::vector<int> features;
+
+  WindowObservation seen(std::size_t observation) const {
+    return {problem.observations[observation].pose, features[observation]};
+  }
 };
 
 // A point that is held fixed is not known exactly for that: its covariance, as the camera sees it, adds to the sigmas.
@@ -57,7 +62,7 @@ void make_room(const MapWindow& window, WindowBundle& bundle) {
   bundle.problem.poses.reserve(window.keyframes.size());
   bundle.problem.points.reserve(window.points.size());
   bundle.problem.observations.reserve(observations);
-  bundle.observations.reserve(observations);
+  bundle.features.reserve(observations);
 }
 
 // An anchor that sees an offline point has nothing to tell.
@@ -79,7 +84,7 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
       observation.pose = seen.keyframe;
       observation.point = static_cast<int>(p);
       bundle.problem.observations.push_back(observation);
-      bundle.observations.push_back(seen);
+      bundle.features.push_back(seen.feature);
     }
   }
   return bundle;
@@ -122,11 +127,11 @@ void repair(MapWindow& window, int index) {
 }
 
 void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result) {
-  for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
+  for (std::size_t i = 0; i < bundle.features.size(); ++i) {
     const BundleObservation& observation = bundle.problem.observations[i];
     const bool of_offline_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
     if (!is_outlier(observation, of_offline_point, result.squared_errors[i])) continue;
-    const WindowObservation& seen = bundle.observations[i];
+    const WindowObservation seen = bundle.seen(i);
     if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
             .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
       continue;  // went with its point

@@ -25,8 +25,8 @@ std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const Point
 
 // Share of the nearest judged points about one of them that has moved.
 double share_around(const std::vector<JudgedPoint>& judged, std::size_t point) {
-  std::vector<std::pair<double, bool>> others;  // squared metres, moved
-  others.reserve(judged.size());
+  thread_local std::vector<std::pair<double, bool>> others;  // squared metres, moved; memory
+  others.clear();
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (i == point) continue;
     others.push_back({(judged[i].position_in_world - judged[point].position_in_world).squaredNorm(), judged[i].moved});

@@ -89,9 +89,15 @@ struct RowMeasurement {
 
 std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes,
                                          const CalibrationSensitivity& sensitivity) {
+  const auto keypoints_of = [&](int keyframe) -> const std::vector<Keypoint>& {
+    return whole.keyframes[static_cast<std::size_t>(keyframe)].keyframe.frame.features->keypoints();
+  };
+  std::ptrdiff_t count = 0;
+  for (const int i : keyframes) count += std::ranges::count_if(keypoints_of(i), &Keypoint::has_disparity);
   std::vector<RowMeasurement> rows;
+  rows.reserve(static_cast<std::size_t>(count));  // hundreds of thousands
   for (const int i : keyframes) {
-    for (const Keypoint& keypoint : whole.keyframes[static_cast<std::size_t>(i)].keyframe.frame.features->keypoints()) {
+    for (const Keypoint& keypoint : keypoints_of(i)) {
       if (!keypoint.has_disparity()) continue;
       const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
       rows.push_back({keypoint.row_offset, keypoint.disparity_sigma, sensitivity.at(pixel).row(3)});
@@ -116,6 +122,8 @@ Knowledge learn_from_rows(const std::vector<RowMeasurement>& rows, const Knowled
   constexpr int kRounds = 5;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<double> residuals, deviations;
+    residuals.reserve(rows.size());
+    deviations.reserve(rows.size());
     for (const RowMeasurement& row : rows) {
       residuals.push_back((row.offset - row.by_calibration.dot(knowledge.expected)) / row.sigma);
       deviations.push_back(std::abs(residuals.back()));

@@ -52,12 +52,14 @@ std::vector<PointId> distinct(const std::vector<PointId>& points) {
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
                                               const MapView& map, const std::vector<GuidedMatch>& matches,
                                               const TrackOptions& options) {
-  thread_local MeasuredPoints measured;  // memory
+  thread_local MeasuredPoints measured;  // memory, as the next
+  thread_local SharedPoints shared;
   measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
   std::vector<TrackedFeature> inliers = inliers_of(*refined, measured);
-  const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
+  count_shared_points(map, inliers, shared);
+  const KeyframeId reference = most_shared(shared).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
   tracked.matches = static_cast<int>(matches.size());
   tracked.outliers = outliers_of(*refined, measured);
@@ -75,12 +77,10 @@ std::vector<int> contradicting_features(const TrackedFrame& tracked, const Featu
   return contradicting;
 }
 
-std::vector<SeenPoint> seen_points(const TrackedFrame& tracked) {
-  std::vector<SeenPoint> seen;
-  seen.reserve(tracked.features.size() + tracked.outliers.size());
+void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& seen) {
+  seen.reserve(seen.size() + tracked.features.size() + tracked.outliers.size());
   for (const TrackedFeature& feature : tracked.features) seen.push_back({feature.point, feature.pixel, true});
   for (const TrackedFeature& feature : tracked.outliers) seen.push_back({feature.point, feature.pixel, false});
-  return seen;
 }
 
 std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {

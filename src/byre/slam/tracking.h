@@ -40,7 +40,7 @@ struct SeenPoint {
 };
 
 // What there is to show of a tracked frame: inliers, then outliers.
-std::vector<SeenPoint> seen_points(const TrackedFrame& tracked);
+void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& seen);
 
 // In which order points of an offline map and of an online one are used.
 //   first     a pose from offline points, where there are enough, guides the search for online ones

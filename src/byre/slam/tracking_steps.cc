@@ -60,19 +60,14 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
   }
 }
 
-MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                               const std::vector<GuidedMatch>& matches) {
-  MeasuredPoints measured;
-  measure_matches(frame, camera_from_world, rig, map, matches, measured);
-  return measured;
-}
-
-PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                               double max_variance_factor) {
+void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                       double max_variance_factor, PartedPoints& parted) {
   PoseRefinementOptions at_pose;
   at_pose.rounds = 0;
   at_pose.max_variance_factor = max_variance_factor;
-  PartedPoints parted;
+  parted.agreeing.observations.clear();
+  parted.agreeing.features.clear();
+  parted.disagreeing.clear();
   const auto judged = refine_pose(camera_from_world, rig, measured.observations, at_pose);
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     if (!judged || !judged->inliers[i]) {
@@ -82,7 +77,6 @@ PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, co
     parted.agreeing.observations.push_back(measured.observations[i]);
     parted.agreeing.features.push_back(measured.features[i]);
   }
-  return parted;
 }
 
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
@@ -107,10 +101,8 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
   return refined->camera_from_world;
 }
 
-SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features) {
-  constexpr std::size_t kUsualKeyframes = 64;
-  SharedPoints shared;
-  shared.reserve(kUsualKeyframes);
+void count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features, SharedPoints& shared) {
+  shared.clear();
   for (const TrackedFeature& feature : features) {
     map.visit_observations(feature.point, [&](const Observation& observation) {
       const auto at = std::ranges::lower_bound(shared, observation.keyframe, {}, &std::pair<KeyframeId, int>::first);
@@ -121,7 +113,6 @@ SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFe
       }
     });
   }
-  return shared;
 }
 
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin) {

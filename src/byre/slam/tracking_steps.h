@@ -22,11 +22,7 @@ struct MeasuredPoints {
   std::vector<TrackedFeature> features;
 };
 
-// Each match by its point's reference patch, where that keyframe still exists, else by its corner.
-MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                               const std::vector<GuidedMatch>& matches);
-
-// The same; refills `measured`.
+// Each match by its point's reference patch, where that keyframe still exists, else by its corner. Refills `measured`.
 void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                      const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
 
@@ -37,8 +33,9 @@ struct PartedPoints {
 };
 
 // max_variance_factor: by which their errors may exceed their sigmas, as they do for the points that gave the pose.
-PartedPoints part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                               double max_variance_factor);
+// Refills `parted`.
+void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                       double max_variance_factor, PartedPoints& parted);
 
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
@@ -49,9 +46,9 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
                                const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
                                const TrackOptions& options);
 
-// How many of the points each keyframe sees, by keyframe.
+// How many of the points each keyframe sees, by keyframe. Refills `shared`.
 using SharedPoints = std::vector<std::pair<KeyframeId, int>>;
-SharedPoints count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features);
+void count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features, SharedPoints& shared);
 
 // The keyframe that sees most of them; of one map only, unless origin is empty.
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});

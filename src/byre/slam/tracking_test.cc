@@ -101,7 +101,8 @@ TEST_F(TrackingOnATrueMap, ShowsInliersAndOutliersWithTheirPoints) {
   ASSERT_TRUE(tracked);
   EXPECT_FALSE(tracked->outliers.empty());
   EXPECT_EQ(tracked->features.size() + tracked->outliers.size(), static_cast<std::size_t>(tracked->matches));
-  const std::vector<SeenPoint> seen = seen_points(*tracked);
+  std::vector<SeenPoint> seen;
+  append_seen_points(*tracked, seen);
   ASSERT_EQ(seen.size(), static_cast<std::size_t>(tracked->matches));
   EXPECT_TRUE(seen.front().is_inlier);
   EXPECT_EQ(seen.front().point, tracked->features.front().point);

@@ -136,6 +136,7 @@ Engine::Processed Engine::process(const ImageFrame& images, const std::optional<
 
 Finishing Engine::finish_map(const FinishHooks& hooks) {
   const Stopwatch watch;
+  extractor_.rest();
   Finishing finishing;
   finishing.report = session_.finish_map(hooks);
   prior_.look_again(session_.final_trajectory());
