@@ -28,6 +28,15 @@ inline BodyMotion no_motion() {
 // gyroscope is: deviations add up, not variances.
 BodyMotion operator*(const BodyMotion& first, const BodyMotion& second);
 
+// How fast wheels say that the robot's base moves, in the base's own axes. One whose wheels drive it ahead alone has
+// nothing to the left.
+struct BaseVelocity {
+  Timestamp time{};
+  double ahead = 0.0;    // metres per second
+  double left = 0.0;     // metres per second
+  double turning = 0.0;  // radians per second, to the left
+};
+
 // What a gyroscope tells.
 struct AngularRate {
   Timestamp time{};
@@ -36,8 +45,9 @@ struct AngularRate {
 
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {
-  Trajectory wheels;               // poses of the robot's base in a frame of the wheels' own
-  std::vector<AngularRate> rates;  // in order of time
+  Trajectory wheels;                     // poses of the robot's base in a frame of the wheels' own
+  std::vector<BaseVelocity> velocities;  // of wheels that tell no poses, in order of time
+  std::vector<AngularRate> rates;        // in order of time
 };
 
 }  // namespace byre

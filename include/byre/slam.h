@@ -83,6 +83,9 @@ class Slam {
   // map's unit is, byre finds out while the robot drives and turns; until then it does not use them. Where wheels slip
   // they are left out.
   void tell_wheels(const StampedPose& odometry_from_base);
+  // The same by wheels that tell how fast the base moves, and no poses. No motion is made up where none was told for
+  // three tenths of a second. One robot's wheels tell the one or the other.
+  void tell_wheels(const BaseVelocity& velocity);
   // What a gyroscope tells, likewise. Its bias and how it is turned against the body are found out.
   void tell_gyroscope(const AngularRate& rate);
 

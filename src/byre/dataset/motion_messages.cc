@@ -1,6 +1,21 @@
 #include "byre/dataset/motion_messages.h"
 
+#include <cmath>
+
 namespace byre {
+namespace {
+
+std::optional<BaseVelocity> velocity_of(const ros::Twist& twist, Timestamp time) {
+  const BaseVelocity velocity{time, twist.linear.x, twist.linear.y, twist.angular.z};
+  const bool is_finite = std::isfinite(velocity.ahead + velocity.left + velocity.turning);
+  return is_finite ? std::optional(velocity) : std::nullopt;
+}
+
+std::optional<WheelSample> sample_of(const std::optional<BaseVelocity>& velocity, Timestamp time) {
+  return velocity ? std::optional(WheelSample{time, {}, velocity}) : std::nullopt;
+}
+
+}  // namespace
 
 std::optional<Pose> pose_of(const ros::Pose& message) {
   const auto& [position, orientation] = message;
@@ -10,9 +25,21 @@ std::optional<Pose> pose_of(const ros::Pose& message) {
   return Pose{rotation.normalized(), translation};
 }
 
-std::optional<StampedPose> sample_of(const ros::Odometry& message, Timestamp time) {
+std::optional<WheelSample> sample_of(const ros::Odometry& message, Timestamp time) {
+  const ros::Quaternion& turn = message.pose.pose.orientation;
+  const bool has_no_turn = turn.w == 0.0 && turn.x == 0.0 && turn.y == 0.0 && turn.z == 0.0;
+  const auto velocity = velocity_of(message.twist.twist, time);
+  if (has_no_turn || message.pose.covariance[0] < 0.0) return sample_of(velocity, time);
   const auto pose = pose_of(message.pose.pose);
-  return pose ? std::optional(StampedPose{time, *pose}) : std::nullopt;
+  return pose ? std::optional(WheelSample{time, pose, velocity}) : std::nullopt;
+}
+
+std::optional<WheelSample> sample_of(const ros::TwistStamped& message, Timestamp time) {
+  return sample_of(velocity_of(message.twist, time), time);
+}
+
+std::optional<WheelSample> sample_of(const ros::TwistWithCovarianceStamped& message, Timestamp time) {
+  return sample_of(velocity_of(message.twist.twist, time), time);
 }
 
 std::optional<AngularRate> sample_of(const ros::Imu& message, Timestamp time) {

@@ -34,7 +34,7 @@ double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_
 }
 
 // What wheels so mounted leave open, in the lengths of the map.
-Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
+Matrix6 covariance_of(const Pose& motion, const Pose& base, const WheelMounting& mounting) {
   constexpr double kLeastShare = 0.01;
   constexpr double kTurnPerMetre = 0.01;  // radians
   constexpr double kLeastMetres = 1e-3;
@@ -42,8 +42,9 @@ Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
   const double way = motion.translation.norm();
   const double turn = rotation_log(motion.rotation).norm();
   const double arm_sigma = std::sqrt(mounting.covariance.bottomRightCorner<2, 2>().trace());  // metres
-  const double way_sigma = way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
-                           (turn * arm_sigma + kLeastMetres) / mounting.metres_per_unit;
+  const double way_sigma =
+      way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
+      (turn * arm_sigma + kLeastMetres + mounting.side_error * std::abs(way_across(base))) / mounting.metres_per_unit;
   const double turn_sigma =
       turn * std::max(kLeastShare, mounting.turn_error) + kTurnPerMetre * way * mounting.metres_per_unit + kLeastTurn;
   Matrix6 covariance = Matrix6::Zero();
@@ -76,6 +77,11 @@ void MotionPrior::begin_with(const KnownMounting& known) {
 
 // However long no frame comes.
 void MotionPrior::add(const StampedPose& wheels) {
+  wheels_.add(wheels);
+  wheels_.forget_before(wheels.time - kMostKept);
+}
+
+void MotionPrior::add(const BaseVelocity& wheels) {
   wheels_.add(wheels);
   wheels_.forget_before(wheels.time - kMostKept);
 }
@@ -299,7 +305,7 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   const auto base = told_base(earlier, later, turn);
   if (!base) return {};
   const Pose body = body_motion(*mounting, base->motion);
-  BodyMotion motion{body, covariance_of(body, *mounting)};
+  BodyMotion motion{body, covariance_of(body, base->motion, *mounting)};
   if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
   return motion;

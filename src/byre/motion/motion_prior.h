@@ -36,6 +36,7 @@ class MotionPrior {
   }
 
   void add(const StampedPose& wheels);
+  void add(const BaseVelocity& wheels);
   void add(const AngularRate& rate);
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
 

@@ -103,6 +103,30 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
+// Wheels that tell how fast the base moves, at 50 Hz, but for a gap in the stream while all is seen and another one in
+// the dark.
+TEST(MotionPrior, BridgesTheDarkByVelocities) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  MotionPrior prior;
+  std::mt19937 random(5);
+  for (int step = 0; step < 7200; ++step) {
+    const double t = step * 0.01;
+    const bool is_lost = (t > 20.0 && t < 20.4) || (t > 68.0 && t < 69.0);
+    if (step % 2 == 0 && !is_lost) prior.add(drive.velocity(t));
+    if (step % 5 == 0) prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
+  }
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.37, 0.004);
+  EXPECT_EQ(prior.slips(), 0);
+  const BodyMotion told = over(prior, 60.0, 67.9);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 67.9));
+  EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05) << "metres, of 4";
+  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6) << "within 95 %";
+  EXPECT_FALSE(prior.between(from_seconds(68.5), from_seconds(68.55))) << "in the gap";
+  EXPECT_FALSE(prior.between(from_seconds(67.9), from_seconds(69.1))) << "across it";
+  EXPECT_TRUE(prior.between(from_seconds(69.2), from_seconds(69.25)));
+}
+
 TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.gyroscope = true}, 60.0, 60.0);

@@ -30,7 +30,10 @@ struct WheelMounting {
   double metres_per_unit = 1.0;  // metres by the wheels in a unit of the map's lengths
   double scale_sigma = 0.0;      // standard deviation of metres_per_unit as a share of it
   double way_error = 0.0;        // median distance between motions by wheels and by sight, as a share of the way
-  double turn_error = 0.0;       // median difference of turns, as a share of the turn, without turn_errors
+  // Median of the same among motions to the side, as a share of the way across. Wheels that roll to all sides slide
+  // more that way, and tell it wrongly; it is presumed until they went there. Those that drive ahead never go across.
+  double side_error = 0.2;
+  double turn_error = 0.0;  // median difference of turns, as a share of the turn, without turn_errors
   TurnErrors turn_errors;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // covariance of unknowns_about
 };
@@ -55,6 +58,9 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
 // that points up. Empty where they do not tell what is ahead.
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
                                                     const Eigen::Vector3d& up_in_body);
+
+// Metres that a base goes to its left, beside the arc that it drives along: nothing, where its wheels roll ahead alone.
+double way_across(const Pose& base);
 
 // The body's motion, in the map's lengths, by that of the base as it was.
 Pose body_motion(const WheelMounting& mounting, const Pose& base);

@@ -39,6 +39,9 @@ class MotionFeed {
     for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
       engine.tell_wheels(samples_.wheels[wheel_]);
     }
+    for (; velocity_ < samples_.velocities.size() && samples_.velocities[velocity_].time <= until; ++velocity_) {
+      engine.tell_wheels(samples_.velocities[velocity_]);
+    }
     for (; rate_ < samples_.rates.size() && samples_.rates[rate_].time <= until; ++rate_) {
       engine.tell_gyroscope(samples_.rates[rate_]);
     }
@@ -47,6 +50,7 @@ class MotionFeed {
  private:
   const MotionSamples& samples_;
   std::size_t wheel_ = 0;
+  std::size_t velocity_ = 0;
   std::size_t rate_ = 0;
 };
 

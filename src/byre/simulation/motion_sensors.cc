@@ -88,7 +88,10 @@ std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const Motion
 
 MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options) {
   if (world_from_body.size() < 2) return {};
-  return {told_by_wheels(world_from_body, options), told_by_gyroscope(world_from_body, options)};
+  MotionSamples told;
+  told.wheels = told_by_wheels(world_from_body, options);
+  told.rates = told_by_gyroscope(world_from_body, options);
+  return told;
 }
 
 }  // namespace byre

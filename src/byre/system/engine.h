@@ -87,6 +87,7 @@ class Engine {
 
   // What wheels and a gyroscope tell, each in order of time, before the frames that it leads to.
   void tell_wheels(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
+  void tell_wheels(const BaseVelocity& velocity) { prior_.add(velocity); }
   void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
 
   // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.

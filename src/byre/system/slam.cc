@@ -226,6 +226,10 @@ void Slam::tell_wheels(const StampedPose& odometry_from_base) {
   parts_->engine.tell_wheels(odometry_from_base);
 }
 
+void Slam::tell_wheels(const BaseVelocity& velocity) {
+  parts_->engine.tell_wheels(velocity);
+}
+
 void Slam::tell_gyroscope(const AngularRate& rate) {
   parts_->engine.tell_gyroscope(rate);
 }
