@@ -3,6 +3,7 @@
 #include "byre/pose.h"
 #include "byre/trajectory.h"
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -43,11 +44,20 @@ struct AngularRate {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's own axes
 };
 
+// What an accelerometer tells.
+struct Acceleration {
+  Timestamp time{};
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it; at rest
+                                                           // it points up, as long as gravity
+};
+
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {
-  Trajectory wheels;                     // poses of the robot's base in a frame of the wheels' own
-  std::vector<BaseVelocity> velocities;  // of wheels that tell no poses, in order of time
-  std::vector<AngularRate> rates;        // in order of time
+  Trajectory wheels;                                      // poses of the robot's base in a frame of the wheels' own
+  std::vector<BaseVelocity> velocities;                   // of wheels that tell no poses, in order of time
+  std::vector<AngularRate> rates;                         // in order of time
+  std::vector<Acceleration> accelerations;                // in order of time
+  std::optional<Eigen::Quaterniond> body_from_gyroscope;  // where the recording says how the gyroscope is turned
 };
 
 }  // namespace byre

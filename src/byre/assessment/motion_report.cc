@@ -21,6 +21,12 @@ std::string describe(const WheelMounting& wheels, const ToldMotion& told, bool i
   return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
 }
 
+std::string describe_stops(const ToldMotion& told) {
+  std::string text = formatted("stood still %d times, %.1f s", told.stops, told.stood_s);
+  if (told.to_keep.up) text += formatted("; up is known to %.1f deg in the map", told.to_keep.up->sigma / kDegree);
+  return text + formatted("; held roll and pitch of %d bridged frames", told.tilts_held);
+}
+
 bool is_bridged(const MappedFrame& frame) {
   return frame.report && frame.report->map_from_body && frame.report->health.doubt == Doubt::bridged;
 }
@@ -36,6 +42,7 @@ std::string motion_rows(const MapRun& run, bool is_metric) {
     text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
                                        told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
   }
+  if (told.stops > 0) text += row("gravity", describe_stops(told));
   if (!told.wheels && told.is_mounted_otherwise) {
     text += row("wheels", "mounted otherwise than when the map was made, and it is not known yet how");
   } else if (!told.wheels && !told.gyroscope) {

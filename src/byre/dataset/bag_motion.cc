@@ -77,7 +77,7 @@ std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::str
   return read_topic<ros::Odometry, WheelSample>(bag, topic, place, warnings);
 }
 
-// Of all messages one kind is used, which may be known by the later ones alone.
+// One kind is used of all messages, and may be known by the later ones alone.
 void take_over_wheels(const std::vector<WheelSample>& wheels, MotionSamples& samples) {
   WheelStream stream;
   for (const WheelSample& sample : wheels) stream.add(sample);
@@ -114,7 +114,10 @@ BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::strin
   if (wants_gyroscope(options)) {
     const Asked asked{options.imu_topic, "name one of them: --imu-topic TOPIC, or leave the gyroscope out"};
     const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
-    motion.samples.rates = read_topic<ros::Imu, AngularRate>(bag, topic, place, motion.warnings);
+    for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, motion.warnings)) {
+      motion.samples.rates.push_back(sample.rate);
+      if (sample.acceleration) motion.samples.accelerations.push_back(*sample.acceleration);
+    }
   }
   return motion;
 }

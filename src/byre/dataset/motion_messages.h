@@ -23,7 +23,14 @@ std::optional<WheelSample> sample_of(const ros::Odometry& message, Timestamp tim
 std::optional<WheelSample> sample_of(const ros::TwistStamped& message, Timestamp time);
 std::optional<WheelSample> sample_of(const ros::TwistWithCovarianceStamped& message, Timestamp time);
 
-// What a gyroscope tells, likewise.
-std::optional<AngularRate> sample_of(const ros::Imu& message, Timestamp time);
+// What a gyroscope tells, and the accelerometer beside it.
+struct ImuSample {
+  AngularRate rate;
+  std::optional<Acceleration> acceleration{};
+};
+
+// With the time given; empty where the rates are no numbers. Without an acceleration where the message says that there
+// is none, and where it holds zeros alone.
+std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time);
 
 }  // namespace byre

@@ -173,11 +173,14 @@ std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const Kn
 }
 
 // The axis nearest to the one that is presumed about which the body turns, and along which it does not drive.
-std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body) {
+std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body,
+                                           UpSource source) {
   constexpr double kPresumed = 0.05;  // sum of squared turns that the presumption counts for
+  constexpr double kMeasured = 1.0;   // sum of squared turns that an accelerometer counts for
   constexpr double kTurning = 0.1;    // radians, of a motion whose way tells badly what is ahead
   constexpr double kLeast = 0.3;      // length of what is left of an axis
-  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), left = ahead, turned = kPresumed * up_in_body.normalized();
+  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), left = ahead,
+                  turned = (source == UpSource::measured ? kMeasured : kPresumed) * up_in_body.normalized();
   for (const MotionPair& motion : motions) {
     const double yaw = yaw_of(motion.base);
     const Eigen::Vector3d seen = motion.body.translation / (1.0 + std::pow(yaw / kTurning, 2));
@@ -275,12 +278,12 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
 }
 
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
-                                                    const Eigen::Vector3d& up_in_body) {
+                                                    const Eigen::Vector3d& up_in_body, UpSource source) {
   constexpr double kArm = 0.3;         // metres, standard deviation
   constexpr double kLeastWay = 0.3;    // metres, all ways together
   constexpr double kMaxSigma = 0.2;    // share of the scale, and radians
   constexpr double kLeastError = 0.1;  // share of ways and turns
-  const auto up = presumed_up(motions, up_in_body);
+  const auto up = presumed_up(motions, up_in_body, source);
   if (!up) return {};
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
   const std::vector<PlanarMotion> planar_motions = planar(motions, level_from_body);

@@ -2,6 +2,7 @@
 
 #include "byre/pose.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -53,11 +54,15 @@ Eigen::Matrix4d usual_change(const WheelMounting& mounting);
 std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions,
                                                  const std::optional<WheelMounting>& known = {});
 
+// From where it is known which axis points up: an accelerometer has told, or a camera is upright as a rule.
+enum class UpSource : std::uint8_t { presumed, measured };
+
 // A guess while the motions leave it open, by little more than a metre of way: the body is upright as far as they do
 // not say otherwise, its lever arm is short, and it looks to where they say that is ahead. up_in_body: about, the axis
 // that points up. Empty where they do not tell what is ahead.
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
-                                                    const Eigen::Vector3d& up_in_body);
+                                                    const Eigen::Vector3d& up_in_body,
+                                                    UpSource source = UpSource::presumed);
 
 // Metres that a base goes to its left, beside the arc that it drives along: nothing, where its wheels roll ahead alone.
 double way_across(const Pose& base);

@@ -62,7 +62,7 @@ void MotionInput::look_for_wheels() {
 
 void MotionInput::take() {
   if (gyroscope_) {
-    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& rate) { keep(rate, rates_); });
+    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) { keep(sample, imu_); });
   }
   if (config_.wheels.empty()) return;
   if (!wheels_) look_for_wheels();
@@ -85,9 +85,13 @@ void MotionInput::tell(const StampClock& clock, SlamRunner& runner) {
     velocity.time = time;
     runner.tell_wheels(velocity);
   }
-  for (const AngularRate& rate : rates_) runner.tell_gyroscope({clock.without_jumps(rate.time), rate.rate});
+  for (const ImuSample& sample : imu_) {
+    const Timestamp time = clock.without_jumps(sample.rate.time);
+    runner.tell_gyroscope({time, sample.rate.rate});
+    if (sample.acceleration) runner.tell_accelerometer({time, sample.acceleration->acceleration});
+  }
   samples_.clear();
-  rates_.clear();
+  imu_.clear();
 }
 
 }  // namespace byre

@@ -36,7 +36,7 @@ class MotionInput {
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
   std::deque<WheelSample> samples_;  // the last seconds of wheels, by their own stamps
-  std::deque<AngularRate> rates_;    // the last seconds, by their own stamps
+  std::deque<ImuSample> imu_;        // the last seconds, by their own stamps
 };
 
 }  // namespace byre

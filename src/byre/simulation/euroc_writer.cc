@@ -122,9 +122,13 @@ void write_motion(const MotionSamples& motion, const fs::path& folder) {
   write_trajectory(motion.wheels, folder / "wheel.txt");
   const fs::path path = folder / "mav0" / "imu0" / "data.csv";
   std::ofstream file = create(path);
-  file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
-  for (const AngularRate& rate : motion.rates) {
-    file << rate.time.count() << "," << rate.rate.x() << "," << rate.rate.y() << "," << rate.rate.z() << "\n";
+  file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+          "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+  for (std::size_t i = 0; i < motion.rates.size(); ++i) {
+    const auto& [time, rate] = motion.rates[i];
+    const Eigen::Vector3d& acceleration = motion.accelerations[i].acceleration;
+    file << time.count() << "," << rate.x() << "," << rate.y() << "," << rate.z() << "," << acceleration.x() << ","
+         << acceleration.y() << "," << acceleration.z() << "\n";
   }
   close(file, path);
 }

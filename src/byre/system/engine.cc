@@ -105,10 +105,14 @@ FrameReport Engine::process_in_time(const Frame& frame, const std::optional<Body
   log_.job_seconds.clear();
   const bool is_told = !motion && last_frame_ && !prior_.is_empty();
   const auto known_motion = is_told ? prior_.between(*last_frame_, frame.time) : motion;
+  session_.tell_tilt(is_told ? prior_.tilt(frame.time) : std::nullopt);
   FrameReport report = session_.process(frame, known_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
+  if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
+    prior_.note_place(*report.map_from_body);
+  }
   budget_.end();
   report.cuts = budget_.cuts();
   report.is_late = budget_.is_late();

@@ -89,6 +89,10 @@ class Engine {
   void tell_wheels(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
   void tell_wheels(const BaseVelocity& velocity) { prior_.add(velocity); }
   void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
+  void tell_accelerometer(const Acceleration& acceleration) { prior_.add(acceleration); }
+  void tell_gyroscope_mounting(const Eigen::Quaterniond& body_from_gyroscope) {
+    prior_.presume_gyroscope(body_from_gyroscope);
+  }
 
   // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.
   Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});

@@ -234,6 +234,14 @@ void Slam::tell_gyroscope(const AngularRate& rate) {
   parts_->engine.tell_gyroscope(rate);
 }
 
+void Slam::tell_accelerometer(const Acceleration& acceleration) {
+  parts_->engine.tell_accelerometer(acceleration);
+}
+
+void Slam::tell_gyroscope_mounting(const Eigen::Quaterniond& body_from_gyroscope) {
+  parts_->engine.tell_gyroscope_mounting(body_from_gyroscope);
+}
+
 void Slam::pause_mapping(bool is_paused) {
   parts_->engine.pause_mapping(is_paused);
 }
