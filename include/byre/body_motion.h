@@ -53,11 +53,12 @@ struct Acceleration {
 
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {
-  Trajectory wheels;                                      // poses of the robot's base in a frame of the wheels' own
-  std::vector<BaseVelocity> velocities;                   // of wheels that tell no poses, in order of time
-  std::vector<AngularRate> rates;                         // in order of time
-  std::vector<Acceleration> accelerations;                // in order of time
-  std::optional<Eigen::Quaterniond> body_from_gyroscope;  // where the recording says how the gyroscope is turned
+  Trajectory wheels;                        // poses of the robot's base in a frame of the wheels' own
+  std::vector<BaseVelocity> velocities;     // of wheels that tell no poses, in order of time
+  std::vector<AngularRate> rates;           // in order of time
+  std::vector<Acceleration> accelerations;  // in order of time
+  // How the gyroscope is turned against the left camera, where the recording says so.
+  std::optional<Eigen::Quaterniond> left_from_gyroscope;
 };
 
 }  // namespace byre

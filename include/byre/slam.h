@@ -91,9 +91,9 @@ class Slam {
   // What an accelerometer of the same part tells, about the same axes, likewise. It tells which way is up while the
   // robot stands still, and nothing else.
   void tell_accelerometer(const Acceleration& acceleration);
-  // How gyroscope and accelerometer are turned against the body, where somebody has calibrated it: to a degree or so.
-  // Before anything is told; found out otherwise.
-  void tell_gyroscope_mounting(const Eigen::Quaterniond& body_from_gyroscope);
+  // How gyroscope and accelerometer are turned against the left camera, where somebody has calibrated it: to a degree
+  // or two. Before anything is told; found out otherwise.
+  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope);
 
   // Where the robot is, as somebody says: of use where places look alike, such as the two ends of a barn. While a
   // mission finds itself from nothing it looks in the kept map there alone, for the hint's seconds; then everywhere

@@ -60,7 +60,7 @@ fs::path rates_of(const fs::path& recording) {
 
 }  // namespace
 
-MotionSamples read_motion(const fs::path& recording, const OpenOptions& options) {
+MotionSamples read_motion(const fs::path& recording, const OpenOptions& options, const Pose& body_from_left) {
   MotionSamples samples;
   const fs::path beside = recording / "wheel.txt";
   if (options.wheels) {
@@ -73,7 +73,9 @@ MotionSamples read_motion(const fs::path& recording, const OpenOptions& options)
     read_imu(imu, samples);
     const fs::path sensor = imu.parent_path() / "sensor.yaml";
     const bool is_of_same_body = !options.calibration;  // a calibration of somebody else's may have another one
-    if (is_of_same_body && fs::is_regular_file(sensor)) samples.body_from_gyroscope = read_body_from_imu(sensor);
+    if (is_of_same_body && fs::is_regular_file(sensor)) {
+      samples.left_from_gyroscope = body_from_left.rotation.conjugate() * read_body_from_imu(sensor);
+    }
   }
   return samples;
 }

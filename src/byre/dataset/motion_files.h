@@ -14,6 +14,8 @@ namespace byre {
 //   mav0/imu0/sensor.yaml   EuRoC: how the sensor is turned against the body (T_BS)
 // Wheels are used where the file is there or the options name one; the gyroscope where the options ask for it. Throws
 // InputError naming file and line: a file named is not there, or does not parse, or has times out of order.
-MotionSamples read_motion(const std::filesystem::path& recording, const OpenOptions& options);
+// body_from_left: of the recording's own calibration.
+MotionSamples read_motion(const std::filesystem::path& recording, const OpenOptions& options,
+                          const Pose& body_from_left = {});
 
 }  // namespace byre

@@ -149,8 +149,7 @@ void MotionPrior::watch_standing(Timestamp time, const std::optional<Pose>& seen
   if (!gyroscope) return;
   const UpInBody up = up_in_body(*steady, *gyroscope);
   if (up.sigma > kMostSigma) return;
-  up_in_body_ = up.up;
-  is_up_measured_ = true;
+  measured_up_ = up.up;
 }
 
 std::optional<SteadyTrack::Steady> MotionPrior::standing_by_wheels(Timestamp time) const {
@@ -273,9 +272,10 @@ void MotionPrior::look_for_wheel_mounting() {
 void MotionPrior::presume_mounting() {
   constexpr std::size_t kLeastMotions = 2;
   presumed_.reset();
-  if (mounting_ || !up_in_body_ || seen_.size() < kLeastMotions) return;
-  const UpSource source = is_up_measured_ ? UpSource::measured : UpSource::presumed;
-  presumed_ = presume_wheel_mounting(pairs(), *up_in_body_, source);
+  if (mounting_ || seen_.size() < kLeastMotions) return;
+  const std::vector<MotionPair> all = pairs();
+  if (measured_up_) presumed_ = presume_wheel_mounting(all, *measured_up_, UpSource::measured);
+  if (!presumed_ && up_in_body_) presumed_ = presume_wheel_mounting(all, *up_in_body_);
 }
 
 const WheelMounting* MotionPrior::used_mounting() const {

@@ -131,7 +131,7 @@ class MotionPrior {
   int looks_ = 0;                     // looks by which the mounting of wheels was known
   std::optional<WheelMounting> mounting_;
   std::optional<Eigen::Vector3d> up_in_body_;
-  bool is_up_measured_ = false;  // by accelerations
+  std::optional<Eigen::Vector3d> measured_up_;  // by accelerations
   std::optional<GyroscopeMounting> presumed_gyroscope_;
   std::optional<WheelMounting> presumed_;  // while mounting_ is not known
   std::optional<GyroscopeMounting> gyroscope_;

@@ -138,6 +138,20 @@ TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
   EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.1);
 }
 
+// Before it has turned, an accelerometer alone can tell of a camera that lies on its side.
+TEST(WheelMounting, IsPresumedByAMeasuredUpThoughTheCameraLiesOnItsSide) {
+  Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});
+  const std::vector<MotionPair> pairs = pairs_of(drive, 1.5);
+  const auto error = [&](const Eigen::Vector3d& up, UpSource source) {
+    const auto mounting = presume_wheel_mounting(pairs, up, source);
+    return mounting ? angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation) : 10.0;
+  };
+  const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT(error(rotation_exp({0.01, 0.0, 0.01}) * up, UpSource::measured), 0.15);
+  EXPECT_GT(error(-Eigen::Vector3d::UnitY(), UpSource::presumed), 0.5);
+}
+
 TEST(WheelMounting, IsNotPresumedByTurningOnTheSpot) {
   const Drive drive{.base_from_body = camera_on_base()};
   std::vector<MotionPair> pairs = pairs_of(drive, 3.0);

@@ -110,7 +110,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
   const Stopwatch watch;
   Engine engine(frames.calibration(), options, std::move(before));
   MotionFeed feed(frames.motion());
-  if (const auto& axes = frames.motion().body_from_gyroscope) engine.tell_gyroscope_mounting(*axes);
+  if (const auto& axes = frames.motion().left_from_gyroscope) engine.tell_gyroscope_mounting(*axes);
   MapRun run;
   bool is_begun = false;
   while (const auto frame = frames.next(hooks.should_stop)) {

@@ -120,7 +120,6 @@ MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSe
   told.wheels = told_by_wheels(world_from_body, options);
   told.rates = told_by_gyroscope(world_from_body, options);
   told.accelerations = told_by_accelerometer(world_from_body, options);
-  told.body_from_gyroscope = Eigen::Quaterniond::Identity();
   return told;
 }
 

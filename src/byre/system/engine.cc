@@ -71,7 +71,8 @@ std::string_view name_of(OfflinePolicy policy) {
 }
 
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
-    : known_(known_before(given, options)),
+    : body_from_left_(given.body_from_left.rotation),
+      known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
       budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
       session_(extractor_.rig(), session_options(given, options),

@@ -90,8 +90,8 @@ class Engine {
   void tell_wheels(const BaseVelocity& velocity) { prior_.add(velocity); }
   void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
   void tell_accelerometer(const Acceleration& acceleration) { prior_.add(acceleration); }
-  void tell_gyroscope_mounting(const Eigen::Quaterniond& body_from_gyroscope) {
-    prior_.presume_gyroscope(body_from_gyroscope);
+  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
+    prior_.presume_gyroscope(body_from_left_ * left_from_gyroscope);
   }
 
   // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.
@@ -127,6 +127,7 @@ class Engine {
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
+  Eigen::Quaterniond body_from_left_;        // constant after construction
   std::optional<RefinedCalibration> known_;  // before any frame
   Extractor extractor_;
   MotionPrior prior_;

@@ -238,8 +238,8 @@ void Slam::tell_accelerometer(const Acceleration& acceleration) {
   parts_->engine.tell_accelerometer(acceleration);
 }
 
-void Slam::tell_gyroscope_mounting(const Eigen::Quaterniond& body_from_gyroscope) {
-  parts_->engine.tell_gyroscope_mounting(body_from_gyroscope);
+void Slam::tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
+  parts_->engine.tell_gyroscope_mounting(left_from_gyroscope);
 }
 
 void Slam::pause_mapping(bool is_paused) {
