@@ -257,6 +257,13 @@ void bind_input(SlamClass& slam) {
           },
           py::arg("time_ns"), py::arg("rate"), "What a gyroscope tells, likewise: radians per second.")
       .def(
+          "tell_accelerometer",
+          [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
+            slam.tell_accelerometer({Timestamp(time_ns), acceleration});
+          },
+          py::arg("time_ns"), py::arg("acceleration"),
+          "What an accelerometer beside it tells, likewise: m/s^2 with gravity, about the same axes.")
+      .def(
           "look_near",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
             slam.look_near({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});

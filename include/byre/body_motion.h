@@ -44,17 +44,18 @@ struct AngularRate {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's own axes
 };
 
-// What an accelerometer tells.
+// What an accelerometer tells. At rest it points up, as long as gravity.
 struct Acceleration {
   Timestamp time{};
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it; at rest
-                                                           // it points up, as long as gravity
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
+};
+Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
 };
 
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {
   Trajectory wheels;                        // poses of the robot's base in a frame of the wheels' own
-  std::vector<BaseVelocity> velocities;     // of wheels that tell no poses, in order of time
+  std::vector<BaseVelocity> velocities;     // motion of wheels that tell no poses, in order of time
   std::vector<AngularRate> rates;           // in order of time
   std::vector<Acceleration> accelerations;  // in order of time
   // How the gyroscope is turned against the left camera, where the recording says so.

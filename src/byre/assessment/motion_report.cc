@@ -46,7 +46,7 @@ std::string motion_rows(const MapRun& run, bool is_metric) {
   if (!told.wheels && told.is_mounted_otherwise) {
     text += row("wheels", "mounted otherwise than when the map was made, and it is not known yet how");
   } else if (!told.wheels && !told.gyroscope) {
-    return row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
+    return text + row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);
   return text + row("bridged", formatted("%d frames that show nothing known; %d more have a final pose by wheels",

@@ -123,7 +123,7 @@ std::optional<bool> MotionPrior::do_wheels_stand(Timestamp time) const {
 }
 
 std::optional<bool> MotionPrior::does_sight_stand(Timestamp time) const {
-  constexpr double kMostMetres = 0.01;    // or lengths of the map, where it is not known how long they are
+  constexpr double kMostMetres = 0.01;    // lengths of the map, where it is not known how long they are
   constexpr double kMostRadians = 0.006;  // in the window
   if (last_seen_.empty() || last_seen_.front().time > time - SteadyTrack::kWindow) return {};
   const double metres_per_unit = mounting_ ? mounting_->metres_per_unit : 1.0;

@@ -119,7 +119,7 @@ class MotionPrior {
   WheelTrack wheels_;
   RateTrack rates_;
   Standing standing_;
-  std::deque<StampedPose> last_seen_;  // of a second, without a frame that was not seen
+  std::deque<StampedPose> last_seen_;  // frames of about a second, all of which were seen
   Timestamp samples_kept_ = kUsuallyKept;
   UnseenWay unseen_;
   UnseenWay::OldPoses old_poses_ = UnseenWay::OldPoses::kept;

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Timestamp kMaxStopGap = 500ms;     // between frames of one stop
-constexpr Timestamp kBetweenPlaces = 500ms;  // of one stop
+constexpr Timestamp kBetweenPlaces = 500ms;  // noted of one stop
 constexpr std::size_t kMostPlaces = 2000;
 constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all stops
 

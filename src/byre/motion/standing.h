@@ -12,14 +12,14 @@ namespace byre {
 
 // Which way is up in a map, as accelerations told where the body stood still at poses that were well known.
 struct KnownUp {
-  Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();  // of length one
+  Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();  // a unit vector
   double sigma = 0.0;                                    // radians
 };
 
 // How a body that stands still is tilted, and no more than that: its heading stays open.
 struct BodyTilt {
-  Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // of length one
-  Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // of length one
+  Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // a unit vector
+  Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // a unit vector
   double sigma = 0.0;                                     // radians
   int stop = 0;  // number of the stop: all that is told of one is one measurement
 };
@@ -54,7 +54,7 @@ class Standing {
 
   const std::optional<SteadyTrack::Steady>& now() const { return now_; }
   int stops() const { return stops_; }
-  double seconds() const { return seconds_; }  // that it stood
+  double seconds() const { return seconds_; }  // time that it stood
 
   // Up in the map by all stops; empty where there was none, and while it is not known how the sensor is turned.
   std::optional<KnownUp> up_in_map(const std::optional<GyroscopeMounting>& mounting) const;

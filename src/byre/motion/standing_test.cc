@@ -132,7 +132,7 @@ SteadyTrack::Steady up_at(const Eigen::Quaterniond& world_from_sensor) {
 }
 
 TEST(UpInBody, IsKnownOfALevelBodyThoughTurnsWereAboutOneAxisAlone) {
-  for (const double turn : {0.0, 2.0}) {  // which they leave open
+  for (const double turn : {0.0, 2.0}) {  // turns leave it open
     const GyroscopeMounting mounting = known_about_one_axis(turn);
     const UpInBody level = up_in_body(up_at(kWorldFromSensor), mounting);
     EXPECT_LT((level.up - Eigen::Vector3d::UnitZ()).norm(), 1e-6);

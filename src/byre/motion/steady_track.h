@@ -21,7 +21,7 @@ class SteadyTrack {
 
   // The means over the window that ends at a time, about the sensor's axes.
   struct Steady {
-    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();   // of length one; wrong where the speed changed
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();   // a unit vector; wrong where the speed changed
     double sigma = 0.0;                              // radians; the bias of a consumer's part, and how steady it was
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, bias and all
   };
