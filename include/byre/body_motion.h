@@ -49,8 +49,6 @@ struct Acceleration {
   Timestamp time{};
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
 };
-Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
-};
 
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {

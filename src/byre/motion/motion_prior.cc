@@ -158,7 +158,7 @@ std::optional<SteadyTrack::Steady> MotionPrior::standing_by_wheels(Timestamp tim
 }
 
 std::optional<BodyTilt> MotionPrior::tilt(Timestamp time) const {
-  return standing_.tilt(standing_by_wheels(time), gyroscope_);
+  return standing_.tilt(time, standing_by_wheels(time), gyroscope_);
 }
 
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {

@@ -11,7 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kMaxStopGap = 500ms;     // between frames of one stop
+constexpr Timestamp kMaxStopGap = 1500ms;    // between frames of one stop: vibration may hide it for a moment
+constexpr Timestamp kMaxPoseGap = 500ms;     // of a trajectory around a stop
 constexpr Timestamp kBetweenPlaces = 500ms;  // noted of one stop
 constexpr std::size_t kMostPlaces = 2000;
 constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all stops
@@ -30,26 +31,28 @@ std::optional<SteadyTrack::Steady> Standing::at(Timestamp time, const Witnesses&
   return steady;
 }
 
+int Standing::stop_at(Timestamp time) const {
+  return last_stood_ && time - *last_stood_ <= kMaxStopGap ? stops_ : stops_ + 1;
+}
+
 void Standing::note(Timestamp time, const std::optional<SteadyTrack::Steady>& steady) {
-  const bool goes_on = steady && now_ && time - last_ <= kMaxStopGap;
-  if (goes_on) seconds_ += to_seconds(time - last_);
-  if (steady && !goes_on) {
-    ++stops_;
-    seconds_ += to_seconds(SteadyTrack::kWindow);
-  }
   now_ = steady;
-  last_ = time;
+  if (!steady) return;
+  const bool goes_on = stop_at(time) == stops_;
+  seconds_ += to_seconds(goes_on ? time - *last_stood_ : SteadyTrack::kWindow);
+  if (!goes_on) ++stops_;
+  last_stood_ = time;
 }
 
 void Standing::note_place(const Eigen::Quaterniond& map_from_body) {
   if (!now_ || places_.size() >= kMostPlaces) return;
-  if (!places_.empty() && last_ - places_.back().time < kBetweenPlaces) return;
-  places_.push_back({last_, now_->up, map_from_body});
+  if (!places_.empty() && *last_stood_ - places_.back().time < kBetweenPlaces) return;
+  places_.push_back({*last_stood_, now_->up, map_from_body});
 }
 
 void Standing::look_again(const Trajectory& seen) {
   for (Place& place : places_) {
-    if (const auto pose = pose_at(seen, place.time, kMaxStopGap)) place.map_from_body = pose->rotation;
+    if (const auto pose = pose_at(seen, place.time, kMaxPoseGap)) place.map_from_body = pose->rotation;
   }
 }
 
@@ -79,7 +82,7 @@ UpInBody up_in_body(const SteadyTrack::Steady& steady, const GyroscopeMounting& 
   return result;
 }
 
-std::optional<BodyTilt> Standing::tilt(const std::optional<SteadyTrack::Steady>& steady,
+std::optional<BodyTilt> Standing::tilt(Timestamp time, const std::optional<SteadyTrack::Steady>& steady,
                                        const std::optional<GyroscopeMounting>& mounting) const {
   constexpr double kMostSigma = 0.03;  // radians
   if (!steady || !mounting) return {};
@@ -88,7 +91,7 @@ std::optional<BodyTilt> Standing::tilt(const std::optional<SteadyTrack::Steady>&
   const UpInBody up = up_in_body(*steady, *mounting);
   const double sigma = std::hypot(up.sigma, in_map->sigma);
   if (sigma > kMostSigma) return {};
-  return BodyTilt{up.up, in_map->up_in_map, sigma, now_ ? stops_ : stops_ + 1};
+  return BodyTilt{up.up, in_map->up_in_map, sigma, stop_at(time)};
 }
 
 }  // namespace byre

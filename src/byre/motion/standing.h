@@ -59,10 +59,12 @@ class Standing {
   // Up in the map by all stops; empty where there was none, and while it is not known how the sensor is turned.
   std::optional<KnownUp> up_in_map(const std::optional<GyroscopeMounting>& mounting) const;
   // Empty where the body does not stand, or too little is known to tell a tilt.
-  std::optional<BodyTilt> tilt(const std::optional<SteadyTrack::Steady>& steady,
+  std::optional<BodyTilt> tilt(Timestamp time, const std::optional<SteadyTrack::Steady>& steady,
                                const std::optional<GyroscopeMounting>& mounting) const;
 
  private:
+  int stop_at(Timestamp time) const;  // number of the stop that a body belongs to which stands then
+
   struct Place {
     Timestamp time{};
     Eigen::Vector3d up_in_sensor;
@@ -72,7 +74,7 @@ class Standing {
   SteadyTrack track_;
   std::optional<KnownUp> known_;
   std::optional<SteadyTrack::Steady> now_;
-  Timestamp last_{};
+  std::optional<Timestamp> last_stood_;
   std::vector<Place> places_;
   int stops_ = 0;
   double seconds_ = 0.0;

@@ -150,7 +150,7 @@ TEST(Standing, TellsTheTiltByStopsAtKnownPlaces) {
   mounting.covariance = 1e-5 * Eigen::Matrix3d::Identity();
   const Eigen::Quaterniond map_from_world = rotation_exp({0.7, 0.2, -0.5});
   Standing standing;
-  EXPECT_FALSE(standing.tilt(up_at(kWorldFromSensor), mounting)) << "up in the map is not known";
+  EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), mounting)) << "up in the map is not known";
   for (int stop = 0; stop < 8; ++stop) {  // at other headings, a little tilted, by a sensor with a bias
     const Eigen::Quaterniond world_from_sensor =
         rotation_exp({0.0, 0.0, 0.8 * stop}) * rotation_exp({0.02, 0.01 * stop, 0.0}) * kWorldFromSensor;
@@ -164,13 +164,15 @@ TEST(Standing, TellsTheTiltByStopsAtKnownPlaces) {
   ASSERT_TRUE(up);
   EXPECT_LT((up->up_in_map - map_from_world * Eigen::Vector3d::UnitZ()).norm(), up->sigma);
   EXPECT_LT(up->sigma, 0.01);
-  const auto tilt = standing.tilt(up_at(rotation_exp({0.0, 0.1, 1.0}) * kWorldFromSensor), mounting);
+  const auto tilt =
+      standing.tilt(from_seconds(99.0), up_at(rotation_exp({0.0, 0.1, 1.0}) * kWorldFromSensor), mounting);
   ASSERT_TRUE(tilt);
   EXPECT_LT(tilt->sigma, 0.015);
   const Eigen::Quaterniond map_from_body = map_from_world * rotation_exp({0.0, 0.1, 1.0}) * kWorldFromSensor;
   EXPECT_LT((map_from_body * tilt->up_in_body - tilt->up_in_map).norm(), 2.0 * tilt->sigma);
-  EXPECT_FALSE(standing.tilt(std::nullopt, mounting));
-  EXPECT_FALSE(standing.tilt(up_at(kWorldFromSensor), GyroscopeMounting{})) << "it is not known how it is turned";
+  EXPECT_FALSE(standing.tilt(from_seconds(99.0), std::nullopt, mounting));
+  EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), GyroscopeMounting{}))
+      << "it is not known how it is turned";
 }
 
 }  // namespace
