@@ -204,10 +204,12 @@ Pose Whereabouts::held_to(const DrivenGround& ground, const Rig& rig, const Pose
   return held.camera_from_world;
 }
 
-// As accelerations told where the body stopped. All that they tell of one stop is one measurement: the first frame of
-// it moves the pose, and later ones know it as well.
+// By what accelerations told where the body stopped. A pose that agrees with them stays as it is: a gyroscope drifts
+// less in seconds than an accelerometer's bias is, whatever its covariance says. All that they tell of one stop is one
+// measurement: the first frame of it moves the pose, and later ones know it as well.
 Pose Whereabouts::held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map) {
   constexpr double kSigmas = 4.0;
+  constexpr double kAgreeing = 2.0;  // sigmas of what is told
   const PosePrior prior = tilt_prior(tilt, rig, camera_from_map);
   const PosePrior told{camera_from_map, move_covariance(covariance_of_bridge(), inverse(rig.body_from_camera))};
   const double apart = angle_between(told.camera_from_world.rotation, prior.camera_from_world.rotation);
@@ -216,7 +218,7 @@ Pose Whereabouts::held_to(const BodyTilt& tilt, const Rig& rig, const Pose& came
   const PosePrior held = combined(told, prior);
   bridge_covariance_ = move_covariance(held.covariance, rig.body_from_camera);
   ++tilts_held_;
-  if (stop_ == tilt.stop) return camera_from_map;
+  if (stop_ == tilt.stop || apart < kAgreeing * tilt.sigma) return camera_from_map;
   stop_ = tilt.stop;
   const Pose before = body_pose(rig, camera_from_map), after = body_pose(rig, held.camera_from_world);
   bridge_->last_from_body = bridge_->last_from_body * (inverse(before) * after);

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Timestamp kMaxStopGap = 1500ms;    // between frames of one stop: vibration may hide it for a moment
-constexpr Timestamp kMaxPoseGap = 500ms;     // of a trajectory around a stop
+constexpr Timestamp kMaxPoseGap = 500ms;     // between poses around a stop
 constexpr Timestamp kBetweenPlaces = 500ms;  // noted of one stop
 constexpr std::size_t kMostPlaces = 2000;
 constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all stops
