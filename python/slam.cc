@@ -243,11 +243,26 @@ void bind_input(SlamClass& slam) {
           py::arg("time_ns"), py::arg("odometry_from_base"),
           "What wheels tell, before the frames that it leads to: the robot's base in a frame of their own.")
       .def(
+          "tell_wheel_velocity",
+          [](Slam& slam, std::int64_t time_ns, double ahead, double left, double turning) {
+            slam.tell_wheels(BaseVelocity{Timestamp(time_ns), ahead, left, turning});
+          },
+          py::arg("time_ns"), py::arg("ahead"), py::arg("left"), py::arg("turning"),
+          "The same by wheels that tell no poses: how fast the base moves in its own axes, metres and radians per "
+          "second.")
+      .def(
           "tell_gyroscope",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
             slam.tell_gyroscope({Timestamp(time_ns), rate});
           },
           py::arg("time_ns"), py::arg("rate"), "What a gyroscope tells, likewise: radians per second.")
+      .def(
+          "tell_accelerometer",
+          [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
+            slam.tell_accelerometer({Timestamp(time_ns), acceleration});
+          },
+          py::arg("time_ns"), py::arg("acceleration"),
+          "What an accelerometer beside it tells, likewise: m/s^2 with gravity, about the same axes.")
       .def(
           "look_near",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {

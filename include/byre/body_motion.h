@@ -3,6 +3,7 @@
 #include "byre/pose.h"
 #include "byre/trajectory.h"
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,16 +29,35 @@ inline BodyMotion no_motion() {
 // gyroscope is: deviations add up, not variances.
 BodyMotion operator*(const BodyMotion& first, const BodyMotion& second);
 
+// How fast wheels say that the robot's base moves, in the base's own axes. One whose wheels drive it ahead alone has
+// nothing to the left.
+struct BaseVelocity {
+  Timestamp time{};
+  double ahead = 0.0;    // metres per second
+  double left = 0.0;     // metres per second
+  double turning = 0.0;  // radians per second, to the left
+};
+
 // What a gyroscope tells.
 struct AngularRate {
   Timestamp time{};
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's own axes
 };
 
+// What an accelerometer tells. At rest it points up, as long as gravity.
+struct Acceleration {
+  Timestamp time{};
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
+};
+
 // What was recorded of a robot's motion beside its images.
 struct MotionSamples {
-  Trajectory wheels;               // poses of the robot's base in a frame of the wheels' own
-  std::vector<AngularRate> rates;  // in order of time
+  Trajectory wheels;                        // poses of the robot's base in a frame of the wheels' own
+  std::vector<BaseVelocity> velocities;     // motion of wheels that tell no poses, in order of time
+  std::vector<AngularRate> rates;           // in order of time
+  std::vector<Acceleration> accelerations;  // in order of time
+  // How the gyroscope is turned against the left camera, where the recording says so.
+  std::optional<Eigen::Quaterniond> left_from_gyroscope;
 };
 
 }  // namespace byre

@@ -49,7 +49,7 @@ struct OpenOptions {
   std::optional<std::filesystem::path> wheels{};  // file of wheel odometry, in place of wheel.txt in the folder
   bool use_wheels = true;                         // whether wheel.txt is used where it is there
   bool use_gyroscope = false;  // whether imu0 of the folder, or the only sensor_msgs/Imu of a bag is used
-  std::optional<std::string> wheels_topic{};  // topic of a bag's wheel odometry, nav_msgs/Odometry; empty: none
+  std::optional<std::string> wheels_topic{};  // topic of a bag's wheels, nav_msgs/Odometry or twists; empty: none
   std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
 };
 

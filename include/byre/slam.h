@@ -83,8 +83,17 @@ class Slam {
   // map's unit is, byre finds out while the robot drives and turns; until then it does not use them. Where wheels slip
   // they are left out.
   void tell_wheels(const StampedPose& odometry_from_base);
+  // The same by wheels that tell how fast the base moves, and no poses. No motion is made up where none was told for
+  // three tenths of a second. One robot's wheels tell the one or the other.
+  void tell_wheels(const BaseVelocity& velocity);
   // What a gyroscope tells, likewise. Its bias and how it is turned against the body are found out.
   void tell_gyroscope(const AngularRate& rate);
+  // What an accelerometer of the same part tells, about the same axes, likewise. It tells which way is up while the
+  // robot stands still, and nothing else.
+  void tell_accelerometer(const Acceleration& acceleration);
+  // How gyroscope and accelerometer are turned against the left camera, where somebody has calibrated it: to a degree
+  // or two. Before anything is told; found out otherwise.
+  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope);
 
   // Where the robot is, as somebody says: of use where places look alike, such as the two ends of a barn. While a
   // mission finds itself from nothing it looks in the kept map there alone, for the hint's seconds; then everywhere

@@ -67,17 +67,38 @@ class DriveThroughRoom {
   std::vector<ImageFrame> frames_;
 };
 
-TEST_F(ByreNode, GoesOnByWheelsWhereItSeesNothing) {
+geometry_msgs::msg::TwistStamped twist_message(Timestamp time) {
+  constexpr double kStep = 0.01;
+  const double seconds = to_seconds(time);
+  const Pose motion = inverse(room_from_base(seconds - kStep)) * room_from_base(seconds + kStep);
+  geometry_msgs::msg::TwistStamped message;
+  message.header().stamp(ros_time(time));
+  message.header().frame_id("base_link");
+  message.twist().linear().x(motion.translation.x() / (2.0 * kStep));
+  message.twist().linear().y(motion.translation.y() / (2.0 * kStep));
+  message.twist().angular().z(rotation_log(motion.rotation).z() / (2.0 * kStep));
+  return message;
+}
+
+class ByreNodeOnWheels : public ByreNode {
+ protected:
+  // message_of: what wheels tell of a time, on a topic of the type that message and type are of.
+  template <typename Message>
+  void expect_to_go_on_in_the_dark(const TypeSupport& type, Message (*message_of)(Timestamp));
+};
+
+template <typename Message>
+void ByreNodeOnWheels::expect_to_go_on_in_the_dark(const TypeSupport& type, Message (*message_of)(Timestamp)) {
   const DriveThroughRoom drive;
-  auto* const wheels = peer_.writer("rt/wheels", TypeSupport(new nav_msgs::msg::OdometryPubSubType), kVolatile);
+  auto* const wheels = peer_.writer("rt/wheels", type, kVolatile);
   NodeProcess node(folder_, mapping() + "motion:\n  wheels: /wheels\n", domain_);
   ASSERT_TRUE(is_connected()) << node.said();
-  ASSERT_TRUE(FastPeer::is_heard(wheels) && settle(wheels, nav_msgs::msg::Odometry()));
+  ASSERT_TRUE(FastPeer::is_heard(wheels) && settle(wheels, Message()));
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < drive.frames().size(); ++i) {
     const Timestamp time = drive.frames()[i].time;
     for (int j = kWheelSamplesPerFrame - 1; j >= 0 && i > 0; --j) {
-      nav_msgs::msg::Odometry message = wheel_message(time - from_seconds(j / kFrameRate / kWheelSamplesPerFrame));
+      Message message = message_of(time - from_seconds(j / kFrameRate / kWheelSamplesPerFrame));
       wheels->write(&message);
     }
     const auto odometry = answer_to(feed_, odometry_, drive.frames()[i]);
@@ -88,6 +109,14 @@ TEST_F(ByreNode, GoesOnByWheelsWhereItSeesNothing) {
   const double told = (positions.back() - positions[kFirstDark - 1]).norm();
   EXPECT_NEAR(told, driven, 0.05 * driven);
   EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNodeOnWheels, GoesOnByOdometryWhereItSeesNothing) {
+  expect_to_go_on_in_the_dark(TypeSupport(new nav_msgs::msg::OdometryPubSubType), wheel_message);
+}
+
+TEST_F(ByreNodeOnWheels, GoesOnByVelocitiesWhereItSeesNothing) {
+  expect_to_go_on_in_the_dark(TypeSupport(new geometry_msgs::msg::TwistStampedPubSubType), twist_message);
 }
 
 }  // namespace

@@ -29,6 +29,12 @@ std::string describe(const WheelMounting& wheels, const MapRun& run, bool sees_m
   return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
 }
 
+std::string describe_stops(const ToldMotion& told) {
+  std::string text = formatted("stood still %d times, %.1f s", told.stops, told.stood_s);
+  if (told.to_keep.up) text += formatted("; up is known to %.1f deg in the map", told.to_keep.up->sigma / kDegree);
+  return text + formatted("; held roll and pitch of %d bridged frames", told.tilts_held);
+}
+
 bool is_bridged(const MappedFrame& frame) {
   return frame.report && frame.report->map_from_body && frame.report->health.doubt == Doubt::bridged;
 }
@@ -44,10 +50,11 @@ std::string motion_rows(const MapRun& run, bool sees_metres) {
     text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
                                        told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
   }
+  if (told.stops > 0) text += row("gravity", describe_stops(told));
   if (!told.wheels && told.is_mounted_otherwise) {
     text += row("wheels", "mounted otherwise than when the map was made, and it is not known yet how");
   } else if (!told.wheels && !told.gyroscope) {
-    return row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
+    return text + row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);
   return text + row("bridged", formatted("%d frames that show nothing known; %d more have a final pose by wheels",

@@ -3,6 +3,7 @@
 #include "byre/dataset/bag_image.h"
 #include "byre/dataset/motion_messages.h"
 #include "byre/dataset/timed_messages.h"
+#include "byre/dataset/wheel_stream.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
 #include "byre/trajectory_file.h"
@@ -19,20 +20,26 @@ struct Asked {
   const char* remedy;
 };
 
-template <ros::Message M>
+// What a topic of these kinds is called in errors.
+template <ros::Message First, ros::Message... Others>
+std::string kinds() {
+  return (std::string(First::kType) + ... + (" or " + std::string(Others::kType)));
+}
+
+template <ros::Message... Ms>
 std::size_t choose_topic(const BagContent& content, const Asked& asked, const std::string& place) {
   std::vector<std::size_t> topics;
   std::string names;
   for (std::size_t i = 0; i < content.topics.size(); ++i) {
     const BagTopic& topic = content.topics[i];
-    if (!holds<M>(topic) || topic.messages == 0 || !encoding_of(topic)) continue;
+    if (!(holds<Ms>(topic) || ...) || topic.messages == 0 || !encoding_of(topic)) continue;
     names += (names.empty() ? "" : ", ") + topic.name;
     if (!asked.topic || topic.name == *asked.topic || topic.name == "/" + *asked.topic) topics.push_back(i);
   }
   if (topics.size() == 1) return topics.front();
   throw InputError(place,
-                   (asked.topic ? "has no " + std::string(M::kType) + " of the topic " + *asked.topic
-                                : "does not tell which " + std::string(M::kType) + " to take") +
+                   (asked.topic ? "has no " + kinds<Ms...>() + " of the topic " + *asked.topic
+                                : "does not tell which " + kinds<Ms...>() + " to take") +
                        "; its topics of that kind: " + (names.empty() ? "none" : names),
                    asked.remedy);
 }
@@ -60,6 +67,27 @@ std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& p
   return samples;
 }
 
+std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::string& place,
+                                     std::vector<std::string>& warnings) {
+  const BagTopic& kind = bag.content().topics[topic];
+  if (holds<ros::TwistStamped>(kind)) return read_topic<ros::TwistStamped, WheelSample>(bag, topic, place, warnings);
+  if (holds<ros::TwistWithCovarianceStamped>(kind)) {
+    return read_topic<ros::TwistWithCovarianceStamped, WheelSample>(bag, topic, place, warnings);
+  }
+  return read_topic<ros::Odometry, WheelSample>(bag, topic, place, warnings);
+}
+
+// One kind is used of all messages, and may be known by the later ones alone.
+void take_over_wheels(const std::vector<WheelSample>& wheels, MotionSamples& samples) {
+  WheelStream stream;
+  for (const WheelSample& sample : wheels) stream.add(sample);
+  const bool has_velocities = stream.kind() == WheelStream::Kind::velocities;
+  for (const WheelSample& sample : wheels) {
+    if (has_velocities && sample.velocity) samples.velocities.push_back(*sample.velocity);
+    if (!has_velocities && sample.pose) samples.wheels.push_back({sample.time, *sample.pose});
+  }
+}
+
 bool wants_gyroscope(const OpenOptions& options) {
   return options.use_gyroscope || options.imu_topic;
 }
@@ -68,7 +96,9 @@ bool wants_gyroscope(const OpenOptions& options) {
 
 bool is_of_motion(std::string_view type, const OpenOptions& options) {
   const BagTopic topic{"", std::string(type), ""};
-  return (options.wheels_topic && holds<ros::Odometry>(topic)) || (wants_gyroscope(options) && holds<ros::Imu>(topic));
+  const bool is_of_wheels =
+      holds<ros::Odometry>(topic) || holds<ros::TwistStamped>(topic) || holds<ros::TwistWithCovarianceStamped>(topic);
+  return (options.wheels_topic && is_of_wheels) || (wants_gyroscope(options) && holds<ros::Imu>(topic));
 }
 
 BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place) {
@@ -77,13 +107,17 @@ BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::strin
     motion.samples.wheels = read_trajectory(*options.wheels);
   } else if (options.wheels_topic) {
     const Asked asked{options.wheels_topic, "name one of them: --wheels-topic TOPIC"};
-    const std::size_t topic = choose_topic<ros::Odometry>(bag.content(), asked, place);
-    motion.samples.wheels = read_topic<ros::Odometry, StampedPose>(bag, topic, place, motion.warnings);
+    const std::size_t topic =
+        choose_topic<ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped>(bag.content(), asked, place);
+    take_over_wheels(read_wheels(bag, topic, place, motion.warnings), motion.samples);
   }
   if (wants_gyroscope(options)) {
     const Asked asked{options.imu_topic, "name one of them: --imu-topic TOPIC, or leave the gyroscope out"};
     const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
-    motion.samples.rates = read_topic<ros::Imu, AngularRate>(bag, topic, place, motion.warnings);
+    for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, motion.warnings)) {
+      motion.samples.rates.push_back(sample.rate);
+      if (sample.acceleration) motion.samples.accelerations.push_back(*sample.acceleration);
+    }
   }
   return motion;
 }

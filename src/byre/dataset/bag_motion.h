@@ -19,7 +19,8 @@ struct BagMotion {
 bool is_of_motion(std::string_view type, const OpenOptions& options);
 
 // What wheels and a gyroscope told, at the times of the messages' headers:
-//   wheels      nav_msgs/Odometry of the topic that the options name; or the file that they name
+//   wheels      nav_msgs/Odometry, its poses or, where they never change, its twists; geometry_msgs/TwistStamped or
+//               TwistWithCovarianceStamped; of the topic that the options name; or the file that they name
 //   gyroscope   sensor_msgs/Imu of the topic that they name; of the only one, where they ask for a gyroscope alone
 // place: how the bag is named in errors and warnings. Warnings count what is damaged or not finite, and what was
 // recorded after later ones. Throws InputError, listing the topics of that kind, for a topic that is not there, and

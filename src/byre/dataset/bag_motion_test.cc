@@ -62,10 +62,63 @@ TEST_F(BagMotions, GiveWheelsAndRatesAtTheTimesOfTheirHeaders) {
   EXPECT_TRUE(motion.samples.rates[0].rate.isApprox(Eigen::Vector3d(0.1, 0.2, -0.3)));
 }
 
+SceneMessage twist(const std::string& topic, int stamp_ms, double ahead, double turning) {
+  ros::TwistStamped message{.header = {ros::to_time(at_ms(stamp_ms)), "base_link"}};
+  message.twist.linear = {ahead, 0.1, 0.0};
+  message.twist.angular = {0.0, 0.0, turning};
+  return scene_message(topic, at_ms(stamp_ms + 2), message);
+}
+
+TEST_F(BagMotions, GiveVelocitiesOfWheelsThatTellNothingElse) {
+  const BagMotion motion = read({twist("/wheel/twist", 1000, 0.5, 0.2), twist("/wheel/twist", 1020, 0.6, 0.3),
+                                 odometry(kOdometry, 1010, 1013, 0.5)},
+                                {.wheels_topic = "/wheel/twist"});
+  EXPECT_THAT(motion.samples.wheels, IsEmpty());
+  ASSERT_THAT(motion.samples.velocities, SizeIs(2));
+  const BaseVelocity& last = motion.samples.velocities.back();
+  EXPECT_EQ(last.time, at_ms(1020));
+  EXPECT_EQ(Eigen::Vector3d(last.ahead, last.left, last.turning), Eigen::Vector3d(0.6, 0.1, 0.3));
+}
+
+// A driver that leaves poses as they are made, and one that says so by its covariance.
+TEST_F(BagMotions, GiveVelocitiesOfOdometryWithoutPoses) {
+  std::vector<SceneMessage> messages;
+  for (int i = 0; i < 20; ++i) {
+    ros::Odometry message{.header = {ros::to_time(at_ms(1000 + 20 * i)), "odom"}, .child_frame_id = "base_link"};
+    message.pose.pose.orientation.w = 1.0;
+    message.twist.twist.linear.x = i < 5 ? 0.0 : 0.5;
+    messages.push_back(scene_message(kOdometry, at_ms(1002 + 20 * i), message));
+    message.pose.covariance[0] = -1.0;
+    message.pose.pose.position.x = i;
+    messages.push_back(scene_message("/odom", at_ms(1002 + 20 * i), message));
+  }
+  for (const char* const topic : {kOdometry, "/odom"}) {
+    const BagMotion motion = read(messages, {.wheels_topic = topic});
+    EXPECT_THAT(motion.samples.wheels, IsEmpty());
+    EXPECT_THAT(motion.samples.velocities, SizeIs(20));
+    EXPECT_THAT(motion.warnings, IsEmpty());
+  }
+}
+
 TEST_F(BagMotions, AreNotReadUnasked) {
   const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2)}, {});
   EXPECT_THAT(motion.samples.wheels, IsEmpty());
   EXPECT_THAT(motion.samples.rates, IsEmpty());
+}
+
+TEST_F(BagMotions, GiveAccelerationsWhereTheMessageHasSome) {
+  std::vector<SceneMessage> messages;
+  for (int i = 0; i < 3; ++i) {
+    ros::Imu message{.header = {ros::to_time(at_ms(1000 + i)), "imu"}};
+    if (i < 2) message.linear_acceleration = {0.1, -0.2, 9.8};
+    if (i == 0) message.linear_acceleration_covariance[0] = -1.0;
+    messages.push_back(scene_message(kImuData, at_ms(1002 + i), message));
+  }
+  const BagMotion motion = read(messages, {.use_gyroscope = true});
+  EXPECT_THAT(motion.samples.rates, SizeIs(3));
+  ASSERT_THAT(motion.samples.accelerations, SizeIs(1));
+  EXPECT_EQ(motion.samples.accelerations[0].time, at_ms(1001));
+  EXPECT_EQ(motion.samples.accelerations[0].acceleration, Eigen::Vector3d(0.1, -0.2, 9.8));
 }
 
 TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
@@ -78,7 +131,8 @@ TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
 
 TEST_F(BagMotions, SayWhichTopicsThereAre) {
   EXPECT_THAT(read_error({odometry(kOdometry, 1000, 1003, 0.5)}, {.wheels_topic = "/odom"}),
-              HasSubstr("has no nav_msgs/msg/Odometry of the topic /odom; its topics of that kind: /wheel/odometry"));
+              AllOf(HasSubstr("has no nav_msgs/msg/Odometry or geometry_msgs/msg/TwistStamped or "),
+                    HasSubstr(" of the topic /odom; its topics of that kind: /wheel/odometry")));
   EXPECT_THAT(read_error({imu(kImuData, 1005, 0.2)}, {.wheels_topic = "/odom"}), HasSubstr("of that kind: none"));
 }
 

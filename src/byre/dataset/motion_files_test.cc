@@ -46,6 +46,24 @@ TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
   EXPECT_EQ(samples.rates.back().rate, Eigen::Vector3d(0.4, 0.5, 0.6));
 }
 
+TEST_F(MotionFiles, HoldAnAccelerometerBesideTheGyroscope) {
+  write("mav0/cam0/data.csv", "");
+  write("mav0/imu0/data.csv", "100,0.1,0.2,0.3\n200,0.4,0.5,0.6,1.5,0,9.8\n300,0.4,0.5,0.6,0,0,0\n");
+  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true});
+  EXPECT_EQ(samples.rates.size(), 3u);
+  ASSERT_EQ(samples.accelerations.size(), 1u) << "zeros are none, as of a part without one";
+  EXPECT_EQ(samples.accelerations[0].time, Timestamp(200));
+  EXPECT_EQ(samples.accelerations[0].acceleration, Eigen::Vector3d(1.5, 0.0, 9.8));
+  EXPECT_FALSE(samples.left_from_gyroscope);
+  write("mav0/imu0/sensor.yaml", "sensor_type: imu\nT_BS: {data: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n");
+  const Pose body_from_left{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {}};  // half a turn about x
+  const auto turned = read_motion(folder_, {.use_gyroscope = true}, body_from_left).left_from_gyroscope;
+  ASSERT_TRUE(turned);
+  EXPECT_TRUE((*turned * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitY()));
+  const OpenOptions other_body{.calibration = folder_ / "other.yaml", .use_gyroscope = true};
+  EXPECT_FALSE(read_motion(folder_, other_body).left_from_gyroscope);
+}
+
 TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
   const auto failure = [&](const std::string& text) {
     write("mav0/cam0/data.csv", "");

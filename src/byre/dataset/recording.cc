@@ -261,8 +261,9 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   const RecordingIndex whole = index_recording(path, options);
   const BesideLeft beside = images_beside_left(whole);
   require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
-  return std::make_unique<ImageFiles>(choose_camera(select(whole, range, path), beside, options.camera, path),
-                                      read_motion(path, options));
+  RecordingIndex chosen = choose_camera(select(whole, range, path), beside, options.camera, path);
+  MotionSamples motion = read_motion(path, options, chosen.calibration.cameras.body_from_left);
+  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion));
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {

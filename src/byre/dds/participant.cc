@@ -165,6 +165,27 @@ Subscriber Participant::subscribe(const std::string& topic, const MessageType& t
   return subscriber;
 }
 
+std::vector<std::string> Participant::published_types(const std::string& topic) {
+  constexpr std::size_t kMost = 1000;
+  if (publications_.handle() <= 0) {
+    publications_ =
+        DdsEntity(dds_create_reader(participant_.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+                  "hear of topics");
+  }
+  std::vector<void*> read(kMost, nullptr);
+  std::vector<dds_sample_info_t> about(kMost);
+  const dds_return_t count = dds_read(publications_.handle(), read.data(), about.data(), kMost, kMost);
+  std::vector<std::string> types;
+  for (int i = 0; i < count; ++i) {
+    const auto& info = about[static_cast<std::size_t>(i)];
+    if (!info.valid_data || info.instance_state != DDS_IST_ALIVE) continue;
+    const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(read[static_cast<std::size_t>(i)]);
+    if (dds_topic_name(topic) == endpoint->topic_name) types.push_back(ros_type_name(endpoint->type_name));
+  }
+  if (count > 0) dds_return_loan(publications_.handle(), read.data(), count);
+  return types;
+}
+
 void Participant::wait(std::chrono::nanoseconds longest) {
   dds_waitset_wait(wake_.handle(), nullptr, 0, longest.count());
 }

@@ -109,6 +109,9 @@ class Participant {
   Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                        const std::string& note = {});
 
+  // The types of all that is published on a topic, as is known by now: "nav_msgs/msg/Odometry".
+  std::vector<std::string> published_types(const std::string& topic);
+
   // Until a subscriber has messages, at longest for a time.
   void wait(std::chrono::nanoseconds longest);
 
@@ -120,6 +123,7 @@ class Participant {
   DdsEntity domain_;
   DdsEntity participant_;
   DdsEntity wake_;
+  DdsEntity publications_;  // reader of what others publish, once it is asked for
 };
 
 }  // namespace byre

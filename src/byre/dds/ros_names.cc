@@ -34,6 +34,16 @@ std::string dds_type_name(std::string_view type_name) {
   return name + "_";
 }
 
+std::string ros_type_name(std::string_view dds_type) {
+  constexpr std::string_view kMark = "dds_::";
+  const std::size_t mark = dds_type.find(kMark);
+  if (mark == std::string_view::npos || !dds_type.ends_with('_')) return "";
+  dds_type.remove_suffix(1);
+  std::string name = std::string(dds_type.substr(0, mark)) + std::string(dds_type.substr(mark + kMark.size()));
+  for (std::size_t at = 0; (at = name.find("::", at)) != std::string::npos;) name.replace(at, 2, "/");
+  return name;
+}
+
 std::string fault_in_name(std::string_view name) {
   constexpr std::size_t kLongest = 240;  // characters: DDS takes 256 with all that is put before and behind
   if (name.size() > kLongest) return "is longer than 240 characters";

@@ -17,6 +17,7 @@ std::string dds_topic_name(std::string_view topic);      // "/left/image_raw": "
 std::string dds_request_name(std::string_view service);  // "/byre/save": "rq/byre/saveRequest"
 std::string dds_reply_name(std::string_view service);    // "/byre/save": "rr/byre/saveReply"
 std::string dds_type_name(std::string_view type_name);   // "sensor_msgs/msg/Image": "sensor_msgs::msg::dds_::Image_"
+std::string ros_type_name(std::string_view dds_type);    // the other way; "" where it is none of ROS
 
 // What is wrong with the name of a topic, or of a node's namespace, that begins with a slash; empty where nothing is.
 std::string fault_in_name(std::string_view name);

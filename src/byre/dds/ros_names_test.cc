@@ -13,6 +13,8 @@ TEST(RosNames, AreThoseOfDds) {
   EXPECT_EQ(dds_type_name("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
   EXPECT_EQ(dds_request_name("/byre/save"), "rq/byre/saveRequest");
   EXPECT_EQ(dds_reply_name("/byre/save"), "rr/byre/saveReply");
+  EXPECT_EQ(ros_type_name("sensor_msgs::msg::dds_::Image_"), "sensor_msgs/msg/Image");
+  EXPECT_EQ(ros_type_name("HelloWorld"), "");
   EXPECT_EQ(dds_type_name("std_srvs/srv/Trigger_Request"), "std_srvs::srv::dds_::Trigger_Request_");
 }
 

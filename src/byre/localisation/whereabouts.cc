@@ -214,7 +214,29 @@ void Whereabouts::wait_for_map() {
   if (bridge_ && !last_told_) is_way_known_ = false;
   if (!is_way_known_ || !last_told_) return bridge_.reset();
   bridge_ = bridge_ ? *bridge_ * *last_told_ : *last_told_;
+  bridge_covariance_.reset();
   odometry_.go_by(last_told_->last_from_body, bridge_->last_from_body);
+}
+
+// By what accelerations told where the body stopped. A pose that agrees with them stays as it is: a gyroscope drifts
+// less in seconds than an accelerometer's bias is, whatever its covariance says. All that they tell of one stop is one
+// measurement: the first frame of it moves the pose, and later ones know it as well.
+Pose Whereabouts::held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map) {
+  constexpr double kSigmas = 4.0;
+  constexpr double kAgreeing = 2.0;  // sigmas of what is told
+  const PosePrior prior = tilt_prior(tilt, rig, camera_from_map);
+  const PosePrior told{camera_from_map, move_covariance(covariance_of_bridge(), inverse(rig.body_from_camera))};
+  const double apart = angle_between(told.camera_from_world.rotation, prior.camera_from_world.rotation);
+  const double turn_variance = told.covariance.bottomRightCorner<3, 3>().trace();
+  if (apart > kSigmas * std::sqrt(turn_variance + tilt.sigma * tilt.sigma)) return camera_from_map;
+  const PosePrior held = combined(told, prior);
+  bridge_covariance_ = move_covariance(held.covariance, rig.body_from_camera);
+  ++tilts_held_;
+  if (stop_ == tilt.stop || apart < kAgreeing * tilt.sigma) return camera_from_map;
+  stop_ = tilt.stop;
+  const Pose before = body_pose(rig, camera_from_map), after = body_pose(rig, held.camera_from_world);
+  bridge_->last_from_body = bridge_->last_from_body * (inverse(before) * after);
+  return held.camera_from_world;
 }
 
 bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground) {
@@ -223,12 +245,16 @@ bool Whereabouts::go_on(Timestamp time, const Rig& rig, const MapView& map, cons
     if (!has_pose_ && !trajectory_.empty()) bridge_.reset();
     return bridge_.has_value();
   }
-  if (!bridge_) bridge_begin_ = trajectory_.size() - 1;
+  if (!bridge_) {
+    bridge_begin_ = trajectory_.size() - 1;
+    stop_.reset();
+  }
   const AnchoredPose last = trajectory_.back();
   Pose camera_from_map = motion_.predict(byre::camera_from_world(map, last), rig, 0.0);
   bridge_ = bridge_ ? *bridge_ * *motion_.told() : *motion_.told();
   bridge_covariance_.reset();
   if (ground != nullptr) camera_from_map = held_to(*ground, rig, camera_from_map);
+  if (tilt_) camera_from_map = held_to(*tilt_, rig, camera_from_map);
   const Pose camera_from_keyframe = camera_from_map * inverse(byre::camera_from_world(map, last.keyframe));
   trajectory_.add({time, last.keyframe, camera_from_keyframe, last.submap});
   trajectory_.believe_all();

@@ -65,6 +65,9 @@ class Whereabouts {
 
   // A frame later; motion is that of the body, where it is known.
   void tell(const std::optional<BodyMotion>& motion);
+  // How the body is tilted at this frame, where accelerations tell it.
+  void tell_tilt(const std::optional<BodyTilt>& tilt) { tilt_ = tilt; }
+  int tilts_held() const { return tilts_held_; }  // poses of bridges, held by what accelerations told
   // What the last frame's report says, of a pose that was seen.
   void note_quality(const PoseQuality& quality) { quality_ = quality; }
 
@@ -121,6 +124,7 @@ class Whereabouts {
   bool is_led_well() const;  // by what was told since the last pose that was believed
   void believe();
   Pose held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map);
+  Pose held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map);
   void note_end_of_bridge(const Rig& rig, const MapView& map);
 
   // Constant after construction.
@@ -135,6 +139,9 @@ class Whereabouts {
   std::optional<BodyMotion> bridge_;
   std::optional<Matrix6> bridge_covariance_;  // covariance in the map, where the ground adds to what is told
   std::size_t bridge_begin_ = 0;              // index of the last pose before the bridge
+  std::optional<BodyTilt> tilt_;              // at this frame
+  std::optional<int> stop_;                   // the last stop at which the bridge was tilted
+  int tilts_held_ = 0;
   // Poses led on by what was told, until the pose that was found after them is believed.
   struct BridgeEnd {
     std::size_t first = 0;   // index of the last pose before

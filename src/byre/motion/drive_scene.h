@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/motion/wheel_mounting.h"
 #include "byre/trajectory.h"
 
@@ -33,6 +34,14 @@ struct Drive {
   }
 
   StampedPose wheels(double seconds) const { return {from_seconds(seconds + wheel_delay), world_from_base(seconds)}; }
+
+  // How fast the base moves, as its wheels tell it.
+  BaseVelocity velocity(double seconds) const {
+    constexpr double kStep = 1e-3;
+    const Pose motion = inverse(world_from_base(seconds - kStep)) * world_from_base(seconds + kStep);
+    return {from_seconds(seconds + wheel_delay), motion.translation.x() / (2.0 * kStep),
+            motion.translation.y() / (2.0 * kStep), rotation_log(motion.rotation).z() / (2.0 * kStep)};
+  }
 
   // In the map's lengths, in a frame of the map's own.
   Pose seen(double seconds, std::mt19937& random) const {

@@ -3,11 +3,14 @@
 #include "byre/geometry/decompositions.h"
 #include "byre/geometry/median.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include <Eigen/LU>
 
 namespace byre {
 namespace {
@@ -58,6 +61,25 @@ Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quatern
   return bias;
 }
 
+// What the turns leave open. Neighbouring ones err alike.
+Eigen::Matrix3d covariance_of(const std::vector<TurnPair>& pairs, double error,
+                              const std::optional<GyroscopeMounting>& known) {
+  constexpr double kLeastError = 0.005;   // radians per second
+  constexpr double kErringAlike = 4.0;    // factor of the variance
+  constexpr double kLeastSigma = 0.003;   // radians: axes of the sensor that are not square
+  constexpr double kUsualChange = 0.005;  // radians, from day to day
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / GyroscopeMounting::kOpenTurn;
+  if (known) {
+    information = (known->covariance + kUsualChange * kUsualChange * Eigen::Matrix3d::Identity()).inverse();
+  }
+  for (const TurnPair& pair : pairs) {
+    const double sigma = std::max(error, kLeastError) * pair.seconds;
+    const Eigen::Matrix3d across = skew(pair.seen);
+    information += across.transpose() * across / (kErringAlike * sigma * sigma);
+  }
+  return information.inverse() + kLeastSigma * kLeastSigma * Eigen::Matrix3d::Identity();
+}
+
 }  // namespace
 
 std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMotion>& seen,
@@ -78,6 +100,7 @@ std::optional<GyroscopeMounting> find_gyroscope_mounting(const std::deque<SeenMo
     errors.push_back((told - pair.seen).norm() / pair.seconds);
   }
   mounting.error = median_or(std::move(errors), kMaxError);
+  mounting.covariance = covariance_of(pairs, mounting.error, known);
   return mounting.error < kMaxError ? std::optional(mounting) : std::nullopt;
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kWheels = "wheels";
 constexpr const char* kGyroscope = "gyroscope";
+constexpr const char* kGravity = "gravity";
 
 std::string text_of(double value) {
   std::array<char, 32> text{};
@@ -114,10 +115,17 @@ bool read_note(const NumbersByName& numbers, WheelMounting& wheels, double& time
 
 void note_mounting(const KnownMounting& mounting, std::map<std::string, std::string>& notes) {
   if (mounting.wheels) notes[kWheels] = note_of(*mounting.wheels, mounting.time_offset);
+  if (mounting.up) {
+    NumbersByName numbers;
+    numbers.add("up_in_map", std::span(mounting.up->up_in_map.data(), 3));
+    numbers.add("sigma_rad", mounting.up->sigma);
+    notes[kGravity] = numbers.text();
+  }
   if (!mounting.gyroscope) return;
   NumbersByName numbers;
   add_rotation(numbers, "body_from_gyroscope_wxyz", mounting.gyroscope->body_from_gyroscope);
   numbers.add("error_rad_per_s", mounting.gyroscope->error);
+  numbers.add("covariance", std::span(mounting.gyroscope->covariance.data(), 9));
   notes[kGyroscope] = numbers.text();
 }
 
@@ -136,8 +144,20 @@ KnownMounting mounting_in(const std::map<std::string, std::string>& notes) {
     const NumbersByName numbers(note->second);
     if (get_rotation(numbers, "body_from_gyroscope_wxyz", gyroscope.body_from_gyroscope) &&
         numbers.get("error_rad_per_s", gyroscope.error)) {
+      Eigen::Matrix3d covariance;  // older programs note none
+      const bool is_noted = numbers.get("covariance", std::span(covariance.data(), 9));
+      if (is_noted && covariance.ldlt().isPositive() && covariance.isApprox(covariance.transpose())) {
+        gyroscope.covariance = covariance;
+      }
       mounting.gyroscope = gyroscope;
     }
+  }
+  if (const auto note = notes.find(kGravity); note != notes.end()) {
+    KnownUp up;
+    const NumbersByName numbers(note->second);
+    const bool is_whole =
+        numbers.get("up_in_map", std::span(up.up_in_map.data(), 3)) && numbers.get("sigma_rad", up.sigma);
+    if (is_whole && std::abs(up.up_in_map.norm() - 1.0) < 1e-3 && up.sigma > 0.0) mounting.up = up;
   }
   return mounting;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/motion/gyroscope_mounting.h"
+#include "byre/motion/standing.h"
 #include "byre/motion/wheel_mounting.h"
 
 #include <map>
@@ -14,13 +15,14 @@ namespace byre {
 struct KnownMounting {
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;  // seconds that wheels stamp later than the camera
+  double time_offset = 0.0;   // seconds that wheels stamp later than the camera
+  std::optional<KnownUp> up;  // in the map
 
-  bool is_empty() const { return !wheels && !gyroscope; }
+  bool is_empty() const { return !wheels && !gyroscope && !up; }
 };
 
-// As notes of a map, by the keys "wheels" and "gyroscope": numbers with their names, for people and for mounting_in.
-// What is not known has no note.
+// As notes of a map, by the keys "wheels", "gyroscope" and "gravity": numbers with their names, for people and for
+// mounting_in. What is not known has no note.
 void note_mounting(const KnownMounting& mounting, std::map<std::string, std::string>& notes);
 
 // What is noted; a note that somebody else wrote tells nothing.

@@ -24,6 +24,8 @@ KnownMounting known_from_a_drive(const Drive& drive) {
   KnownMounting known;
   known.wheels = find_wheel_mounting(motions_of(drive, 0.0, 60.0));
   known.gyroscope = GyroscopeMounting{rotation_exp({0.3, 1.2, -0.4}), {0.01, 0.02, 0.03}, 0.004};
+  known.gyroscope->covariance = Eigen::Vector3d(1e-5, 2e-5, 3.0).asDiagonal();
+  known.up = KnownUp{Eigen::Vector3d(0.0, 0.6, 0.8), 0.006};
   known.time_offset = 0.031;
   return known;
 }
@@ -46,6 +48,10 @@ TEST(KnownMounting, IsReadFromNotesAsItWasNoted) {
   EXPECT_EQ(read.wheels->turn_errors.per_metre, known.wheels->turn_errors.per_metre);
   EXPECT_EQ(read.time_offset, 0.031);
   EXPECT_EQ(read.gyroscope->error, 0.004);
+  EXPECT_EQ(read.gyroscope->covariance, known.gyroscope->covariance);
+  ASSERT_TRUE(read.up);
+  EXPECT_EQ(read.up->up_in_map, known.up->up_in_map);
+  EXPECT_EQ(read.up->sigma, 0.006);
   EXPECT_EQ(read.gyroscope->bias, Eigen::Vector3d::Zero()) << "it is another one each day";
 }
 
@@ -55,6 +61,11 @@ TEST(KnownMounting, IsNotReadFromNotesOfSomebodyElse) {
   std::map<std::string, std::string> notes;
   note_mounting(known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001}), notes);
   notes["wheels"].resize(notes["wheels"].size() / 2);
+  notes["gyroscope"] = "body_from_gyroscope_wxyz 1 0 0 0; error_rad_per_s 0.004";
+  notes["gravity"] = "up_in_map 0 0 2; sigma_rad 0.01";
+  EXPECT_FALSE(mounting_in(notes).up);
+  ASSERT_TRUE(mounting_in(notes).gyroscope) << "as older programs note it";
+  EXPECT_GT(mounting_in(notes).gyroscope->covariance.trace(), 9.0);
   EXPECT_FALSE(mounting_in(notes).wheels);
 }
 

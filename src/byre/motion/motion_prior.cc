@@ -34,7 +34,7 @@ double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_
 }
 
 // What wheels so mounted leave open, in the lengths of the map.
-Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
+Matrix6 covariance_of(const Pose& motion, const Pose& base, const WheelMounting& mounting) {
   constexpr double kLeastShare = 0.01;
   constexpr double kTurnPerMetre = 0.01;  // radians
   constexpr double kLeastMetres = 1e-3;
@@ -42,8 +42,9 @@ Matrix6 covariance_of(const Pose& motion, const WheelMounting& mounting) {
   const double way = motion.translation.norm();
   const double turn = rotation_log(motion.rotation).norm();
   const double arm_sigma = std::sqrt(mounting.covariance.bottomRightCorner<2, 2>().trace());  // metres
-  const double way_sigma = way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
-                           (turn * arm_sigma + kLeastMetres) / mounting.metres_per_unit;
+  const double way_sigma =
+      way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
+      (turn * arm_sigma + kLeastMetres + mounting.side_error * std::abs(way_across(base))) / mounting.metres_per_unit;
   const double turn_sigma =
       turn * std::max(kLeastShare, mounting.turn_error) + kTurnPerMetre * way * mounting.metres_per_unit + kLeastTurn;
   Matrix6 covariance = Matrix6::Zero();
@@ -66,11 +67,25 @@ void forget_way(BodyMotion& motion) {
   motion.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
+// A body that stands does not creep away unnoticed: little is left open, however long it stands.
+BodyMotion at_rest(BodyMotion motion, double seconds) {
+  constexpr double kShare = 0.1;   // share of the way that wheels told all the same
+  constexpr double kCreep = 2e-4;  // lengths of the map per second
+  constexpr double kTurn = 5e-5;   // radians per second
+  const double way_sigma = kShare * motion.last_from_body.translation.norm() + kCreep * seconds;
+  const double turn_sigma = kShare * rotation_log(motion.last_from_body.rotation).norm() + kTurn * seconds;
+  motion.covariance.setZero();
+  motion.covariance.diagonal().head<3>().setConstant(way_sigma * way_sigma);
+  motion.covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);
+  return motion;
+}
+
 }  // namespace
 
 void MotionPrior::begin_with(const KnownMounting& known) {
   known_ = known;
   mounting_ = known.wheels;
+  standing_.begin_with(known.up);
   if (known.wheels) time_offset_ = known.time_offset;
 }
 
@@ -80,13 +95,75 @@ void MotionPrior::add(const StampedPose& wheels) {
   wheels_.forget_before(wheels.time - kMostKept);
 }
 
+void MotionPrior::add(const BaseVelocity& wheels) {
+  wheels_.add(wheels);
+  wheels_.forget_before(wheels.time - kMostKept);
+}
+
 void MotionPrior::add(const AngularRate& rate) {
   rates_.add(rate);
+  standing_.add(rate);
   rates_.forget_before(rate.time - kMostKept);
+}
+
+void MotionPrior::presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscope) {
+  constexpr double kSigma = 0.03;  // radians
+  presumed_gyroscope_ = GyroscopeMounting{.body_from_gyroscope = body_from_gyroscope.normalized(),
+                                          .covariance = kSigma * kSigma * Eigen::Matrix3d::Identity()};
+}
+
+std::optional<bool> MotionPrior::do_wheels_stand(Timestamp time) const {
+  constexpr double kMostMetres = 0.0025;  // in the window: ticks of encoders
+  constexpr double kMostRadians = 0.004;  // in the window
+  if (is_slipping_) return {};
+  const Timestamp offset = from_seconds(time_offset());
+  const auto distance = wheels_.distance(time + offset - SteadyTrack::kWindow, time + offset);
+  if (!distance) return {};
+  return distance->metres <= kMostMetres && distance->radians <= kMostRadians;
+}
+
+std::optional<bool> MotionPrior::does_sight_stand(Timestamp time) const {
+  constexpr double kMostMetres = 0.01;    // lengths of the map, where it is not known how long they are
+  constexpr double kMostRadians = 0.006;  // in the window
+  if (last_seen_.empty() || last_seen_.front().time > time - SteadyTrack::kWindow) return {};
+  const double metres_per_unit = mounting_ ? mounting_->metres_per_unit : 1.0;
+  return std::ranges::all_of(last_seen_, [&](const StampedPose& pose) {
+    const Pose motion = inverse(pose.world_from_body) * last_seen_.back().world_from_body;
+    return metres_per_unit * motion.translation.norm() <= kMostMetres &&
+           rotation_log(motion.rotation).norm() <= kMostRadians;
+  });
+}
+
+void MotionPrior::watch_standing(Timestamp time, const std::optional<Pose>& seen) {
+  constexpr Timestamp kSpan = SteadyTrack::kWindow + kMaxFrameGap;
+  constexpr double kMostSigma = 0.1;  // radians
+  if (!seen || (!last_seen_.empty() && time - last_seen_.back().time > kMaxFrameGap)) last_seen_.clear();
+  if (seen) last_seen_.push_back({time, *seen});
+  while (!last_seen_.empty() && last_seen_.front().time + kSpan < time) last_seen_.pop_front();
+  const auto bias = gyroscope_ ? std::optional(gyroscope_->bias) : std::nullopt;
+  const auto steady = standing_.at(time, {do_wheels_stand(time), seen ? does_sight_stand(time) : std::nullopt}, bias);
+  standing_.note(time, steady);
+  if (!steady) return;
+  if (!seen && gyroscope_) gyroscope_->bias = steady->rate;
+  const auto& gyroscope = gyroscope_ ? gyroscope_ : known_.gyroscope ? known_.gyroscope : presumed_gyroscope_;
+  if (!gyroscope) return;
+  const UpInBody up = up_in_body(*steady, *gyroscope);
+  if (up.sigma > kMostSigma) return;
+  measured_up_ = up.up;
+}
+
+std::optional<SteadyTrack::Steady> MotionPrior::standing_by_wheels(Timestamp time) const {
+  if (!gyroscope_) return {};
+  return standing_.at(time, {do_wheels_stand(time), std::nullopt}, gyroscope_->bias);
+}
+
+std::optional<BodyTilt> MotionPrior::tilt(Timestamp time) const {
+  return standing_.tilt(time, standing_by_wheels(time), gyroscope_);
 }
 
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
   if (is_empty()) return;
+  watch_standing(time, odometry_from_body);
   unseen_.note(time, odometry_from_body.has_value());
   forget_old_samples();
   if (!odometry_from_body) {
@@ -163,6 +240,7 @@ void MotionPrior::look_for_mountings() {
 }
 
 void MotionPrior::look_again(const Trajectory& seen) {
+  standing_.look_again(seen);
   if (!mounting_ || seen.empty()) return;
   std::vector<MotionPair> pairs;
   std::size_t begin = 0;
@@ -179,7 +257,9 @@ void MotionPrior::look_again(const Trajectory& seen) {
 }
 
 void MotionPrior::stretch(double factor) {
-  mounting_ = scaled({mounting_, {}, 0.0}, factor).wheels;
+  KnownMounting found;
+  found.wheels = mounting_;
+  mounting_ = scaled(std::move(found), factor).wheels;
   known_ = scaled(known_, factor);
 }
 
@@ -200,8 +280,10 @@ void MotionPrior::look_for_wheel_mounting() {
 void MotionPrior::presume_mounting() {
   constexpr std::size_t kLeastMotions = 2;
   presumed_.reset();
-  if (mounting_ || !up_in_body_ || seen_.size() < kLeastMotions) return;
-  presumed_ = presume_wheel_mounting(pairs(), *up_in_body_);
+  if (mounting_ || seen_.size() < kLeastMotions) return;
+  const std::vector<MotionPair> all = pairs();
+  if (measured_up_) presumed_ = presume_wheel_mounting(all, *measured_up_, UpSource::measured);
+  if (!presumed_ && up_in_body_) presumed_ = presume_wheel_mounting(all, *up_in_body_);
 }
 
 const WheelMounting* MotionPrior::used_mounting() const {
@@ -238,6 +320,7 @@ KnownMounting MotionPrior::to_keep() const {
     keep.time_offset = time_offset();
   }
   if (gyroscope_) keep.gyroscope = gyroscope_;
+  keep.up = standing_.up_in_map(gyroscope_);
   return keep;
 }
 
@@ -306,7 +389,7 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   const auto base = told_base(earlier, later, turn);
   if (!base) return {};
   const Pose body = body_motion(*mounting, base->motion);
-  BodyMotion motion{body, covariance_of(body, *mounting)};
+  BodyMotion motion{body, covariance_of(body, base->motion, *mounting)};
   if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
   return motion;
@@ -330,6 +413,7 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
   const auto turn = turn_by_gyroscope(earlier, later);
   auto motion = is_slipping_ ? std::nullopt : by_wheels(earlier, later, turn);
   if (!turn) return motion;
+  if (motion && standing_by_wheels(later)) return at_rest(*motion, to_seconds(later - earlier));
   if (!motion && (motion = by_sight(earlier, later))) motion->last_from_body.rotation = *turn;
   if (!motion) return {};
   const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;

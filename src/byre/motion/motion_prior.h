@@ -5,6 +5,7 @@
 #include "byre/motion/known_mounting.h"
 #include "byre/motion/rate_track.h"
 #include "byre/motion/seen_motion.h"
+#include "byre/motion/standing.h"
 #include "byre/motion/unseen_way.h"
 #include "byre/motion/wheel_mounting.h"
 #include "byre/motion/wheel_track.h"
@@ -32,6 +33,9 @@ class MotionPrior {
     up_in_body_ = up_in_body;
     before_sight_ = presume_looking_ahead(up_in_body, ahead_in_body);
   }
+  // How the gyroscope is turned, as somebody says: accelerations of a body that stands still tell by it which axis
+  // points up, until turns have told how it is turned. Nothing else hangs on it.
+  void presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscope);
   // A map is made: ways of up to half an hour ago will be asked for, not two minutes, and in the end poses of frames
   // that were not seen are made anew by what is known then. Before anything is seen wheels tell, too, as though the
   // body looked to where it drives: how far it went, but hardly which way.
@@ -42,11 +46,20 @@ class MotionPrior {
   }
 
   void add(const StampedPose& wheels);
+  void add(const BaseVelocity& wheels);
   void add(const AngularRate& rate);
+  void add(const Acceleration& acceleration) { standing_.add(acceleration); }
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
 
   // A frame's smooth pose, in the map's lengths, as it was seen; empty where nothing was.
   void note(Timestamp time, const std::optional<Pose>& odometry_from_body);
+
+  // The pose in the map of the frame that was noted last, where it is trusted.
+  void note_place(const Pose& map_from_body) { standing_.note_place(map_from_body.rotation); }
+
+  // How the body is tilted at the next frame, by accelerations; empty unless wheels say that it stands still until
+  // then.
+  std::optional<BodyTilt> tilt(Timestamp time) const;
 
   // The body's motion between frames, in the map's lengths. A gyroscope alone tells a turn; the way is then taken to go
   // on as it was seen, for a second at most. Empty where it is not known.
@@ -71,6 +84,7 @@ class MotionPrior {
   Trajectory completed(Trajectory seen) const;
 
   const std::optional<WheelMounting>& wheels() const { return mounting_; }
+  const Standing& standing() const { return standing_; }
   const std::optional<GyroscopeMounting>& gyroscope() const { return gyroscope_; }
   double time_offset() const { return time_offset_.value_or(0.0); }  // seconds that wheels stamp later than the camera
   bool are_wheels_slipping() const { return is_slipping_; }
@@ -85,6 +99,10 @@ class MotionPrior {
   static constexpr Timestamp kMostKept = std::chrono::minutes(30);  // while the mounting is not known, too
 
   void forget_old_samples();
+  void watch_standing(Timestamp time, const std::optional<Pose>& seen);
+  std::optional<bool> do_wheels_stand(Timestamp time) const;
+  std::optional<bool> does_sight_stand(Timestamp time) const;
+  std::optional<SteadyTrack::Steady> standing_by_wheels(Timestamp time) const;
   void look_for_mountings();
   void look_for_wheel_mounting();
   void presume_mounting();
@@ -109,6 +127,8 @@ class MotionPrior {
 
   WheelTrack wheels_;
   RateTrack rates_;
+  Standing standing_;
+  std::deque<StampedPose> last_seen_;  // frames of about a second, all of which were seen
   Timestamp samples_kept_ = kUsuallyKept;
   UnseenWay unseen_;
   UnseenWay::OldPoses old_poses_ = UnseenWay::OldPoses::kept;
@@ -123,6 +143,8 @@ class MotionPrior {
   std::optional<WheelMounting> presumed_;      // while mounting_ is not known
   std::optional<WheelMounting> before_sight_;  // until anything is seen
   bool tells_before_sight_ = false;
+  std::optional<Eigen::Vector3d> measured_up_;  // by accelerations
+  std::optional<GyroscopeMounting> presumed_gyroscope_;
   std::optional<GyroscopeMounting> gyroscope_;
   std::optional<double> time_offset_;
   bool is_slipping_ = false;

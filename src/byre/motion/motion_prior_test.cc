@@ -103,6 +103,30 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
+// Wheels that tell how fast the base moves, at 50 Hz, but for a gap in the stream while all is seen and another one in
+// the dark.
+TEST(MotionPrior, BridgesTheDarkByVelocities) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  MotionPrior prior;
+  std::mt19937 random(5);
+  for (int step = 0; step < 7200; ++step) {
+    const double t = step * 0.01;
+    const bool is_lost = (t > 20.0 && t < 20.4) || (t > 68.0 && t < 69.0);
+    if (step % 2 == 0 && !is_lost) prior.add(drive.velocity(t));
+    if (step % 5 == 0) prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
+  }
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.37, 0.004);
+  EXPECT_EQ(prior.slips(), 0);
+  const BodyMotion told = over(prior, 60.0, 67.9);
+  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 67.9));
+  EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05) << "metres, of 4";
+  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6) << "within 95 %";
+  EXPECT_FALSE(prior.between(from_seconds(68.5), from_seconds(68.55))) << "in the gap";
+  EXPECT_FALSE(prior.between(from_seconds(67.9), from_seconds(69.1))) << "across it";
+  EXPECT_TRUE(prior.between(from_seconds(69.2), from_seconds(69.25)));
+}
+
 TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.gyroscope = true}, 60.0, 60.0);
@@ -366,6 +390,72 @@ TEST(MotionPrior, KeepsAMountingThroughWheelsThatSlipAtFirst) {
   const MotionPrior prior = followed(drive, {.slip_from = 0.5, .slip_to = 3.5}, 12.0, 12.0, known);
   EXPECT_FALSE(prior.is_mounted_otherwise());
   EXPECT_FALSE(prior.are_wheels_slipping());
+}
+
+// A drive with a gyroscope and an accelerometer that stops for good at a time, with the sensor turned in a body that is
+// seen until dark.
+struct Stop {
+  double at = 40.0;             // seconds
+  double dark = 30.0;           // seconds
+  double drift = 0.0;           // radians per second that the gyroscope's bias changes by in the dark
+  bool is_told_of_stop = true;  // by wheels; else they go on telling a slow drive
+};
+
+MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {
+  MotionPrior prior;
+  std::mt19937 random(5);
+  const auto time_driven = [&](double t) { return std::min(t, stop.at); };
+  const Pose map_from_first = inverse(drive.base_from_body);
+  for (int step = 0; step * 0.01 < end; ++step) {
+    const double t = step * 0.01, driven = time_driven(t);
+    StampedPose wheels = drive.wheels(driven);
+    wheels.time = from_seconds(t);
+    if (t > stop.at && !stop.is_told_of_stop) wheels.world_from_body.translation.x() += 0.05 * (t - stop.at);
+    if (step % 2 == 0) prior.add(wheels);
+    Eigen::Vector3d rate = kBodyFromGyroscope.conjugate() * rate_of_body(drive, driven) + kBias;
+    if (t >= stop.at) rate = kBias;
+    if (t >= stop.dark) rate += Eigen::Vector3d::Constant(stop.drift);
+    prior.add(AngularRate{from_seconds(t), rate});
+    const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double swing = t < stop.at ? 0.5 * std::sin(3.0 * t) : 0.0;
+    prior.add(
+        Acceleration{from_seconds(t), kBodyFromGyroscope.conjugate() * (9.81 * up) + Eigen::Vector3d(swing, 0, 0)});
+    if (step % 5 != 0) continue;
+    const bool is_seen = t < stop.dark;
+    prior.note(from_seconds(t), is_seen ? std::optional(drive.seen(driven, random)) : std::nullopt);
+    if (is_seen) prior.note_place(map_from_first * Drive::world_from_base(driven) * drive.base_from_body);
+  }
+  return prior;
+}
+
+TEST(MotionPrior, FindsTheGyroscopesBiasWhereItStandsInTheDark) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004}, 50.0);
+  ASSERT_TRUE(prior.gyroscope());
+  EXPECT_LT((prior.gyroscope()->bias - kBias - Eigen::Vector3d::Constant(0.004)).norm(), 1e-3);
+  const BodyMotion told = over(prior, 47.0, 49.9);
+  EXPECT_LT(rotation_log(told.last_from_body.rotation).norm(), 1e-3);
+  EXPECT_LT(std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace()), 2e-3);
+  EXPECT_LT(std::sqrt(told.covariance.topLeftCorner<3, 3>().trace()), 0.01);
+}
+
+TEST(MotionPrior, DoesNotStandWhereWheelsCreep) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004, .is_told_of_stop = false}, 50.0);
+  EXPECT_EQ(prior.standing().stops(), 0);
+  EXPECT_FALSE(prior.tilt(from_seconds(49.9)));
+}
+
+TEST(MotionPrior, TellsTheTiltInTheDarkAfterAStopThatWasSeen) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  EXPECT_FALSE(followed_to_a_stop(drive, {}, 50.0).tilt(from_seconds(49.9))) << "up in the map is not known";
+  const MotionPrior prior = followed_to_a_stop(drive, {.dark = 44.0}, 50.0);
+  ASSERT_TRUE(prior.to_keep().up);
+  const auto tilt = prior.tilt(from_seconds(49.9));
+  ASSERT_TRUE(tilt);
+  EXPECT_LT(tilt->sigma, 0.02);
+  const Pose body = inverse(drive.base_from_body) * Drive::world_from_base(40.0) * drive.base_from_body;
+  EXPECT_LT((body.rotation * tilt->up_in_body - tilt->up_in_map).norm(), 2.0 * tilt->sigma);
 }
 
 TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {

@@ -173,19 +173,24 @@ std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const Kn
 }
 
 // The axis nearest to the one that is presumed about which the body turns, and along which it does not drive.
-std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body) {
+std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body,
+                                           UpSource source) {
   constexpr double kPresumed = 0.05;  // sum of squared turns that the presumption counts for
+  constexpr double kMeasured = 1.0;   // sum of squared turns that an accelerometer counts for
   constexpr double kTurning = 0.1;    // radians, of a motion whose way tells badly what is ahead
   constexpr double kLeast = 0.3;      // length of what is left of an axis
-  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), turned = kPresumed * up_in_body.normalized();
+  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), left = ahead,
+                  turned = (source == UpSource::measured ? kMeasured : kPresumed) * up_in_body.normalized();
   for (const MotionPair& motion : motions) {
     const double yaw = yaw_of(motion.base);
-    ahead += motion.base.translation.x() * motion.body.translation / (1.0 + std::pow(yaw / kTurning, 2));
+    const Eigen::Vector3d seen = motion.body.translation / (1.0 + std::pow(yaw / kTurning, 2));
+    ahead += motion.base.translation.x() * seen;
+    left += motion.base.translation.y() * seen;
     turned += yaw * rotation_log(motion.body.rotation);
   }
-  if (!(ahead.norm() > 0.0)) return {};
-  ahead.normalize();
-  const Eigen::Vector3d up = turned - ahead * ahead.dot(turned);
+  const Eigen::Vector3d level = (ahead.norm() >= left.norm() ? ahead : left).normalized();
+  if (!(level.norm() > 0.0)) return {};
+  const Eigen::Vector3d up = turned - level * level.dot(turned);
   return up.norm() > kLeast * turned.norm() ? std::optional(up.normalized()) : std::nullopt;
 }
 
@@ -197,6 +202,21 @@ double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Ve
     if (std::abs(yaw) > kSmall) errors.push_back(std::abs(rotation_log(motion.body.rotation).dot(up) / yaw - 1.0));
   }
   return median_or(std::move(errors), 0.0);
+}
+
+// How wrongly wheels tell the way across, by the motions that went to the side.
+double side_error_of(const std::vector<MotionPair>& motions, const WheelMounting& mounting) {
+  constexpr double kSideways = 0.3;   // share of the way
+  constexpr double kShortWay = 0.02;  // metres
+  constexpr std::size_t kLeast = 4;   // motions
+  std::vector<double> errors;
+  for (const MotionPair& motion : motions) {
+    const double way = motion.base.translation.norm(), side = std::abs(way_across(motion.base));
+    if (way < kShortWay || side < kSideways * way) continue;
+    const Pose told = body_motion(mounting, motion.base);
+    errors.push_back(mounting.metres_per_unit * (told.translation - motion.body.translation).norm() / side);
+  }
+  return errors.size() < kLeast ? WheelMounting{}.side_error : median_or(std::move(errors), 0.0);
 }
 
 // Without what turns tell. Empty where scale or direction are known worse than max_sigma, a share and radians.
@@ -253,16 +273,17 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
   if (!mounting) return {};
   mounting->turn_error = median_turn_error(motions, *up);
   mounting->turn_errors = turn_errors;
+  mounting->side_error = side_error_of(motions, *mounting);
   return mounting;
 }
 
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
-                                                    const Eigen::Vector3d& up_in_body) {
+                                                    const Eigen::Vector3d& up_in_body, UpSource source) {
   constexpr double kArm = 0.3;         // metres, standard deviation
   constexpr double kLeastWay = 0.3;    // metres, all ways together
   constexpr double kMaxSigma = 0.2;    // share of the scale, and radians
   constexpr double kLeastError = 0.1;  // share of ways and turns
-  const auto up = presumed_up(motions, up_in_body);
+  const auto up = presumed_up(motions, up_in_body, source);
   if (!up) return {};
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
   const std::vector<PlanarMotion> planar_motions = planar(motions, level_from_body);
@@ -300,6 +321,11 @@ Pose without_turn_errors(const TurnErrors& errors, const Pose& base) {
   const double extra = (errors.scale - 1.0) * yaw_of(base) + errors.per_metre * base.translation.x();
   const Eigen::Quaterniond half = rotation_exp({0.0, 0.0, 0.5 * extra});
   return {half * base.rotation * half, half * base.translation};
+}
+
+double way_across(const Pose& base) {
+  const Eigen::Quaterniond half = rotation_exp(0.5 * rotation_log(base.rotation));
+  return (half.conjugate() * base.translation).y();
 }
 
 Pose body_motion(const WheelMounting& mounting, const Pose& base) {

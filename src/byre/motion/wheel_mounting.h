@@ -2,6 +2,7 @@
 
 #include "byre/pose.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -30,7 +31,10 @@ struct WheelMounting {
   double metres_per_unit = 1.0;  // metres by the wheels in a unit of the map's lengths
   double scale_sigma = 0.0;      // standard deviation of metres_per_unit as a share of it
   double way_error = 0.0;        // median distance between motions by wheels and by sight, as a share of the way
-  double turn_error = 0.0;       // median difference of turns, as a share of the turn, without turn_errors
+  // Median of the same among motions to the side, as a share of the way across. Wheels that roll to all sides slide
+  // more that way, and tell it wrongly; it is presumed until they went there. Those that drive ahead never go across.
+  double side_error = 0.2;
+  double turn_error = 0.0;  // median difference of turns, as a share of the turn, without turn_errors
   TurnErrors turn_errors;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // covariance of unknowns_about
 };
@@ -50,11 +54,18 @@ Eigen::Matrix4d usual_change(const WheelMounting& mounting);
 std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& motions,
                                                  const std::optional<WheelMounting>& known = {});
 
+// From where it is known which axis points up: an accelerometer has told, or a camera is upright as a rule.
+enum class UpSource : std::uint8_t { presumed, measured };
+
 // A guess while the motions leave it open, by little more than a metre of way: the body is upright as far as they do
 // not say otherwise, its lever arm is short, and it looks to where they say that is ahead. up_in_body: about, the axis
 // that points up. Empty where they do not tell what is ahead.
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
-                                                    const Eigen::Vector3d& up_in_body);
+                                                    const Eigen::Vector3d& up_in_body,
+                                                    UpSource source = UpSource::presumed);
+
+// Metres that a base goes to its left, beside the arc that it drives along: nothing, where its wheels roll ahead alone.
+double way_across(const Pose& base);
 
 // A guess before anything is seen: the body is upright, looks to where the base drives, and stands above its middle;
 // lengths are metres. Axes in the body, about. Empty where it looks up or down. Its errors say that the body may look

@@ -55,6 +55,52 @@ TEST(WheelMounting, TellsTheMotionOfTheBody) {
   EXPECT_LT(angle_between(told.rotation, seen.rotation), 1e-5);
 }
 
+// A base on wheels that roll to all sides, which drives ahead, to the left and turns as it likes. Its rollers slide:
+// it goes less far to the side than they tell.
+std::vector<MotionPair> pairs_of_omni(const Drive& drive, double seconds, double told_of_side, double turning,
+                                      double ahead) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.001);
+  std::vector<MotionPair> pairs;
+  for (double t = 0.0; t < seconds; t += 0.5) {
+    const Pose true_base{rotation_exp({0.0, 0.0, turning * std::sin(0.4 * t)}),
+                         {ahead * std::cos(0.31 * t), 0.2 * std::sin(0.53 * t + 0.8), 0.0}};
+    MotionPair pair{true_base, inverse(drive.base_from_body) * true_base * drive.base_from_body};
+    pair.base.translation.y() *= told_of_side;
+    for (int axis = 0; axis < 3; ++axis) pair.body.translation[axis] += noise(random);
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+TEST(WheelMounting, IsFoundOfABaseThatDrivesToAllSides) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  for (const double ahead : {0.2, 0.0}) {
+    const auto mounting = find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.0, 0.2, ahead));
+    ASSERT_TRUE(mounting) << ahead;
+    expect_near(*mounting, drive, 0.005, 0.01, 0.005);
+    const auto presumed = presume_wheel_mounting(pairs_of_omni(drive, 3.0, 1.0, 0.0, ahead), -Eigen::Vector3d::UnitY());
+    ASSERT_TRUE(presumed) << ahead;
+    EXPECT_LT(angle_between(presumed->base_from_body.rotation, drive.base_from_body.rotation), 0.15) << ahead;
+  }
+}
+
+TEST(WheelMounting, SaysHowWronglyTheSideIsTold) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  for (const double ahead : {0.2, 0.6}) {  // the farther it goes ahead, the less the side matters to all of it
+    const auto mounting = find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.15, 0.2, ahead));
+    ASSERT_TRUE(mounting);
+    const Pose told = body_motion(*mounting, {Eigen::Quaterniond::Identity(), {0.0, 1.15, 0.0}});
+    const Eigen::Vector3d truth = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitY();
+    EXPECT_GT((told.translation - truth).norm(), 0.05);
+    EXPECT_LT((told.translation - truth).norm(), 2.5 * mounting->side_error) << ahead;
+  }
+  EXPECT_LT(find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.0, 0.2, 0.2))->side_error, 0.03);
+  const auto never_across = find_wheel_mounting(pairs_of(drive, 30.0));
+  ASSERT_TRUE(never_across);
+  EXPECT_EQ(never_across->side_error, 0.2) << "nobody has seen it go across";
+}
+
 TEST(WheelMounting, StaysOpenWithoutTurning) {
   MotionPair ahead;
   ahead.base.translation.x() = ahead.body.translation.z() = 0.25;
@@ -100,6 +146,20 @@ TEST(WheelMounting, IsPresumedToLookAheadBeforeAnythingIsSeen) {
   EXPECT_EQ(mounting->way_error, 1.0) << "it may as well look aside";
   EXPECT_FALSE(presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.0, -1.0, 0.1)))
       << "a camera that looks up tells nothing of what is ahead";
+}
+
+// Before it has turned, an accelerometer alone can tell of a camera that lies on its side.
+TEST(WheelMounting, IsPresumedByAMeasuredUpThoughTheCameraLiesOnItsSide) {
+  Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});
+  const std::vector<MotionPair> pairs = pairs_of(drive, 1.5);
+  const auto error = [&](const Eigen::Vector3d& up, UpSource source) {
+    const auto mounting = presume_wheel_mounting(pairs, up, source);
+    return mounting ? angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation) : 10.0;
+  };
+  const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT(error(rotation_exp({0.01, 0.0, 0.01}) * up, UpSource::measured), 0.15);
+  EXPECT_GT(error(-Eigen::Vector3d::UnitY(), UpSource::presumed), 0.5);
 }
 
 TEST(WheelMounting, IsNotPresumedByTurningOnTheSpot) {

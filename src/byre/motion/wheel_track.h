@@ -1,16 +1,21 @@
 #pragma once
 
+#include "byre/body_motion.h"
 #include "byre/trajectory.h"
 
 #include <optional>
+#include <vector>
 
 namespace byre {
 
-// What wheels tell: poses of the robot's base in a frame of their own, which drifts.
+// What wheels tell: poses of the robot's base in a frame of their own, which drifts, or how fast the base moves.
 class WheelTrack {
  public:
   // Samples that are not later than the one before are left out.
   void add(const StampedPose& sample);
+  // The base moves on by the mean of two velocities, along an arc. Nobody knows how fast it was while none came for
+  // three tenths of a second: no motion is told across such a gap.
+  void add(const BaseVelocity& sample);
 
   // Samples before a time may go, and do once they are two minutes older.
   void forget_before(Timestamp time);
@@ -30,7 +35,11 @@ class WheelTrack {
   std::optional<Distance> distance(Timestamp earlier, Timestamp later) const;
 
  private:
+  bool is_broken(Timestamp earlier, Timestamp later) const;
+
   Trajectory samples_;
+  std::optional<BaseVelocity> velocity_;  // the last sample's, where it was one
+  std::vector<Timestamp> breaks_;         // times of samples that no motion leads to from the one before
 };
 
 }  // namespace byre

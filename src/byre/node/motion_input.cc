@@ -4,51 +4,94 @@
 #include "byre/dds/type_hashes.h"
 #include "byre/node/message_parsing.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace byre {
 namespace {
 
 constexpr std::size_t kMostKept = 10'000;  // some seconds of the fastest sensor
 
-// Adds what came, and leaves the oldest out where no frame asks for it.
-template <ros::Message M, typename Sample>
-void take_samples(std::optional<Subscriber>& subscriber, const std::string& topic, std::deque<Sample>& samples) {
-  if (!subscriber) return;
-  for (const Message& message : subscriber->take()) {
+// Adds a sample, and leaves the oldest out where no frame asks for it.
+template <typename Sample>
+void keep(const Sample& sample, std::deque<Sample>& samples) {
+  samples.push_back(sample);
+  if (samples.size() > kMostKept) samples.pop_front();
+}
+
+// What came.
+template <ros::Message M, typename Use>
+void take_samples(Subscriber& subscriber, const std::string& topic, const Use& use) {
+  for (const Message& message : subscriber.take()) {
     const auto parsed = parsed_message<M>(message, topic);
     if (!parsed) continue;
-    if (const auto sample = sample_of(*parsed, ros::to_nanoseconds(parsed->header.stamp))) samples.push_back(*sample);
-    if (samples.size() > kMostKept) samples.pop_front();
+    if (const auto sample = sample_of(*parsed, ros::to_nanoseconds(parsed->header.stamp))) use(*sample);
   }
+}
+
+std::optional<MessageType> wheels_type(const std::vector<std::string>& published) {
+  for (const MessageType& type : {message_type<ros::Odometry>(), message_type<ros::TwistStamped>(),
+                                  message_type<ros::TwistWithCovarianceStamped>()}) {
+    if (std::ranges::find(published, type.name) != published.end()) return type;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 MotionInput::MotionInput(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph)
-    : config_(config) {
+    : config_(config), participant_(participant), graph_(graph) {
+  if (!config.gyroscope.empty()) gyroscope_ = subscribe(config.gyroscope, message_type<ros::Imu>());
+}
+
+Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
   const TopicQos qos{.is_reliable = false, .depth = 1000};  // as drivers of sensors send
-  const auto subscribe = [&](const std::string& topic, const MessageType& type) {
-    std::optional<Subscriber> subscriber;
-    if (topic.empty()) return subscriber;
-    subscriber = participant.subscribe(config.topic(topic), type, qos);
-    graph.add(*subscriber);
-    return subscriber;
-  };
-  wheels_ = subscribe(config.wheels, message_type<ros::Odometry>());
-  gyroscope_ = subscribe(config.gyroscope, message_type<ros::Imu>());
+  Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
+  graph_.add(subscriber);
+  return subscriber;
+}
+
+// Who publishes tells of which type wheels are.
+void MotionInput::look_for_wheels() {
+  const auto type = wheels_type(participant_.published_types(config_.topic(config_.wheels)));
+  if (!type) return;
+  wheels_ = subscribe(config_.wheels, *type);
+  wheels_type_ = type->name;
+  graph_.tell();
 }
 
 void MotionInput::take() {
-  take_samples<ros::Odometry>(wheels_, config_.wheels, poses_);
-  take_samples<ros::Imu>(gyroscope_, config_.gyroscope, rates_);
+  if (gyroscope_) {
+    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) { keep(sample, imu_); });
+  }
+  if (config_.wheels.empty()) return;
+  if (!wheels_) look_for_wheels();
+  if (!wheels_) return;
+  const auto add = [&](const WheelSample& sample) { stream_.add(sample); };
+  if (wheels_type_ == ros::Odometry::kType) take_samples<ros::Odometry>(*wheels_, config_.wheels, add);
+  if (wheels_type_ == ros::TwistStamped::kType) take_samples<ros::TwistStamped>(*wheels_, config_.wheels, add);
+  if (wheels_type_ == ros::TwistWithCovarianceStamped::kType) {
+    take_samples<ros::TwistWithCovarianceStamped>(*wheels_, config_.wheels, add);
+  }
+  for (const WheelSample& sample : stream_.take()) keep(sample, samples_);
 }
 
 void MotionInput::tell(const StampClock& clock, SlamRunner& runner) {
-  for (const StampedPose& pose : poses_) {
-    runner.tell_wheels({clock.without_jumps(pose.time), pose.world_from_body});
+  for (const WheelSample& sample : samples_) {
+    const Timestamp time = clock.without_jumps(sample.time);
+    if (sample.pose) runner.tell_wheels(StampedPose{time, *sample.pose});
+    if (!sample.velocity) continue;
+    BaseVelocity velocity = *sample.velocity;
+    velocity.time = time;
+    runner.tell_wheels(velocity);
   }
-  for (const AngularRate& rate : rates_) runner.tell_gyroscope({clock.without_jumps(rate.time), rate.rate});
-  poses_.clear();
-  rates_.clear();
+  for (const ImuSample& sample : imu_) {
+    const Timestamp time = clock.without_jumps(sample.rate.time);
+    runner.tell_gyroscope({time, sample.rate.rate});
+    if (sample.acceleration) runner.tell_accelerometer({time, sample.acceleration->acceleration});
+  }
+  samples_.clear();
+  imu_.clear();
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/dataset/wheel_stream.h"
 #include "byre/dds/ros_graph.h"
 #include "byre/node/node_config.h"
 #include "byre/node/slam_runner.h"
@@ -7,6 +8,7 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 
 namespace byre {
 
@@ -21,11 +23,20 @@ class MotionInput {
   void tell(const StampClock& clock, SlamRunner& runner);
 
  private:
-  NodeConfig config_;  // constant after construction
-  std::optional<Subscriber> wheels_;
+  Subscriber subscribe(const std::string& topic, const MessageType& type);
+  void look_for_wheels();
+
+  // Constant after construction.
+  NodeConfig config_;
+  Participant& participant_;
+  GraphAnnouncement& graph_;
+
+  std::optional<Subscriber> wheels_;  // once somebody publishes their topic
+  std::string wheels_type_;
   std::optional<Subscriber> gyroscope_;
-  std::deque<StampedPose> poses_;  // the last seconds, by their own stamps
-  std::deque<AngularRate> rates_;  // the last seconds, by their own stamps
+  WheelStream stream_;
+  std::deque<WheelSample> samples_;  // the last seconds of wheels, by their own stamps
+  std::deque<ImuSample> imu_;        // the last seconds, by their own stamps
 };
 
 }  // namespace byre

@@ -24,7 +24,9 @@ class SlamRunner {
   bool is_running() const { return slam_.has_value(); }
   // What wheels and a gyroscope told before the next frame. Precondition: is_running().
   void tell_wheels(const StampedPose& odometry_from_base) { slam_->tell_wheels(odometry_from_base); }
+  void tell_wheels(const BaseVelocity& velocity) { slam_->tell_wheels(velocity); }
   void tell_gyroscope(const AngularRate& rate) { slam_->tell_gyroscope(rate); }
+  void tell_accelerometer(const Acceleration& acceleration) { slam_->tell_accelerometer(acceleration); }
   // The next frame; its pose in the map and the covariance of that are as they are published.
   FrameReport process(const CameraImages& images);
 

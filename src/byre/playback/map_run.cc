@@ -39,15 +39,24 @@ class MotionFeed {
     for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
       engine.tell_wheels(samples_.wheels[wheel_]);
     }
+    for (; velocity_ < samples_.velocities.size() && samples_.velocities[velocity_].time <= until; ++velocity_) {
+      engine.tell_wheels(samples_.velocities[velocity_]);
+    }
     for (; rate_ < samples_.rates.size() && samples_.rates[rate_].time <= until; ++rate_) {
       engine.tell_gyroscope(samples_.rates[rate_]);
+    }
+    for (const auto& told = samples_.accelerations; acceleration_ < told.size(); ++acceleration_) {
+      if (told[acceleration_].time > until) break;
+      engine.tell_accelerometer(told[acceleration_]);
     }
   }
 
  private:
   const MotionSamples& samples_;
   std::size_t wheel_ = 0;
+  std::size_t velocity_ = 0;
   std::size_t rate_ = 0;
+  std::size_t acceleration_ = 0;
 };
 
 // Jobs that finished since the last frame began, without those that were noted already.
@@ -57,18 +66,26 @@ void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
 }
 
 // What was found out of wheels and a gyroscope.
-ToldMotion told_motion(const MotionPrior& prior) {
-  return {!prior.is_empty(), prior.wheels(),
-          prior.gyroscope(), prior.time_offset(),
-          prior.slips(),     prior.is_mounted_otherwise(),
-          prior.to_keep(),   0};
+ToldMotion told_motion(const MotionPrior& prior, const Session& session) {
+  ToldMotion told;
+  told.is_told = !prior.is_empty();
+  told.wheels = prior.wheels();
+  told.gyroscope = prior.gyroscope();
+  told.time_offset = prior.time_offset();
+  told.slips = prior.slips();
+  told.is_mounted_otherwise = prior.is_mounted_otherwise();
+  told.to_keep = prior.to_keep();
+  told.stops = prior.standing().stops();
+  told.stood_s = prior.standing().seconds();
+  told.tilts_held = session.tilts_held();
+  return told;
 }
 
 void take_over_result(Engine& engine, MapRun& run) {
   const Trajectory seen = engine.session().final_trajectory();
   run.final = engine.prior().completed(seen);
   run.calibration = engine.calibration();
-  run.told = told_motion(engine.prior());
+  run.told = told_motion(engine.prior(), engine.session());
   run.is_metric = engine.is_metric();
   run.map = engine.take_kept_map();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
@@ -94,6 +111,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
   const Stopwatch watch;
   Engine engine(frames.calibration(), options, std::move(before));
   MotionFeed feed(frames.motion());
+  if (const auto& axes = frames.motion().left_from_gyroscope) engine.tell_gyroscope_mounting(*axes);
   MapRun run;
   bool is_begun = false;
   while (const auto frame = frames.next(hooks.should_stop)) {

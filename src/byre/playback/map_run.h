@@ -30,6 +30,9 @@ struct ToldMotion {
   int slips = 0;                      // times that wheels were left out
   bool is_mounted_otherwise = false;  // wheels, than when the map was made
   KnownMounting to_keep;              // for the next drive
+  int stops = 0;                      // times that the body stood still, as accelerations show too
+  double stood_s = 0.0;               // seconds that it did
+  int tilts_held = 0;                 // bridged frames whose roll and pitch accelerations held
   int led_afterwards = 0;             // final poses of frames that had none, where wheels led from those that had
 };
 

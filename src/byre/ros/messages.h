@@ -148,6 +148,28 @@ struct TwistWithCovariance {
   bool operator==(const TwistWithCovariance&) const = default;
 };
 
+struct TwistStamped {
+  static constexpr std::string_view kType = "geometry_msgs/msg/TwistStamped";
+  Header header{};
+  Twist twist{};  // motion of the header's frame, as seen in it
+  static void fields(auto& self, auto& visit) {
+    visit("header", self.header);
+    visit("twist", self.twist);
+  }
+  bool operator==(const TwistStamped&) const = default;
+};
+
+struct TwistWithCovarianceStamped {
+  static constexpr std::string_view kType = "geometry_msgs/msg/TwistWithCovarianceStamped";
+  Header header{};
+  TwistWithCovariance twist{};  // motion of the header's frame, as seen in it
+  static void fields(auto& self, auto& visit) {
+    visit("header", self.header);
+    visit("twist", self.twist);
+  }
+  bool operator==(const TwistWithCovarianceStamped&) const = default;
+};
+
 struct Transform {
   static constexpr std::string_view kType = "geometry_msgs/msg/Transform";
   Vector3 translation{};

@@ -77,6 +77,9 @@ class Session {
   void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
   bool is_mapping_paused() const { return is_mapping_paused_; }
 
+  // How the body is tilted at the next frame, where that is known: of use where nothing is seen.
+  void tell_tilt(const std::optional<BodyTilt>& tilt) { whereabouts_.tell_tilt(tilt); }
+  int tilts_held() const { return whereabouts_.tilts_held(); }  // frames of which it was of use
   // motion: of the body since the last frame, where that is known. budget: what the frame may take, if that is limited;
   // its begin() was called, and its end() is left to the caller.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {},

@@ -120,11 +120,19 @@ EurocWriter::EurocWriter(const Calibration& calibration, const std::vector<Times
 
 void write_motion(const MotionSamples& motion, const fs::path& folder) {
   write_trajectory(motion.wheels, folder / "wheel.txt");
-  const fs::path path = folder / "mav0" / "imu0" / "data.csv";
+  const fs::path imu = folder / "mav0" / "imu0", path = imu / "data.csv", axes = imu / "sensor.yaml";
+  std::ofstream sensor = create(axes);
+  sensor << "sensor_type: imu\ncomment: rendered\nT_BS:\n  cols: 4\n  rows: 4\n"
+            "  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+  close(sensor, axes);
   std::ofstream file = create(path);
-  file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1]\n";
-  for (const AngularRate& rate : motion.rates) {
-    file << rate.time.count() << "," << rate.rate.x() << "," << rate.rate.y() << "," << rate.rate.z() << "\n";
+  file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+          "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+  for (std::size_t i = 0; i < motion.rates.size(); ++i) {
+    const auto& [time, rate] = motion.rates[i];
+    const Eigen::Vector3d& acceleration = motion.accelerations[i].acceleration;
+    file << time.count() << "," << rate.x() << "," << rate.y() << "," << rate.z() << "," << acceleration.x() << ","
+         << acceleration.y() << "," << acceleration.z() << "\n";
   }
   close(file, path);
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::uint64_t kWheelStream = 71;
 constexpr std::uint64_t kRateStream = 72;
+constexpr std::uint64_t kAccelerationStream = 73;
+constexpr double kGravity = 9.81;  // m/s^2
 
 // Normally distributed, by Box and Muller.
 double normal(SeededDraws& draws) {
@@ -84,11 +86,41 @@ std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const Motion
   return rates;
 }
 
+// metres per second, from one pose of the path to the next
+Eigen::Vector3d velocity_after(const Trajectory& truth, std::size_t i) {
+  const Eigen::Vector3d way = truth[i + 1].world_from_body.translation - truth[i].world_from_body.translation;
+  return way / to_seconds(truth[i + 1].time - truth[i].time);
+}
+
+std::vector<Acceleration> told_by_accelerometer(const Trajectory& truth, const MotionSensorOptions& options) {
+  SeededDraws draws(options.seed, kAccelerationStream);
+  Eigen::Vector3d bias;
+  for (int axis = 0; axis < 3; ++axis) bias[axis] = options.acceleration_bias * normal(draws);
+  std::vector<Acceleration> accelerations;
+  for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
+    const double seconds = to_seconds(truth[i + 1].time - truth[i].time);
+    Eigen::Vector3d in_world(0.0, 0.0, kGravity);
+    if (i > 0) {
+      const double between = 0.5 * to_seconds(truth[i + 1].time - truth[i - 1].time);
+      in_world += (velocity_after(truth, i) - velocity_after(truth, i - 1)) / between;
+    }
+    Acceleration told{truth[i].time, truth[i].world_from_body.rotation.conjugate() * in_world + bias};
+    const double sigma = options.acceleration_noise / std::sqrt(seconds);
+    for (int axis = 0; axis < 3; ++axis) told.acceleration[axis] += sigma * normal(draws);
+    accelerations.push_back(told);
+  }
+  return accelerations;
+}
+
 }  // namespace
 
 MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options) {
   if (world_from_body.size() < 2) return {};
-  return {told_by_wheels(world_from_body, options), told_by_gyroscope(world_from_body, options)};
+  MotionSamples told;
+  told.wheels = told_by_wheels(world_from_body, options);
+  told.rates = told_by_gyroscope(world_from_body, options);
+  told.accelerations = told_by_accelerometer(world_from_body, options);
+  return told;
 }
 
 }  // namespace byre

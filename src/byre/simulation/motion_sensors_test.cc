@@ -23,6 +23,30 @@ Pose motion_between(const Trajectory& path, double from, double to) {
   return inverse(*pose_at(path, from_seconds(from), kGap)) * *pose_at(path, from_seconds(to), kGap);
 }
 
+// What a sensor without errors tells, integrated twice, leads where the path does.
+TEST(MotionSensors, TellAccelerationsWithGravity) {
+  const Trajectory truth = drive();
+  const MotionSamples exact = simulated_motion(truth, {.acceleration_noise = 0.0, .acceleration_bias = 0.0});
+  ASSERT_EQ(exact.accelerations.size(), exact.rates.size());
+  const std::size_t begin = 400;
+  Eigen::Vector3d place = truth[begin].world_from_body.translation;
+  Eigen::Vector3d velocity = (place - truth[begin - 1].world_from_body.translation) / 0.005;
+  for (std::size_t i = begin; i < begin + 2000; ++i) {
+    const Eigen::Vector3d told = truth[i].world_from_body.rotation * exact.accelerations[i].acceleration;
+    velocity += 0.005 * (told - Eigen::Vector3d(0.0, 0.0, 9.81));
+    place += 0.005 * velocity;
+  }
+  EXPECT_LT((place - truth[begin + 2000].world_from_body.translation).norm(), 1e-6) << "metres, after ten seconds";
+  const MotionSamples told = simulated_motion(truth, {});
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < told.accelerations.size(); ++i) {
+    error += (told.accelerations[i].acceleration - exact.accelerations[i].acceleration) /
+             static_cast<double>(told.accelerations.size());
+  }
+  EXPECT_GT(error.norm(), 0.01) << "bias";
+  EXPECT_LT(error.norm(), 0.2) << "bias";
+}
+
 TEST(MotionSensors, AreExactWithoutErrors) {
   const Trajectory truth = drive();
   const MotionSamples told = simulated_motion(truth, {.radius_error = 0.0,

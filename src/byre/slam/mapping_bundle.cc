@@ -193,9 +193,10 @@ void adjust_bundle(MapWindow& window, const MappingOptions& options, const std::
 
 void refresh_covariances(MapWindow& window, const MappingOptions& options) {
   constexpr std::size_t kFound = 32;
-  WindowBundle bundle = make_bundle(window, options.offline_weight);
+  const WindowBundle bundle = make_bundle(window, options.offline_weight);
   std::vector<bool> is_observed(window.keyframes.size(), false);
-  for (const WindowObservation& seen : bundle.observations) is_observed[static_cast<std::size_t>(seen.keyframe)] = true;
+  for (const BundleObservation& seen : bundle.problem.observations)
+    is_observed[static_cast<std::size_t>(seen.pose)] = true;
   std::vector<int> movable;
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
     if (window.keyframes[i].movable && is_observed[i]) movable.push_back(static_cast<int>(i));

@@ -43,6 +43,15 @@ std::optional<PosePrior> planar_prior(const DrivenGround& ground, const Rig& rig
   return PosePrior{camera_pose(rig, placed), move_covariance(covariance, inverse(rig.body_from_camera))};
 }
 
+PosePrior tilt_prior(const BodyTilt& tilt, const Rig& rig, const Pose& predicted_camera_from_world) {
+  const Pose body = body_pose(rig, predicted_camera_from_world);
+  const Eigen::Vector3d predicted_up = body.rotation.conjugate() * tilt.up_in_map;
+  const Pose tilted{(body.rotation * rotation_between(tilt.up_in_body, predicted_up)).normalized(), body.translation};
+  Matrix6 covariance = kOpenMetres * kOpenMetres * Matrix6::Identity();
+  covariance.bottomRightCorner<3, 3>() = covariance_about(tilt.up_in_body, kOpenRadians, tilt.sigma);
+  return {camera_pose(rig, tilted), move_covariance(covariance, inverse(rig.body_from_camera))};
+}
+
 PosePrior combined(const PosePrior& one, const PosePrior& other) {
   const auto information = [](const Matrix6& covariance) -> Matrix6 {
     return (covariance + kLeastVariance * Matrix6::Identity()).ldlt().solve(Matrix6::Identity());

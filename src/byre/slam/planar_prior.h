@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/map/driven_ground.h"
+#include "byre/motion/standing.h"
 #include "byre/optimise/pose_refinement.h"
 
 #include <optional>
@@ -12,6 +13,9 @@ namespace byre {
 // prediction itself stands otherwise than that explains, as on a ramp that the map does not know.
 std::optional<PosePrior> planar_prior(const DrivenGround& ground, const Rig& rig,
                                       const Pose& predicted_camera_from_world);
+
+// What accelerations say of the pose of a body that stands still: how it is tilted. Place and heading stay open.
+PosePrior tilt_prior(const BodyTilt& tilt, const Rig& rig, const Pose& predicted_camera_from_world);
 
 // A pose with its covariance and what else is known of it, taken together: of a prior's form.
 PosePrior combined(const PosePrior& one, const PosePrior& other);

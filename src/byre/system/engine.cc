@@ -71,7 +71,8 @@ std::string_view name_of(OfflinePolicy policy) {
 }
 
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
-    : known_(known_before(given, options)),
+    : body_from_left_(given.body_from_left.rotation),
+      known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
       is_metric_(given.tells_metres() || options.offline || before),
       budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
@@ -107,10 +108,14 @@ FrameReport Engine::process_in_time(const Frame& frame, const std::optional<Body
   log_.job_seconds.clear();
   const bool is_told = !motion && last_frame_ && !prior_.is_empty();
   const auto known_motion = is_told ? prior_.between(*last_frame_, frame.time) : motion;
+  session_.tell_tilt(is_told ? prior_.tilt(frame.time) : std::nullopt);
   FrameReport report = session_.process(frame, known_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
+  if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
+    prior_.note_place(*report.map_from_body);
+  }
   budget_.end();
   report.cuts = budget_.cuts();
   report.is_late = budget_.is_late();

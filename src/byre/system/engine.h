@@ -87,7 +87,12 @@ class Engine {
 
   // What wheels and a gyroscope tell, each in order of time, before the frames that it leads to.
   void tell_wheels(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
+  void tell_wheels(const BaseVelocity& velocity) { prior_.add(velocity); }
   void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
+  void tell_accelerometer(const Acceleration& acceleration) { prior_.add(acceleration); }
+  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
+    prior_.presume_gyroscope(body_from_left_ * left_from_gyroscope);
+  }
 
   // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.
   Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
@@ -125,6 +130,7 @@ class Engine {
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
+  Eigen::Quaterniond body_from_left_;        // constant after construction
   std::optional<RefinedCalibration> known_;  // before any frame
   Extractor extractor_;
   MotionPrior prior_;

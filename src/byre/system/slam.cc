@@ -227,8 +227,20 @@ void Slam::tell_wheels(const StampedPose& odometry_from_base) {
   parts_->engine.tell_wheels(odometry_from_base);
 }
 
+void Slam::tell_wheels(const BaseVelocity& velocity) {
+  parts_->engine.tell_wheels(velocity);
+}
+
 void Slam::tell_gyroscope(const AngularRate& rate) {
   parts_->engine.tell_gyroscope(rate);
+}
+
+void Slam::tell_accelerometer(const Acceleration& acceleration) {
+  parts_->engine.tell_accelerometer(acceleration);
+}
+
+void Slam::tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
+  parts_->engine.tell_gyroscope_mounting(left_from_gyroscope);
 }
 
 void Slam::pause_mapping(bool is_paused) {

@@ -51,7 +51,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
   command.add_flag("!--no-wheels", options.use_wheels, "Leave wheel.txt in the folder out");
   command.add_flag("--gyroscope", options.use_gyroscope,
                    "Use the gyroscope in the folder, mav0/imu0/data.csv, or the only sensor_msgs/Imu of a bag");
-  add_text(command, "--wheels-topic", options.wheels_topic, "Topic of a bag's wheel odometry, nav_msgs/Odometry")
+  add_text(command, "--wheels-topic", options.wheels_topic, "Topic of a bag's wheels, nav_msgs/Odometry or twists")
       ->type_name("TOPIC");
   add_text(command, "--imu-topic", options.imu_topic, "Topic of a bag's gyroscope that is used, sensor_msgs/Imu")
       ->type_name("TOPIC");

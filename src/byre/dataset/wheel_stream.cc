@@ -1,0 +1,64 @@
+#include "byre/dataset/wheel_stream.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kAtRest = 1e-3;                               // metres, or radians, per second
+constexpr double kMoved = 0.05;                                // metres, or radians
+constexpr Timestamp kMaxGap = std::chrono::milliseconds(300);  // between velocities that tell a way
+
+bool is_at_rest(const std::optional<BaseVelocity>& velocity) {
+  return !velocity || (std::hypot(velocity->ahead, velocity->left) < kAtRest && std::abs(velocity->turning) < kAtRest);
+}
+
+bool is_same(const Pose& one, const Pose& other) {
+  return one.translation == other.translation && one.rotation.coeffs() == other.rotation.coeffs();
+}
+
+}  // namespace
+
+// By velocities: to and fro is no way, so that noise at rest tells none.
+bool WheelStream::has_moved_away(const WheelSample& sample) {
+  if (!sample.velocity) return false;
+  const BaseVelocity& now = *sample.velocity;
+  if (last_ && now.time > last_->time && now.time - last_->time <= kMaxGap) {
+    const Eigen::Vector3d sum(last_->ahead + now.ahead, last_->left + now.left, last_->turning + now.turning);
+    moved_ += 0.5 * to_seconds(now.time - last_->time) * sum;
+  }
+  last_ = now;
+  return moved_.head<2>().norm() > kMoved || std::abs(moved_.z()) > kMoved;
+}
+
+void WheelStream::tell(const WheelSample& sample) {
+  if (kind_ == Kind::velocities) {
+    if (sample.velocity) told_.push_back({sample.time, {}, sample.velocity});
+  } else if (sample.pose) {
+    told_.push_back({sample.time, sample.pose, {}});
+  }
+}
+
+void WheelStream::decide(Kind kind) {
+  kind_ = kind;
+  for (const WheelSample& sample : std::exchange(held_, {})) tell(sample);
+}
+
+void WheelStream::add(const WheelSample& sample) {
+  if (sample.pose && !first_) first_ = sample.pose;
+  const bool has_pose_changed = sample.pose && !is_same(*sample.pose, *first_);
+  if (has_pose_changed && kind_ != Kind::poses) decide(Kind::poses);
+  if (kind_ != Kind::open) return tell(sample);
+  const bool has_moved = has_moved_away(sample);
+  if (held_.empty() && sample.pose && is_at_rest(sample.velocity)) return tell(sample);
+  held_.push_back(sample);
+  if (has_moved || !sample.pose) decide(Kind::velocities);
+}
+
+std::vector<WheelSample> WheelStream::take() {
+  return std::exchange(told_, {});
+}
+
+}  // namespace byre
