@@ -180,6 +180,9 @@ KnownMounting moved(KnownMounting mounting, const Pose& before_from_after) {
   if (mounting.gyroscope) {
     Eigen::Quaterniond& turned = mounting.gyroscope->body_from_gyroscope;
     turned = before_from_after.rotation.conjugate() * turned;
+    Eigen::Matrix3d& covariance = mounting.gyroscope->covariance;
+    const Eigen::Matrix3d after_from_before = before_from_after.rotation.conjugate().toRotationMatrix();
+    covariance = after_from_before * covariance * after_from_before.transpose();
   }
   return mounting;
 }

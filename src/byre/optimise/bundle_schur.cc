@@ -1,5 +1,6 @@
 #include "byre/optimise/bundle_schur.h"
 
+#include "byre/optimise/bundle_estimate.h"
 #include "byre/optimise/bundle_motion.h"
 #include "byre/optimise/bundle_point.h"
 #include "byre/optimise/calibration_border.h"
@@ -23,28 +24,6 @@ using Matrix63 = Eigen::Matrix<double, 6, 3>;
 // much memory as all else that is known of these.
 constexpr std::size_t kMostKept = 100000;
 
-// Poses, points and the change of the calibration, and what is looked up again and again.
-struct Estimate {
-  std::vector<Pose> poses;
-  std::vector<Eigen::Vector3d> points;
-  CalibrationVector calibration = CalibrationVector::Zero();
-  std::vector<Eigen::Matrix3d> rotations;  // turns of the poses
-
-  void update_rotations() {
-    rotations.resize(poses.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) rotations[i] = poses[i].rotation.toRotationMatrix();
-  }
-};
-
-// A step, and what it would gain were the costs quadratic.
-struct Step {
-  Eigen::VectorXd poses;                // six a slot: turn, then translation
-  std::vector<Eigen::Vector3d> points;  // one a track
-  CalibrationVector calibration = CalibrationVector::Zero();
-  double expected_gain = 0.0;
-  double squared_length = 0.0;
-};
-
 // The problem as the solver walks through it. Lives for one call.
 class SchurBundle {
  public:
@@ -61,19 +40,20 @@ class SchurBundle {
     if (problem.calibration) border_.emplace(problem, slot_count_);
   }
 
-  Estimate take_estimate() { return std::move(estimate_); }  // once, at the end
+  BundleEstimate take_estimate() { return std::move(estimate_); }  // once, at the end
   double cost() const { return cost_of(estimate_); }
 
   // The normal equations at the estimate, damped, with the points eliminated. Returns the largest slope of the cost.
   double linearise(double radius);
   // Empty where the equations have no solution.
-  std::optional<Step> solve();
-  // Of delta in exp_pose(delta) * camera_from_world, for each of the poses. Empty where the equations have no solution.
+  std::optional<BundleStep> solve();
+  // Covariances of delta in exp_pose(delta) * camera_from_world, one for each pose. Empty where the equations have no
+  // solution.
   std::vector<Matrix6> covariances(const std::vector<int>& poses);
   // The estimate after a step.
-  Estimate moved(const Step& step) const;
-  double cost_of(const Estimate& estimate) const;
-  void take_over(Estimate estimate) { estimate_ = std::move(estimate); }
+  BundleEstimate moved(const BundleStep& step) const;
+  double cost_of(const BundleEstimate& estimate) const;
+  void take_over(BundleEstimate estimate) { estimate_ = std::move(estimate); }
   double squared_length() const;  // all that moves
 
  private:
@@ -84,11 +64,11 @@ class SchurBundle {
   LinearObservation linearised(const BundleTerm& term, const Eigen::Vector3d& point) const;
   void linearise_track(std::size_t index);
   void eliminate(std::size_t index, const PointEquations& equations);
-  bool solve_point(std::size_t index, Step& step);
-  bool solve_poses(Step& step);
+  bool solve_point(std::size_t index, BundleStep& step);
+  bool solve_poses(BundleStep& step);
   void add_scale();
   void add_motion(const BundleMotion& motion);
-  double cost_of_motions(const Estimate& estimate) const;
+  double cost_of_motions(const BundleEstimate& estimate) const;
 
   const BundleObservation& observation_of(const BundleTerm& term) const {
     return problem_.observations[static_cast<std::size_t>(term.seen)];
@@ -108,7 +88,7 @@ class SchurBundle {
   std::vector<BundleTerm> terms_;
   std::vector<const BundleMotion*> motions_;  // owned by the caller
 
-  Estimate estimate_;
+  BundleEstimate estimate_;
   // As linearise leaves them.
   std::optional<ReducedSystem> reduced_;  // with the points eliminated
   std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
@@ -289,7 +269,7 @@ void SchurBundle::add_motion(const BundleMotion& motion) {
   }
 }
 
-double SchurBundle::cost_of_motions(const Estimate& estimate) const {
+double SchurBundle::cost_of_motions(const BundleEstimate& estimate) const {
   double twice = 0.0;
   for (const BundleMotion* const motion : motions_) {
     twice += motion_error(*motion, estimate.poses[static_cast<std::size_t>(motion->earlier)],
@@ -327,7 +307,7 @@ double SchurBundle::linearise(double radius) {
 }
 
 // The steps of poses and calibration. False where the equations have no solution.
-bool SchurBundle::solve_poses(Step& step) {
+bool SchurBundle::solve_poses(BundleStep& step) {
   const Eigen::VectorXd pull = used_up_ - gradient_;
   if (border_) {
     std::optional<CalibrationBorder::Step> solved = border_->solve(*reduced_, pull);
@@ -346,8 +326,8 @@ bool SchurBundle::solve_poses(Step& step) {
   return true;
 }
 
-std::optional<Step> SchurBundle::solve() {
-  Step step;
+std::optional<BundleStep> SchurBundle::solve() {
+  BundleStep step;
   if (!solve_poses(step)) return std::nullopt;
   step.points.reserve(tracks_.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
@@ -378,7 +358,7 @@ std::vector<Matrix6> SchurBundle::covariances(const std::vector<int>& poses) {
 }
 
 // The step of a point, given those of poses and calibration. False where it has none.
-bool SchurBundle::solve_point(std::size_t index, Step& step) {
+bool SchurBundle::solve_point(std::size_t index, BundleStep& step) {
   const BundleTrack& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
   const bool is_kept = !kept_.empty();
@@ -410,8 +390,8 @@ bool SchurBundle::solve_point(std::size_t index, Step& step) {
   return true;
 }
 
-Estimate SchurBundle::moved(const Step& step) const {
-  Estimate moved = estimate_;
+BundleEstimate SchurBundle::moved(const BundleStep& step) const {
+  BundleEstimate moved = estimate_;
   moved.calibration += step.calibration;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i] < 0) continue;
@@ -428,7 +408,7 @@ Estimate SchurBundle::moved(const Step& step) const {
   return moved;
 }
 
-double SchurBundle::cost_of(const Estimate& estimate) const {
+double SchurBundle::cost_of(const BundleEstimate& estimate) const {
   double twice = 0.0;
   for (const BundleTrack& track : tracks_) {
     const Eigen::Vector3d& point = estimate.points[static_cast<std::size_t>(track.point)];
@@ -469,7 +449,7 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
   constexpr double kLeastShare = 1e-3;  // share of the gain expected
   constexpr double kLeastGain = 1e-6;   // share of the cost
   if (bundle.linearise(region.radius()) <= kLevel) return Progress::settled;
-  const std::optional<Step> step = bundle.solve();
+  const std::optional<BundleStep> step = bundle.solve();
   if (!step || !(step->expected_gain > 0.0)) {
     region.narrow();
     return region.is_too_small() || !std::isfinite(cost) ? Progress::failed : Progress::goes_on;
@@ -477,7 +457,7 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
   if (std::sqrt(step->squared_length) <= kStill * (std::sqrt(bundle.squared_length()) + kStill)) {
     return Progress::settled;
   }
-  Estimate moved = bundle.moved(*step);
+  BundleEstimate moved = bundle.moved(*step);
   const double new_cost = bundle.cost_of(moved);
   const double gain = cost - new_cost;
   const bool is_last = std::abs(gain) <= kLeastGain * cost;
@@ -505,12 +485,12 @@ BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& rol
     progress = iterate(bundle, region, cost);
     ++solution.iterations;
   }
-  Estimate found = bundle.take_estimate();
+  solution.usable = progress != Progress::failed;
+  if (solution.usable) solution.pose_covariances = bundle.covariances(options.covariances_of_poses);
+  BundleEstimate found = bundle.take_estimate();
   solution.camera_from_world = std::move(found.poses);
   solution.points_in_world = std::move(found.points);
   solution.calibration_change = found.calibration;
-  solution.usable = progress != Progress::failed;
-  if (solution.usable) solution.pose_covariances = bundle.covariances(options.covariances_of_poses);
   return solution;
 }
 
