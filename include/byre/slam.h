@@ -80,8 +80,8 @@ class Slam {
   // What wheels tell, at any rate: the pose of the robot's base in a frame of their own, which drifts; metres. In order
   // of time, by the clock of the images, before the frames that it leads to; what comes up to a fifth of a second late
   // is made up for. How the camera is mounted on the base, how late wheels stamp and, with one camera, how long the
-  // map's unit is, byre finds out while the robot drives and turns; until then it does not use them. Where wheels slip
-  // they are left out.
+  // map's unit is, byre finds out while the robot drives and turns; until then it presumes it, with errors to match.
+  // Where wheels slip they are left out. What one camera maps has metres by them once it is finished.
   void tell_wheels(const StampedPose& odometry_from_base);
   // The same by wheels that tell how fast the base moves, and no poses. No motion is made up where none was told for
   // three tenths of a second. One robot's wheels tell the one or the other.
@@ -127,7 +127,7 @@ class Slam {
 
   const Rig& rig() const;           // the ideal camera that features are given in
   Calibration calibration() const;  // calibration as it is known by now
-  bool is_metric() const;           // whether lengths are metres
+  bool is_metric() const;           // whether lengths are metres; see tell_wheels
   // Keyframes and points of the map that is made, with those of a map that it goes on with; not of the map that a
   // mission is on.
   int keyframes() const;
