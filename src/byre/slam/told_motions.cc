@@ -26,14 +26,22 @@ bool contradicts(const BodyMotion& told, const Pose& seen) {
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
 }
 
-// Whether what is seen tells nothing of the way between them. A few points tell nothing: where a frame is found again
-// in an old place, and that place lies elsewhere than drift has led, these are what was triangulated across the gap.
-bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
+int shared_points(const Map& online, KeyframeId one, KeyframeId other) {
   constexpr int kEvery = std::numeric_limits<int>::max();
+  for (const Covisible& seen : online.covisible_keyframes(one, kEvery)) {
+    if (seen.keyframe == other) return seen.shared_points;
+  }
+  return 0;
+}
+
+// Whether what is seen tells nothing of the way between them. A few points tell nothing, nor do many where the later
+// one was tracked from a keyframe that shares hardly any with the earlier one: where a frame is found again in an old
+// place, and that place lies elsewhere than drift has led, these are what was triangulated across the gap.
+bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
   constexpr int kFew = 30;
-  return std::ranges::none_of(online.covisible_keyframes(later, kEvery), [&](const Covisible& other) {
-    return other.keyframe == earlier && other.shared_points >= kFew;
-  });
+  if (shared_points(online, earlier, later) < kFew) return true;
+  const auto tracked_from = online.living_ancestor(online.find_keyframe(later)->parent);
+  return tracked_from && *tracked_from != earlier && shared_points(online, earlier, *tracked_from) < kFew;
 }
 
 Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {

@@ -88,6 +88,24 @@ TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
   EXPECT_TRUE(motions.front().is_unseen);
 }
 
+// Found again in an old place, from which it was tracked on: what it shares with the one before it tells nothing.
+TEST_F(MotionsOfATrueMap, AreBelievedWhereTheLaterKeyframeWasTrackedFromAnotherPlace) {
+  const Map map =
+      true_map(simulate_mission(one_camera(), circling_trajectory(120, 10.0, 2.0, 1.0), {}), 4, Origin::online);
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  Map found_again(Origin::online);
+  for (const PointId point : map.point_ids()) found_again.add_point(*map.find_point(point));
+  for (const KeyframeId id : ids) {
+    Keyframe keyframe = *map.find_keyframe(id);
+    keyframe.rig = found_again.add_rig(one_camera());
+    if (id == ids[16]) keyframe.parent = ids[1];
+    found_again.add_keyframe(std::move(keyframe));
+  }
+  const auto told_wrongly = [](Timestamp, Timestamp) { return std::optional(BodyMotion{Pose{{}, {9.0, 0.0, 0.0}}}); };
+  EXPECT_THAT(told_motions(map, {ids[15], ids[16]}, 0, told_wrongly), IsEmpty());
+  EXPECT_THAT(told_motions(found_again, {ids[15], ids[16]}, 0, told_wrongly), SizeIs(1));
+}
+
 TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
   const Map map = true_map(mission_, 1, Origin::online);
   const auto motions = in_lengths_of(map, told_motions(map, map.keyframe_ids(), 0, told(1.03)));
