@@ -83,30 +83,28 @@ TEST(OldFormats, FourthIsReadAndWrittenInTheNewest) {
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, FifthIsReadAndWrittenInTheNewest) {
-  const StoredMap stored = load_map(kFormats / "format_5.byre");
+void expect_the_barn(const StoredMap& stored) {
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.map.keyframe_count(), 5);
   EXPECT_EQ(stored.map.point_count(), 6);
   EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
+}
+
+TEST(OldFormats, FifthIsReadAndWrittenInTheNewest) {
+  const StoredMap stored = load_map(kFormats / "format_5.byre");
+  expect_the_barn(stored);
   expect_to_be_written_in_the_newest(stored);
 }
 
 TEST(OldFormats, SixthIsReadAndWrittenInTheNewest) {
   const StoredMap stored = load_map(kFormats / "format_6.byre");
-  EXPECT_THAT(find_faults(stored), IsEmpty());
-  EXPECT_EQ(stored.map.keyframe_count(), 5);
-  EXPECT_EQ(stored.map.point_count(), 6);
-  EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
+  expect_the_barn(stored);
   expect_to_be_written_in_the_newest(stored);
 }
 
 TEST(OldFormats, SeventhIsReadAndWrittenTheSame) {
   const StoredMap stored = load_map(kFormats / "format_7.byre");
-  EXPECT_THAT(find_faults(stored), IsEmpty());
-  EXPECT_EQ(stored.map.keyframe_count(), 5);
-  EXPECT_EQ(stored.map.point_count(), 6);
-  EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
+  expect_the_barn(stored);
   EXPECT_EQ(write_map(stored), read_file(kFormats / "format_7.byre"));
 }
 

@@ -1,4 +1,4 @@
-#include "byre/map/map_file.h"
+#include "byre/map/known_calibration.h"
 
 #include <algorithm>
 
@@ -27,6 +27,12 @@ std::optional<Pose> known_body_from_body(const std::vector<SourceRecording>& rec
     if (is_of_these_cameras(known, given)) return known.body_from_left * inverse(given.body_from_left);
   }
   return std::nullopt;
+}
+
+KnownMounting mounting_for(const KnownMounting& of_map, const std::vector<SourceRecording>& recordings,
+                           const Calibration& given) {
+  const auto body = known_body_from_body(recordings, given);
+  return body ? moved(of_map, *body) : KnownMounting{};
 }
 
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,

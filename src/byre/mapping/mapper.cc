@@ -43,7 +43,7 @@ void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationO
 Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                 const AnchoredTrajectory& trajectory) {
   Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
-                                    : begin_monocular(frame, camera_from_world, trajectory);
+                                    : begin_monocular(frame, rig, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
   newest_ = begun.keyframes.back();
   for (const KeyframeId id : begun.keyframes) index_place(id);
@@ -76,11 +76,14 @@ std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& tra
   return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
 }
 
-Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const std::optional<Pose>& camera_from_world,
+Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
+                                          const std::optional<Pose>& camera_from_world,
                                           const AnchoredTrajectory& trajectory) {
   MonocularAttempt attempt = initialiser_->try_start(frame);
   if (!attempt.start) {
-    if (initialiser_->reference_time() == frame.time) told_reference_ = camera_from_world.value_or(Pose{});
+    if (initialiser_->reference_time() == frame.time) {
+      told_reference_ = camera_from_world.value_or(inverse(rig.body_from_camera));
+    }
     return {{}, attempt.failure};
   }
   std::vector<KeyframeId> keyframes;

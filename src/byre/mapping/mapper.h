@@ -110,7 +110,7 @@ class Mapper {
  private:
   Beginning begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                          const AnchoredTrajectory& trajectory);
-  Beginning begin_monocular(const Frame& frame, const std::optional<Pose>& camera_from_world,
+  Beginning begin_monocular(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                             const AnchoredTrajectory& trajectory);
   std::vector<KeyframeId> add_beside_map(const MonocularStart& start, const Pose& camera_from_world,
                                          const AnchoredTrajectory& trajectory);

@@ -127,13 +127,18 @@ TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   EXPECT_THAT(mapper.online().camera_from_world(id), PoseNear(before * inverse(offline_from_online), 1e-9, 1e-9));
 }
 
-TEST(MapperOfOneCamera, BeginsOneMap) {
+SimulatedMission one_camera_circling(int frames, double laps) {
   Rig rig = simulated_rig();
   rig.baseline = 0.0;
   SimulationOptions options;
   options.landmarks = 8000;
   options.noise_seed = 2;
-  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(120, 10.0, 2.0, 1.0), options);
+  return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), options);
+}
+
+TEST(MapperOfOneCamera, BeginsOneMap) {
+  const SimulatedMission mission = one_camera_circling(120, 1.0);
+  const Rig& rig = mission.rig;
   Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
   EXPECT_TRUE(mapper.can_begin(rig));
   std::size_t frame = 0;
@@ -149,12 +154,8 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
 
 // Told how it moved, one camera begins where that has led, in the lengths that are told.
 TEST(MapperOfOneCamera, BeginsWhereItIsToldToBe) {
-  Rig rig = simulated_rig();
-  rig.baseline = 0.0;
-  SimulationOptions options;
-  options.landmarks = 8000;
-  options.noise_seed = 2;
-  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(60, 10.0, 2.0, 0.5), options);
+  const SimulatedMission mission = one_camera_circling(60, 0.5);
+  const Rig& rig = mission.rig;
   const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};
   Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
   std::size_t frame = 0;

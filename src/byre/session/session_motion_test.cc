@@ -170,13 +170,18 @@ double metres_per_unit(const std::vector<FrameReport>& reports, const SimulatedM
   return seen > 0.0 ? true_way / seen : 1.0;
 }
 
-// One camera that recognises nothing after the dark: what it begins there has the scale that it is told.
-TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
+SimulatedMission one_camera_circling(int frames, double laps) {
   Rig rig = simulated_rig();
   rig.baseline = 0.0;
   SimulationOptions visit;
   visit.landmarks = 8000;
-  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(120, 10.0, 2.0, 1.0), visit);
+  return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), visit);
+}
+
+// One camera that recognises nothing after the dark: what it begins there has the scale that it is told.
+TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
+  const SimulatedMission mission = one_camera_circling(120, 1.0);
+  const Rig& rig = mission.rig;
   constexpr std::size_t kFirstDark = 60, kFirstLight = 80;
   SessionOptions options;
   options.relocalise.min_inliers = 1000000;
@@ -204,11 +209,8 @@ TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
 
 // One camera begins its map after a second or so; wheels have told the way since the first frame.
 TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
-  Rig rig = simulated_rig();
-  rig.baseline = 0.0;
-  SimulationOptions visit;
-  visit.landmarks = 8000;
-  const SimulatedMission mission = simulate_mission(rig, circling_trajectory(60, 10.0, 2.0, 0.5), visit);
+  const SimulatedMission mission = one_camera_circling(60, 0.5);
+  const Rig& rig = mission.rig;
   for (const bool is_told : {true, false}) {
     Session session(rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
     std::vector<FrameReport> reports;

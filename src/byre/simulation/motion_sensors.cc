@@ -70,17 +70,22 @@ Trajectory told_by_wheels(const Trajectory& truth, const MotionSensorOptions& op
   return wheels;
 }
 
+Eigen::Vector3d normal_vector(double sigma, SeededDraws& draws) {
+  Eigen::Vector3d vector;
+  for (int axis = 0; axis < 3; ++axis) vector[axis] = sigma * normal(draws);
+  return vector;
+}
+
 std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const MotionSensorOptions& options) {
   SeededDraws draws(options.seed, kRateStream);
-  Eigen::Vector3d bias;
-  for (int axis = 0; axis < 3; ++axis) bias[axis] = options.rate_bias * normal(draws);
+  const Eigen::Vector3d bias = normal_vector(options.rate_bias, draws);
   std::vector<AngularRate> rates;
   for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
     const double seconds = to_seconds(truth[i + 1].time - truth[i].time);
     const Pose motion = inverse(truth[i].world_from_body) * truth[i + 1].world_from_body;
     AngularRate rate{truth[i].time, rotation_log(motion.rotation) / seconds + bias};
     const double sigma = options.rate_noise / std::sqrt(seconds);
-    for (int axis = 0; axis < 3; ++axis) rate.rate[axis] += sigma * normal(draws);
+    rate.rate += normal_vector(sigma, draws);
     rates.push_back(rate);
   }
   return rates;
@@ -94,8 +99,7 @@ Eigen::Vector3d velocity_after(const Trajectory& truth, std::size_t i) {
 
 std::vector<Acceleration> told_by_accelerometer(const Trajectory& truth, const MotionSensorOptions& options) {
   SeededDraws draws(options.seed, kAccelerationStream);
-  Eigen::Vector3d bias;
-  for (int axis = 0; axis < 3; ++axis) bias[axis] = options.acceleration_bias * normal(draws);
+  const Eigen::Vector3d bias = normal_vector(options.acceleration_bias, draws);
   std::vector<Acceleration> accelerations;
   for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
     const double seconds = to_seconds(truth[i + 1].time - truth[i].time);

@@ -259,13 +259,14 @@ MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, 
 void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                    const std::function<bool()>& should_stop) {
   const bool has_parts = place_parts(window);
-  if (has_parts || (scale_may_drift(window) && !window.motions.empty())) settle_by_motions(window);
+  const bool may_drift = scale_may_drift(window);
+  if (has_parts || (may_drift && !window.motions.empty())) settle_by_motions(window);
   if (!loops.empty()) close_loops(window, loops, options.mapping);
   MappingOptions mapping = options.mapping;
   mapping.first_bundle_iterations = options.first_bundle_iterations;
   mapping.second_bundle_iterations = kSecondBundleIterations;
   adjust_bundle(window, mapping, should_stop);
-  if (scale_may_drift(window)) refresh_covariances(window, mapping);
+  if (may_drift) refresh_covariances(window, mapping);
   refresh_points(window);
 }
 

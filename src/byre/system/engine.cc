@@ -1,6 +1,6 @@
 #include "byre/system/engine.h"
 
-#include "byre/map/map_file.h"
+#include "byre/map/known_calibration.h"
 #include "byre/workers/stopwatch.h"
 
 #include <utility>
@@ -32,8 +32,7 @@ std::optional<RefinedCalibration> known_before(const Calibration& given, const E
 KnownMounting mounting_before(const Calibration& given, const EngineOptions& options) {
   if (!options.use_known_mounting) return {};
   if (!options.offline) return options.mounting;
-  const auto body = known_body_from_body(options.offline->recordings(), given);
-  return body ? moved(options.offline->mounting(), *body) : KnownMounting{};
+  return mounting_for(options.offline->mounting(), options.offline->recordings(), given);
 }
 
 // Other cameras than those of the map may sit at another height, and tilted.

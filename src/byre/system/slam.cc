@@ -1,6 +1,7 @@
 #include "byre/slam.h"
 
 #include "byre/features/image_view.h"
+#include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
 #include "byre/slam/online_copy.h"
@@ -131,7 +132,7 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
 }
 
 std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& motion, bool is_dropped) {
-  const bool is_of_use = about.scale == MapScale::metric;  // nobody can tell metres to who knows none
+  const bool is_of_use = engine.is_metric();  // nobody can tell metres to who knows none
   const auto since = is_of_use && unseen_motion && motion ? std::optional(*unseen_motion * *motion) : std::nullopt;
   unseen_motion = is_dropped ? since : no_motion();
   return since;
@@ -172,13 +173,9 @@ Slam::~Slam() = default;
 Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
   require_sense(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  StoredMap about;
   Calibration given = calibration;
-  if (!given.tells_metres()) {
-    about.scale = MapScale::unknown;
-    given.body_from_left = {};  // an arm in metres means nothing to who knows none
-  }
-  return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), about));
+  if (!given.tells_metres()) given.body_from_left = {};  // an arm in metres means nothing to who knows none
+  return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), StoredMap{}));
 }
 
 Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
@@ -191,7 +188,7 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
   const auto plan = about.plan;
   EngineOptions engine = engine_options(options, vocabulary);
   engine.known = known_calibration(about.recordings, calibration);
-  if (is_by_cameras_of(about.recordings, calibration)) engine.mounting = mounting_in(about.notes);
+  engine.mounting = mounting_for(mounting_in(about.notes), about.recordings, calibration);
   engine.session.recording = static_cast<int>(about.recordings.size());
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before));
   parts->plan = plan;

@@ -10,6 +10,7 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
+#include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/autosave.h"
 #include "byre/slam/online_copy.h"
@@ -109,9 +110,8 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   protocol.options = options.engine_options();
   protocol.options.known = record.about.recordings.back().refined;
   const std::vector<SourceRecording>& all = record.about.recordings;
-  if (is_by_cameras_of({all.begin(), all.end() - 1}, all.back().calibration)) {
-    protocol.options.mounting = mounting_in(record.about.notes);
-  }
+  protocol.options.mounting =
+      mounting_for(mounting_in(record.about.notes), {all.begin(), all.end() - 1}, all.back().calibration);
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
   if (options.extended) protocol.extended = options.extended->string();
