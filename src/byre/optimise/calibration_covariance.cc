@@ -51,11 +51,12 @@ class CalibrationSystem {
       : poses_(6 * poses),
         matrix_(Eigen::MatrixXd::Zero(poses_ + kCalibrationParameters, poses_ + kCalibrationParameters)) {}
 
-  // All that is seen of one point, with the point eliminated unless it is fixed. One that is not determined is left
-  // out.
+  // All that is seen of one point, with the point eliminated unless it is fixed. One that is not determined at all is
+  // left out.
   void add(const std::vector<Share>& shares, bool is_fixed) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const Share& share : shares) information += share.by_point.transpose() * share.by_point;
+    information.diagonal().array() += kFreePoint * information.trace();
     const Eigen::LLT<Eigen::Matrix3d> factor(information);
     const bool is_regular =
         factor.info() == Eigen::Success &&
@@ -82,7 +83,10 @@ class CalibrationSystem {
  private:
   static constexpr double kSingular = 1e-10;
   // Information added to each pose, 1 / m^2 and 1 / rad^2, so that what nothing holds, such as the whole, stays finite.
-  static constexpr double kFreePose = 1e-4;
+  static constexpr double kFreePose = 1e-2;
+  // The same for each point, as a share of what is known of it: rounding would leave of a point whose depth is all but
+  // unknown what is worse than nothing.
+  static constexpr double kFreePoint = 1e-8;
 
   void add_known(const std::vector<Share>& shares) {
     for (const Share& share : shares) {

@@ -6,13 +6,12 @@
 #include "byre/optimise/huber.h"
 #include "byre/slam/determined_calibration.h"
 #include "byre/slam/mapping_steps.h"
+#include "byre/slam/row_evidence.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 namespace byre {
 namespace {
@@ -29,7 +28,6 @@ constexpr double kHuberWidth = 2.0;  // sigmas
 constexpr double kSharedDisparityError = 3.0;  // factor on the sigma of each disparity
 constexpr double kMedianOfChiSquare2 = 1.386;
 constexpr double kMedianOfChiSquare3 = 2.366;
-constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over the median of absolute deviations, if normal
 
 // Keyframes of the rig, all or blocks of neighbours spread over the run.
 std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
@@ -80,14 +78,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
   return problem;
 }
 
-// A row on which a corner was matched in the right image, against that of the left one.
-struct RowMeasurement {
-  double offset = 0.0;  // pixels
-  double sigma = 1.0;   // pixels
-  Eigen::Matrix<double, 1, kCalibrationParameters> by_calibration;
-};
-
-std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes,
+std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes, const Rig& rig,
                                          const CalibrationSensitivity& sensitivity) {
   const auto keypoints_of = [&](int keyframe) -> const std::vector<Keypoint>& {
     return whole.keyframes[static_cast<std::size_t>(keyframe)].keyframe.frame.features->keypoints();
@@ -100,46 +91,11 @@ std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vect
     for (const Keypoint& keypoint : keypoints_of(i)) {
       if (!keypoint.has_disparity()) continue;
       const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
-      rows.push_back({keypoint.row_offset, keypoint.disparity_sigma, sensitivity.at(pixel).row(3)});
+      rows.push_back({keypoint.row_offset, keypoint.disparity_sigma, part_of_image(keypoint.pixel, rig),
+                      sensitivity.at(pixel).row(3).cast<float>()});
     }
   }
   return rows;
-}
-
-// The information of Gaussian knowledge of the calibration, and the change where it is expected.
-struct Knowledge {
-  CalibrationMatrix information = CalibrationMatrix::Zero();
-  CalibrationVector expected = CalibrationVector::Zero();
-};
-
-double robust_scale(std::vector<double> deviations) {
-  return deviations.empty() ? 1.0 : std::max(1.0, kSigmasOfMedian * median(std::move(deviations)));
-}
-
-// Iteratively reweighted least squares; sigmas grow by what the residuals say.
-Knowledge learn_from_rows(const std::vector<RowMeasurement>& rows, const Knowledge& prior) {
-  Knowledge knowledge = prior;
-  constexpr int kRounds = 5;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> residuals, deviations;
-    residuals.reserve(rows.size());
-    deviations.reserve(rows.size());
-    for (const RowMeasurement& row : rows) {
-      residuals.push_back((row.offset - row.by_calibration.dot(knowledge.expected)) / row.sigma);
-      deviations.push_back(std::abs(residuals.back()));
-    }
-    const double scale = robust_scale(std::move(deviations));
-    CalibrationMatrix information = prior.information;
-    CalibrationVector right_side = prior.information * prior.expected;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double residual = residuals[i] / scale;
-      const double weight = huber_weight(residual * residual, kHuberWidth) / std::pow(scale * rows[i].sigma, 2);
-      information.noalias() += weight * rows[i].by_calibration.transpose() * rows[i].by_calibration;
-      right_side += weight * rows[i].offset * rows[i].by_calibration.transpose();
-    }
-    knowledge = {information, information.ldlt().solve(right_side)};
-  }
-  return knowledge;
 }
 
 // How many times as large as their sigmas the residuals are, squared; at least 1.
@@ -162,30 +118,9 @@ BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solv
   return moved;
 }
 
-// What measurements say by themselves, also where they leave directions open: normal equations.
-struct Learned {
-  CalibrationMatrix information;
-  CalibrationVector right_side;
-
-  void operator/=(double factor) {
-    information /= factor;
-    right_side /= factor;
-  }
-};
-
-Learned difference(const Knowledge& later, const Knowledge& earlier) {
-  return {later.information - earlier.information,
-          later.information * later.expected - earlier.information * earlier.expected};
-}
-
-Knowledge joined(const Knowledge& known, const Learned& learned) {
-  const CalibrationMatrix information = known.information + learned.information;
-  return {information, information.ldlt().solve(known.information * known.expected + learned.right_side)};
-}
-
 // All measurements share an error that looks like a change of the calibration along this vector, one sigma long
 // (Sherman and Morrison's formula).
-Learned with_shared_error(const Learned& learned, const CalibrationVector& error) {
+CalibrationEquations with_shared_error(const CalibrationEquations& learned, const CalibrationVector& error) {
   const CalibrationVector told = learned.information * error;
   const double scale = 1.0 / (1.0 + error.dot(told));
   return {learned.information - scale * told * told.transpose(),
@@ -222,8 +157,10 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
   if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
   const CalibrationSensitivity sensitivity(state.present());
-  const Knowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas), -state.change};
-  const Knowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, sensitivity), prior);
+  const CalibrationKnowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
+                                   -state.change};
+  const Rig& present = whole.rigs[static_cast<std::size_t>(rig)];
+  const CalibrationKnowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
 
   BundleProblem problem = bundle_of(whole, keyframes);
   problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
@@ -236,9 +173,9 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
 
   const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
   if (!information) return std::nullopt;
-  Learned of_motion = difference({*information, solved.calibration_change}, with_rows);
+  CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
   of_motion /= variance_factor(problem, solved.squared_errors);
-  const Knowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
+  const CalibrationKnowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
   RefinedCalibration result = determined_calibration(state.given, posterior.information,
                                                      state.change + posterior.expected, options.prior_sigmas);
   result.keyframes = static_cast<int>(keyframes.size());

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "byre/geometry/calibration_change.h"
+
+#include <Eigen/Cholesky>
+
+namespace byre {
+
+// Gaussian knowledge of how a calibration errs, in the parameters' sigmas.
+struct CalibrationKnowledge {
+  CalibrationMatrix information = CalibrationMatrix::Zero();
+  CalibrationVector expected = CalibrationVector::Zero();
+};
+
+// What measurements say by themselves, also where they leave directions open: normal equations.
+struct CalibrationEquations {
+  CalibrationMatrix information = CalibrationMatrix::Zero();
+  CalibrationVector right_side = CalibrationVector::Zero();
+
+  void operator/=(double factor) {
+    information /= factor;
+    right_side /= factor;
+  }
+};
+
+inline CalibrationEquations difference(const CalibrationKnowledge& later, const CalibrationKnowledge& earlier) {
+  return {later.information - earlier.information,
+          later.information * later.expected - earlier.information * earlier.expected};
+}
+
+inline CalibrationKnowledge joined(const CalibrationKnowledge& known, const CalibrationEquations& learned) {
+  const CalibrationMatrix information = known.information + learned.information;
+  return {information, information.ldlt().solve(known.information * known.expected + learned.right_side)};
+}
+
+}  // namespace byre

@@ -1,0 +1,88 @@
+#include "byre/slam/row_evidence.h"
+
+#include "byre/geometry/calibration_scene.h"
+#include "byre/geometry/rectification.h"
+
+#include <functional>
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+constexpr float kRowSigma = 0.1f;  // pixels
+constexpr double kSigmasOfPrior = 2.0;
+
+const CalibrationKnowledge kPrior{CalibrationMatrix::Identity() / (kSigmasOfPrior * kSigmasOfPrior),
+                                  CalibrationVector::Zero()};
+
+using OffsetAt = std::function<double(const Eigen::Vector2f& pixel)>;  // pixels
+
+// Rows by a calibration that errs so, of corners all over the image, which besides err by own_error where they lie.
+std::vector<RowMeasurement> rows_of(const CalibrationVector& error, const OffsetAt& own_error, int count) {
+  const Calibration calibration = scene_calibration();
+  const CalibrationSensitivity sensitivity(calibration);
+  const Rig rig = rectification_of(calibration).rig;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> place(0.05, 0.95), disparity(2.0, 40.0);
+  std::normal_distribution<double> noise(0.0, kRowSigma);
+  std::vector<RowMeasurement> rows;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d pixel(place(random) * rig.width, place(random) * rig.height);
+    const Eigen::Matrix<double, 1, kCalibrationParameters> by_calibration =
+        sensitivity.at({pixel.x(), pixel.y(), disparity(random)}).row(3);
+    const Eigen::Vector2f seen = pixel.cast<float>();
+    const double offset = by_calibration.dot(error) + own_error(seen) + noise(random);
+    rows.push_back({static_cast<float>(offset), kRowSigma, part_of_image(seen, rig), by_calibration.cast<float>()});
+  }
+  return rows;
+}
+
+double no_error(const Eigen::Vector2f&) {
+  return 0.0;
+}
+
+// What rows tell best: by how much the right camera is turned about its optical axis.
+constexpr int kTurn = kRightRotation + 2;
+
+TEST(RowEvidence, TellsHowTheCamerasAreTurnedAgainstEachOther) {
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kTurn] = 3.0;
+  const CalibrationKnowledge known = learn_from_rows(rows_of(error, no_error, 20000), kPrior);
+  const double sigma = std::sqrt(known.information.inverse()(kTurn, kTurn));
+  EXPECT_LT(sigma, 0.3);
+  EXPECT_NEAR(known.expected[kTurn], 3.0, 4.0 * sigma);
+}
+
+// Roof beams before a far wall, seen in the upper half of the image all the way through an alley.
+TEST(RowEvidence, TakesNoSharedErrorsOfManyRowsForACalibrationThatErrs) {
+  const OffsetAt leaning = [](const Eigen::Vector2f& pixel) {
+    return pixel.y() > 240.0f ? 0.0 : 0.06 * (pixel.x() - 376.0f) / 376.0f;
+  };
+  for (const int count : {5000, 200000}) {
+    const CalibrationKnowledge known = learn_from_rows(rows_of(CalibrationVector::Zero(), leaning, count), kPrior);
+    const CalibrationVector sigmas = known.information.inverse().diagonal().cwiseSqrt();
+    EXPECT_LT(known.expected.cwiseQuotient(sigmas).cwiseAbs().maxCoeff(), 4.5) << count << " rows";
+  }
+}
+
+TEST(RowEvidence, IsSurerTheMoreRowsWhereTheyErrByThemselves) {
+  const auto information_of = [](const OffsetAt& own_error, int count) {
+    return learn_from_rows(rows_of(CalibrationVector::Zero(), own_error, count), kPrior).information(kTurn, kTurn);
+  };
+  const OffsetAt by_part = [](const Eigen::Vector2f& pixel) {
+    return 0.05 * std::sin(37.0 * std::floor(pixel.x() / 94.0f) + 11.0 * std::floor(pixel.y() / 80.0f));
+  };
+  EXPECT_GT(information_of(no_error, 80000), 3.5 * information_of(no_error, 20000));
+  EXPECT_LT(information_of(by_part, 80000), 1.5 * information_of(by_part, 20000));
+}
+
+TEST(RowEvidence, SaysNothingWithoutRows) {
+  const CalibrationKnowledge known = learn_from_rows({}, kPrior);
+  EXPECT_TRUE(known.information.isApprox(kPrior.information));
+  EXPECT_TRUE(known.expected.isZero());
+}
+
+}  // namespace
+}  // namespace byre
