@@ -50,8 +50,8 @@ void read_as(unsigned kind, std::span<const std::byte> bytes) {
   if (kind == 0) return read_bag<McapBag>(bytes);
   if (kind == 1) return read_bag<Ros1Bag>(bytes);
   read_as_each<ros::Image, ros::CompressedImage, ros::CameraInfo, ros::TFMessage, ros::Imu, ros::PointCloud2,
-               ros::Odometry, ros::Path, ros::OccupancyGrid, ros::DiagnosticArray>(
-      bytes, kind == 2 ? ros::Encoding::cdr : ros::Encoding::ros1);
+               ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped, ros::Path, ros::OccupancyGrid,
+               ros::DiagnosticArray>(bytes, kind == 2 ? ros::Encoding::cdr : ros::Encoding::ros1);
 }
 
 // What mutations begin with, as random bytes would never become a bag.

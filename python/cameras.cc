@@ -34,7 +34,8 @@ Calibration make_calibration(const Camera& left, const std::optional<Camera>& ri
   if (right.has_value() != right_from_left.has_value()) {
     throw py::value_error("right and right_from_left belong together");
   }
-  Calibration calibration{left};
+  Calibration calibration;
+  calibration.left = left;
   if (right) calibration.right = StereoPartner{*right, pose_of(*right_from_left, "right_from_left")};
   if (body_from_left) calibration.body_from_left = pose_of(*body_from_left, "body_from_left");
   calibration.depth = depth;

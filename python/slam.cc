@@ -215,9 +215,9 @@ void bind_options(py::module_& module) {
 
 using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;
 
-void bind_making(SlamClass& slam) {
+void bind_making(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  slam.def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
+  type.def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
                   "Maps what is seen.")
       .def_static("extending", &Slam::extending, py::arg("calibration"), py::arg("map"),
                   py::arg("options") = SlamOptions{}, released, "Goes on with a kept map.")
@@ -225,8 +225,8 @@ void bind_making(SlamClass& slam) {
                   released, "A mission on a kept map.");
 }
 
-void bind_input(SlamClass& slam) {
-  slam.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
+void bind_input(SlamClass& type) {
+  type.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
            "Tracks the next frame of a Recording.")
       .def(
           "process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
@@ -276,9 +276,9 @@ void bind_input(SlamClass& slam) {
       .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused);
 }
 
-void bind_results(SlamClass& slam) {
+void bind_results(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  slam.def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
+  type.def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
       .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
       .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")
       .def(
