@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-constexpr double kWidth = 2.0;  // sigmas
+constexpr double kRobustWidth = 2.0;  // sigmas
 
 // A pair that drives straight on, with nothing held. Most points are so far that their depth is all but unknown.
 BundleProblem drive_towards_far_points(std::uint64_t seed, const CalibrationSensitivity& sensitivity) {
@@ -39,7 +39,7 @@ BundleProblem drive_towards_far_points(std::uint64_t seed, const CalibrationSens
 TEST(CalibrationInformation, IsKnownHoweverFarPointsAre) {
   const CalibrationSensitivity sensitivity(scene_calibration());
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto information = calibration_information(drive_towards_far_points(seed, sensitivity), kWidth);
+    const auto information = calibration_information(drive_towards_far_points(seed, sensitivity), kRobustWidth);
     ASSERT_TRUE(information) << "seed " << seed;
     const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> directions(*information);
     EXPECT_GT(directions.eigenvalues()[0], 0.99) << "what was known before, seed " << seed;
@@ -51,7 +51,7 @@ TEST(CalibrationInformation, IsWhatWasKnownWhereNothingIsSeen) {
   const CalibrationSensitivity sensitivity(scene_calibration());
   BundleProblem problem = drive_towards_far_points(1, sensitivity);
   problem.observations.clear();
-  const auto information = calibration_information(problem, kWidth);
+  const auto information = calibration_information(problem, kRobustWidth);
   ASSERT_TRUE(information);
   EXPECT_TRUE(information->isApprox(CalibrationMatrix::Identity()));
 }

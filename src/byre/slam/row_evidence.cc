@@ -25,7 +25,7 @@ struct PartMean {
 
 struct WeighedRows {
   CalibrationEquations equations;  // as though all rows erred by themselves
-  std::vector<PartMean> means;     // of the parts that show any
+  std::vector<PartMean> means;     // one for each part that shows any
 };
 
 double robust_scale(std::vector<double> deviations) {

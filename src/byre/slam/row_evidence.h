@@ -12,7 +12,7 @@ namespace byre {
 struct RowMeasurement {
   float offset = 0.0f;                                             // pixels, right less left
   float sigma = 1.0f;                                              // pixels
-  std::size_t part = 0;                                            // of the image where it lies
+  std::size_t part = 0;                                            // the part of the image where it lies
   Eigen::Matrix<float, 1, kCalibrationParameters> by_calibration;  // pixels for a sigma of each parameter
 };
 
