@@ -51,9 +51,9 @@ class GlobalLane {
 
   GlobalMappingOptions options_;  // constant after construction
 
-  // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
+  // Owned by the calling thread; the outline is shared with the job and changed by nobody.
   Worker<Outcome> worker_;
-  std::shared_ptr<const MapWindow> snapshot_;  // map that is corrected, as it was
+  std::shared_ptr<const MapWindow> outline_;  // map that is corrected, as it was
   std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
   std::optional<Outcome> outcome_;                                                              // not taken over yet
 };

@@ -148,7 +148,8 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
 
 // Patches at corners that see no point serve to find new points, which is done among the newest keyframes. At the
 // others they serve for as long as the map grows: points are fused, and defined by another view. Without them errors of
-// maps with loops grow by some percent.
+// maps with loops grow by some percent. But few of them at a time, so that they lie in a file. It is written by jobs,
+// as a disk may be busy.
 void Mapper::forget_patches() {
   constexpr std::uint32_t kNew = 32;  // keyframes, as many as a window holds
   if (newest_->number < kNew) return;
@@ -160,6 +161,7 @@ void Mapper::forget_patches() {
     if (keyframe->sightings[static_cast<std::size_t>(i)].point) kept.push_back(i);
   }
   online_.keep_patches(old, kept);
+  to_stow_.push_back({old, keyframe->frame.features});
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
@@ -207,10 +209,15 @@ std::optional<double> Mapper::collect() {
   return finished->seconds;
 }
 
-void Mapper::take_over(const MapDelta& delta) {
-  apply(delta, online_);
+void Mapper::take_over(const LocalOutcome& outcome) {
+  apply(outcome.delta, online_);
   ++revision_;
-  forget_places(delta);
+  forget_places(outcome.delta);
+  for (const KeyframeFeatures& of : outcome.stowed) {
+    const Keyframe* const keyframe = online_.find_keyframe(of.keyframe);
+    if (keyframe != nullptr && keyframe->frame.features == of.features)
+      online_.replace_features(of.keyframe, of.stowed);
+  }
 }
 
 // Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
@@ -289,7 +296,13 @@ void Mapper::start_job() {
     if (!is_offline(keyframe)) online.push_back(keyframe.id);
   }
   add_motions(window, motions_between(online));
-  local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+  local_.start(
+      [window = std::move(window), options = options_.mapping, to_stow = std::exchange(to_stow_, {}), file = stowed_] {
+        LocalOutcome outcome{extend_map(window, options), to_stow};
+        for (KeyframeFeatures& of : outcome.stowed) of.stowed = with_stowed_patches(of.features, *file);
+        file->forget_looks();
+        return outcome;
+      });
 }
 
 void Mapper::index_place(KeyframeId id) {
@@ -328,6 +341,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
+  if (first_new == 0) stow_patches(online_, *stowed_);
   FinishReport report =
       byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, hooks);
   loop_closer_.follow(report.length_changes);
@@ -336,9 +350,10 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
 
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
-  const MapWindow whole = whole_map(map());
-  const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
-  LengthChanges changes = apply_correction(adjusted, whole, online_);
+  MapWindow whole = whole_map(map());
+  const MapWindow before = outline_of(whole);
+  const MapDelta adjusted = adjust_map(std::move(whole), before, {}, {options_.mapping}, hooks.should_stop);
+  LengthChanges changes = apply_correction(adjusted, before, online_);
   loop_closer_.follow(changes);
   return changes;
 }
