@@ -342,8 +342,12 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
   if (first_new == 0) stow_patches(online_, *stowed_);
+  const FinishHooks frugal{hooks.should_stop, [&](const char* step) {
+                             stowed_->forget_looks();
+                             if (hooks.before_step) hooks.before_step(step);
+                           }};
   FinishReport report =
-      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, hooks);
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
   loop_closer_.follow(report.length_changes);
   return report;
 }
