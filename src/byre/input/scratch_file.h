@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace byre {
 
@@ -12,24 +11,23 @@ namespace byre {
 // the environment's TMPDIR names, else in /var/tmp, which is on a disk, else in /tmp.
 class ScratchFile {
  public:
-  // A copy of the bytes that lies in the file, aligned as allocated memory is. Empty where no file can be made or the
-  // disk is full; from then on always. Who holds pieces may look at them meanwhile.
+  ScratchFile();
+
+  // A copy of the bytes that lies in the file, aligned as allocated memory is. Empty where no file could be made or the
+  // disk is full; from then on always. By one thread at a time; others may do meanwhile whatever is const.
   std::shared_ptr<const std::byte> put(std::span<const std::byte> bytes);
 
-  bool holds(const void* address) const;  // whether it lies in what was put in
+  bool holds(const void* address) const;  // whether it lies in what was put in, or will be
 
-  // What was looked at leaves memory until it is looked at again. Who holds pieces may look at them meanwhile.
+  // What was looked at leaves memory until it is looked at again.
   void forget_looks() const;
 
  private:
-  class File;     // closed when it goes; its segments stay
-  class Segment;  // a stretch of the file that is mapped into memory
+  class Mapping;
 
-  std::shared_ptr<File> file_;  // empty until it is needed
-  std::vector<std::shared_ptr<const Segment>> segments_;
-  std::size_t end_ = 0;   // bytes in the file
-  std::size_t room_ = 0;  // behind that in the last segment, bytes
-  bool has_failed_ = false;
+  std::shared_ptr<const Mapping> mapping_;  // constant after construction; empty where there is no file
+  std::size_t end_ = 0;                     // bytes in the file
+  bool is_full_ = false;
 };
 
 }  // namespace byre

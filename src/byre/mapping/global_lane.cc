@@ -13,8 +13,11 @@ void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std:
   const auto recent = std::make_shared<MapWindow>(recent_map(map, first_new, loops));
   add_motions(*recent, motions);
   outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
-  worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_] {
-    return adjust_map(std::move(*recent), *outline, loops, options, [&is_hurried] { return is_hurried->load(); });
+  worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
+    return adjust_map(std::move(*recent), *outline, loops, options, [&] {
+      stowed->forget_looks();  // by which points were fused
+      return is_hurried->load();
+    });
   });
 }
 

@@ -16,7 +16,7 @@ Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Exe
     : options_(options),
       offline_(std::move(knowledge.offline)),
       local_(std::move(local)),
-      global_(std::move(global), {options.mapping}),
+      global_(std::move(global), {options.mapping}, stowed_),
       loop_closer_(options.loops) {
   if (knowledge.vocabulary) places_.emplace(*std::move(knowledge.vocabulary));
   if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
@@ -330,9 +330,9 @@ LengthChanges Mapper::finish() {
 
 std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
-  const MapWindow whole = whole_map(map());
+  // The copy of the map goes before features are made anew, which it would keep as they were.
   const auto refined =
-      self_calibrate(whole, calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
+      self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
   if (!refined) return std::nullopt;
   return recalibrate(*refined, rig);
 }
@@ -342,10 +342,11 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
   if (first_new == 0) stow_patches(online_, *stowed_);
-  const FinishHooks frugal{hooks.should_stop, [&](const char* step) {
+  const FinishHooks frugal{[&] {
                              stowed_->forget_looks();
-                             if (hooks.before_step) hooks.before_step(step);
-                           }};
+                             return hooks.should_stop && hooks.should_stop();
+                           },
+                           hooks.before_step};
   FinishReport report =
       byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
   loop_closer_.follow(report.length_changes);

@@ -141,6 +141,8 @@ class Mapper {
   MapperOptions options_;
   std::shared_ptr<const OfflineMap> offline_;
   TellMotion tell_;  // empty: nothing is told
+  std::shared_ptr<ScratchFile> stowed_ =
+      std::make_shared<ScratchFile>();  // what is put in comes from one job at a time
 
   Worker<LocalOutcome> local_;
   GlobalLane global_;
@@ -155,9 +157,8 @@ class Mapper {
   std::optional<KeyframeId> newest_;
   std::uint32_t first_new_ = 0;  // number of the first keyframe that is not of the map gone on with
   std::vector<KeyframeId> pending_;
-  std::vector<KeyframeFeatures> to_stow_;                                  // what the next job is to put into the file
-  std::shared_ptr<ScratchFile> stowed_ = std::make_shared<ScratchFile>();  // the job's while one is in flight
-  std::optional<OnlineCorrection> waiting_correction_;                     // until mapping has nothing in flight
+  std::vector<KeyframeFeatures> to_stow_;               // what the next job is to put into the file
+  std::optional<OnlineCorrection> waiting_correction_;  // until mapping has nothing in flight
 };
 
 }  // namespace byre
