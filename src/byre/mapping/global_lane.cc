@@ -15,7 +15,7 @@ void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std:
   outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
   worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
     return adjust_map(std::move(*recent), *outline, loops, options, [&] {
-      stowed->forget_looks();  // by which points were fused
+      stowed->forget_looks();  // points were fused by patches
       return is_hurried->load();
     });
   });

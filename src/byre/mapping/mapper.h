@@ -31,6 +31,18 @@ struct OnlineCorrection {
   CorrectionShape shape = CorrectionShape::spread;
 };
 
+struct KeyframeFeatures {
+  KeyframeId keyframe;
+  std::shared_ptr<const Features> features;          // as they were
+  std::shared_ptr<const Features> stowed = nullptr;  // with their patches in the file
+};
+
+// What a job in a neighbourhood comes to.
+struct LocalOutcome {
+  MapDelta delta;
+  std::vector<KeyframeFeatures> stowed = {};
+};
+
 // A vocabulary for places, and an offline map that the online one lies on; either may be missing.
 struct MapperKnowledge {
   std::optional<Vocabulary> vocabulary;
@@ -109,16 +121,6 @@ class Mapper {
   Map take_online() { return std::exchange(online_, Map(Origin::online)); }
 
  private:
-  struct KeyframeFeatures {
-    KeyframeId keyframe;
-    std::shared_ptr<const Features> features;          // as they were
-    std::shared_ptr<const Features> stowed = nullptr;  // with their patches in the file
-  };
-  struct LocalOutcome {
-    MapDelta delta;
-    std::vector<KeyframeFeatures> stowed;
-  };
-
   Beginning begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                          const AnchoredTrajectory& trajectory);
   Beginning begin_monocular(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
