@@ -62,7 +62,7 @@ class Features {
 
   // Becomes what the constructor makes of these, in the memory that it has.
   void refill(int width, int height, const std::vector<Keypoint>& keypoints, const std::vector<Descriptor>& descriptors,
-              std::shared_ptr<const std::vector<Patch>> patches);
+              const std::shared_ptr<const std::vector<Patch>>& patches);
 
   // The order that features have: that of the constructor, indices into keypoints in any other.
   static std::vector<int> order_of(int width, int height, const std::vector<Keypoint>& keypoints);
@@ -74,8 +74,8 @@ class Features {
 
   // The same, but for the patches of other features. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
-  // The same with these patches and no others, one for each of the features.
-  Features with_patches(std::span<const int> features, std::vector<Patch> patches) const;
+  // The same, whose patches lie elsewhere. Precondition: equal ones, as patches() gives them.
+  Features with_patches_at(std::shared_ptr<const Patch> patches) const;
 
   int size() const { return static_cast<int>(keypoints_.size()); }
   const std::vector<Keypoint>& keypoints() const { return keypoints_; }
@@ -85,8 +85,10 @@ class Features {
   // nullptr where none was kept: a patch takes several times the memory of all the rest.
   const Patch* find_patch(int i) const {
     const int patch = patch_of_keypoint_.empty() ? -1 : patch_of_keypoint_[static_cast<std::size_t>(i)];
-    return patch < 0 ? nullptr : &(*patches_)[static_cast<std::size_t>(patch)];
+    return patch < 0 ? nullptr : patches_.get() + patch;
   }
+  // Those that were kept, in any order.
+  std::span<const Patch> patches() const { return {patches_.get(), patch_count_}; }
 
   // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
   // [min_octave, max_octave], in ascending order of rows of cells.
@@ -95,6 +97,7 @@ class Features {
 
  private:
   void note_moves(const std::vector<Keypoint>& keypoints);
+  void take_patches(const std::shared_ptr<const std::vector<Patch>>& patches);
 
   int cell_size_ = 0;  // pixels
   int columns_ = 0;
@@ -102,7 +105,8 @@ class Features {
   float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
   std::vector<Keypoint> keypoints_;
   std::vector<Descriptor> descriptors_;
-  std::shared_ptr<const std::vector<Patch>> patches_;  // shared with copies that were moved
+  std::shared_ptr<const Patch> patches_;  // the first of them; shared with copies that were moved
+  std::size_t patch_count_ = 0;
   std::vector<int> patch_of_keypoint_;
   std::vector<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
 };

@@ -323,13 +323,13 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   frame.time = images.time;
   state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
-  std::shared_ptr<const std::vector<Patch>> patches = state_->describe_all();
+  const std::shared_ptr<const std::vector<Patch>> patches = state_->describe_all();
   const Clock::time_point extracted = Clock::now();
   if (stereo) state_->match_right();
   if (calibration.depth && images.depth) state_->read_depths(*images.depth);
   state_->time_rows();
   const std::shared_ptr<Features>& features = state_->features_of_frames.take();
-  features->refill(images.left.width, images.left.height, state_->keypoints, state_->descriptors, std::move(patches));
+  features->refill(images.left.width, images.left.height, state_->keypoints, state_->descriptors, patches);
   frame.features = features;
   extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),
                       seconds_between(extracted, Clock::now())};

@@ -92,8 +92,8 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
     : Features(width, height, std::move(keypoints), std::move(descriptors), std::move(patches), {}) {}
 
 Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
-                   std::vector<Patch> patches, std::vector<int> patch_of_keypoint)
-    : patches_(std::make_shared<const std::vector<Patch>>(std::move(patches))) {
+                   std::vector<Patch> patches, std::vector<int> patch_of_keypoint) {
+  take_patches(std::make_shared<const std::vector<Patch>>(std::move(patches)));
   if (keypoints.empty()) return;
   const Cells cells(width, height, keypoints, cell_begin_);
   cell_size_ = cells.size;
@@ -101,13 +101,14 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
   rows_ = cells.rows;
   keypoints_ = in_order(std::move(keypoints), cells.order);
   descriptors_ = in_order(std::move(descriptors), cells.order);
-  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_->size());
+  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patch_count_);
   patch_of_keypoint_ = in_order(std::move(patch_of_keypoint), cells.order);
 }
 
 void Features::refill(int width, int height, const std::vector<Keypoint>& keypoints,
-                      const std::vector<Descriptor>& descriptors, std::shared_ptr<const std::vector<Patch>> patches) {
-  patches_ = std::move(patches);
+                      const std::vector<Descriptor>& descriptors,
+                      const std::shared_ptr<const std::vector<Patch>>& patches) {
+  take_patches(patches);
   slack_ = 0.0f;
   cell_begin_.clear();
   patch_of_keypoint_.clear();
@@ -117,7 +118,7 @@ void Features::refill(int width, int height, const std::vector<Keypoint>& keypoi
   rows_ = keypoints.empty() ? 0 : cells.rows;
   take_in_order(keypoints, cells.order, keypoints_);
   take_in_order(descriptors, cells.order, descriptors_);
-  if (!patches_->empty()) patch_of_keypoint_.assign(cells.order.begin(), cells.order.end());
+  if (patch_count_ > 0) patch_of_keypoint_.assign(cells.order.begin(), cells.order.end());
 }
 
 std::vector<int> Features::order_of(int width, int height, const std::vector<Keypoint>& keypoints) {
@@ -158,18 +159,24 @@ Features Features::with_patches_of(std::span<const int> features) const {
     of_features.push_back(i);
     kept.push_back(*patch);
   }
-  return with_patches(of_features, std::move(kept));
+  Features result = *this;
+  result.patch_of_keypoint_ = std::vector<int>(kept.empty() ? 0 : keypoints_.size(), -1);
+  for (std::size_t i = 0; i < of_features.size(); ++i) {
+    result.patch_of_keypoint_[static_cast<std::size_t>(of_features[i])] = static_cast<int>(i);
+  }
+  result.take_patches(std::make_shared<const std::vector<Patch>>(std::move(kept)));
+  return result;
 }
 
-Features Features::with_patches(std::span<const int> features, std::vector<Patch> patches) const {
-  assert(features.size() == patches.size());
+Features Features::with_patches_at(std::shared_ptr<const Patch> patches) const {
   Features result = *this;
-  result.patch_of_keypoint_ = std::vector<int>(patches.empty() ? 0 : keypoints_.size(), -1);
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    result.patch_of_keypoint_[static_cast<std::size_t>(features[i])] = static_cast<int>(i);
-  }
-  result.patches_ = std::make_shared<const std::vector<Patch>>(std::move(patches));
+  result.patches_ = std::move(patches);
   return result;
+}
+
+void Features::take_patches(const std::shared_ptr<const std::vector<Patch>>& patches) {
+  patches_ = std::shared_ptr<const Patch>(patches, patches->data());
+  patch_count_ = patches->size();
 }
 
 }  // namespace byre

@@ -157,6 +157,8 @@ class Map {
   // What a keyframe saw, found to lie a little elsewhere in the image; its sightings move along. Points stay where they
   // are. Precondition: the keyframe's own features, moved.
   void move_features(KeyframeId id, Features moved);
+  // What a keyframe saw is kept elsewhere. Precondition: the keyframe's own features, or equal ones.
+  void replace_features(KeyframeId id, std::shared_ptr<const Features> equal);
   // The keyframe forgets the patches of other features. Precondition: indices, ascending.
   void keep_patches(KeyframeId id, std::span<const int> features);
   int rig_of(KeyframeId id) const;  // index into rigs(), of a removed keyframe too. Precondition: was once given out

@@ -1,6 +1,8 @@
 #include "byre/features/recalibrated.h"
 #include "byre/map/map.h"
 
+#include <utility>
+
 namespace byre {
 namespace {
 
@@ -26,6 +28,12 @@ void Map::move_features(KeyframeId id, Features moved) {
     keyframe->sightings[static_cast<std::size_t>(i)].pixel += moved.keypoint(i).pixel - before.keypoint(i).pixel;
   }
   keyframe->frame.features = std::make_shared<const Features>(std::move(moved));
+}
+
+void Map::replace_features(KeyframeId id, std::shared_ptr<const Features> equal) {
+  read_all();
+  Keyframe* const keyframe = find_own_keyframe(id);
+  if (keyframe != nullptr) keyframe->frame.features = std::move(equal);
 }
 
 void Map::keep_patches(KeyframeId id, std::span<const int> features) {

@@ -10,11 +10,14 @@ namespace byre {
 void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
                              const std::vector<KeyframeMotion>& motions) {
   assert(idle());
-  MapWindow recent = recent_map(map, first_new, loops);
-  add_motions(recent, motions);
-  snapshot_ = std::make_shared<const MapWindow>(std::move(recent));
-  worker_.start([snapshot = snapshot_, is_hurried = is_hurried_, loops, options = options_] {
-    return adjust_map(*snapshot, loops, options, [&is_hurried] { return is_hurried->load(); });
+  const auto recent = std::make_shared<MapWindow>(recent_map(map, first_new, loops));
+  add_motions(*recent, motions);
+  outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
+  worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
+    return adjust_map(std::move(*recent), *outline, loops, options, [&] {
+      stowed->forget_looks();  // points were fused by patches
+      return is_hurried->load();
+    });
   });
 }
 
@@ -47,8 +50,8 @@ void GlobalLane::keep(std::optional<Worker<Outcome>::Finished> finished) {
 AppliedCorrection GlobalLane::apply(Map& online) {
   assert(is_waiting());
   MapDelta correction = std::get<MapDelta>(*std::exchange(outcome_, std::nullopt));
-  LengthChanges changes = apply_correction(correction, *snapshot_, online);
-  snapshot_.reset();
+  LengthChanges changes = apply_correction(correction, *outline_, online);
+  outline_.reset();
   return {std::move(correction), std::move(changes)};
 }
 

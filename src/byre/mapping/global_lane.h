@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/input/scratch_file.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/slam/told_motions.h"
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,8 +25,10 @@ struct AppliedCorrection {
 // correction waits until local mapping has nothing in flight, for what that works on would be out of date.
 class GlobalLane {
  public:
-  GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options)
-      : options_(options), worker_(std::move(executor)) {}
+  // stowed: where patches of the maps lie that are corrected.
+  GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options,
+             std::shared_ptr<const ScratchFile> stowed)
+      : options_(options), stowed_(std::move(stowed)), worker_(std::move(executor)) {}
 
   bool idle() const { return worker_.idle() && !outcome_; }
   bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
@@ -49,11 +53,12 @@ class GlobalLane {
 
   void keep(std::optional<Worker<Outcome>::Finished> finished);
 
-  GlobalMappingOptions options_;  // constant after construction
+  GlobalMappingOptions options_;               // constant after construction, as the next
+  std::shared_ptr<const ScratchFile> stowed_;  // shared with jobs
 
-  // Owned by the calling thread; the snapshot is shared with the job and changed by nobody.
+  // Owned by the calling thread; the outline is shared with the job and changed by nobody.
   Worker<Outcome> worker_;
-  std::shared_ptr<const MapWindow> snapshot_;  // map that is corrected, as it was
+  std::shared_ptr<const MapWindow> outline_;  // map that is corrected, as it was
   std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
   std::optional<Outcome> outcome_;                                                              // not taken over yet
 };

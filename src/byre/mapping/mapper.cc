@@ -16,7 +16,7 @@ Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Exe
     : options_(options),
       offline_(std::move(knowledge.offline)),
       local_(std::move(local)),
-      global_(std::move(global), {options.mapping}),
+      global_(std::move(global), {options.mapping}, stowed_),
       loop_closer_(options.loops) {
   if (knowledge.vocabulary) places_.emplace(*std::move(knowledge.vocabulary));
   if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
@@ -148,7 +148,8 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
 
 // Patches at corners that see no point serve to find new points, which is done among the newest keyframes. At the
 // others they serve for as long as the map grows: points are fused, and defined by another view. Without them errors of
-// maps with loops grow by some percent.
+// maps with loops grow by some percent. But few of them at a time, so that they lie in a file. It is written by jobs,
+// as a disk may be busy.
 void Mapper::forget_patches() {
   constexpr std::uint32_t kNew = 32;  // keyframes, as many as a window holds
   if (newest_->number < kNew) return;
@@ -160,6 +161,7 @@ void Mapper::forget_patches() {
     if (keyframe->sightings[static_cast<std::size_t>(i)].point) kept.push_back(i);
   }
   online_.keep_patches(old, kept);
+  to_stow_.push_back({old, keyframe->frame.features});
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
@@ -207,10 +209,15 @@ std::optional<double> Mapper::collect() {
   return finished->seconds;
 }
 
-void Mapper::take_over(const MapDelta& delta) {
-  apply(delta, online_);
+void Mapper::take_over(const LocalOutcome& outcome) {
+  apply(outcome.delta, online_);
   ++revision_;
-  forget_places(delta);
+  forget_places(outcome.delta);
+  for (const KeyframeFeatures& of : outcome.stowed) {
+    const Keyframe* const keyframe = online_.find_keyframe(of.keyframe);
+    if (keyframe != nullptr && keyframe->frame.features == of.features)
+      online_.replace_features(of.keyframe, of.stowed);
+  }
 }
 
 // Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
@@ -289,7 +296,13 @@ void Mapper::start_job() {
     if (!is_offline(keyframe)) online.push_back(keyframe.id);
   }
   add_motions(window, motions_between(online));
-  local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+  local_.start(
+      [window = std::move(window), options = options_.mapping, to_stow = std::exchange(to_stow_, {}), file = stowed_] {
+        LocalOutcome outcome{extend_map(window, options), to_stow};
+        for (KeyframeFeatures& of : outcome.stowed) of.stowed = with_stowed_patches(of.features, *file);
+        file->forget_looks();
+        return outcome;
+      });
 }
 
 void Mapper::index_place(KeyframeId id) {
@@ -317,9 +330,9 @@ LengthChanges Mapper::finish() {
 
 std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
-  const MapWindow whole = whole_map(map());
+  // The copy of the map goes before features are made anew, which it would keep as they were.
   const auto refined =
-      self_calibrate(whole, calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
+      self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
   if (!refined) return std::nullopt;
   return recalibrate(*refined, rig);
 }
@@ -328,17 +341,24 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
+  if (first_new == 0) stow_patches(online_, *stowed_);
+  const FinishHooks frugal{[&] {
+                             stowed_->forget_looks();
+                             return hooks.should_stop && hooks.should_stop();
+                           },
+                           hooks.before_step};
   FinishReport report =
-      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, hooks);
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
   loop_closer_.follow(report.length_changes);
   return report;
 }
 
 LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
-  const MapWindow whole = whole_map(map());
-  const MapDelta adjusted = adjust_map(whole, {}, {options_.mapping}, hooks.should_stop);
-  LengthChanges changes = apply_correction(adjusted, whole, online_);
+  MapWindow whole = whole_map(map());
+  const MapWindow before = outline_of(whole);
+  const MapDelta adjusted = adjust_map(std::move(whole), before, {}, {options_.mapping}, hooks.should_stop);
+  LengthChanges changes = apply_correction(adjusted, before, online_);
   loop_closer_.follow(changes);
   return changes;
 }

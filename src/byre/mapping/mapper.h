@@ -10,6 +10,7 @@
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/registration.h"
+#include "byre/slam/stowed_patches.h"
 #include "byre/slam/told_motions.h"
 #include "byre/workers/worker.h"
 
@@ -28,6 +29,18 @@ struct OnlineCorrection {
   std::uint32_t first_keyframe = 0;  // number of the first one in that frame that moves
   Pose offline_from_online;
   CorrectionShape shape = CorrectionShape::spread;
+};
+
+struct KeyframeFeatures {
+  KeyframeId keyframe;
+  std::shared_ptr<const Features> features;          // as they were
+  std::shared_ptr<const Features> stowed = nullptr;  // with their patches in the file
+};
+
+// What a job in a neighbourhood comes to.
+struct LocalOutcome {
+  MapDelta delta;
+  std::vector<KeyframeFeatures> stowed = {};
 };
 
 // A vocabulary for places, and an offline map that the online one lies on; either may be missing.
@@ -118,7 +131,7 @@ class Mapper {
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
   void bend();                                      // the map around what came, in the background
-  void take_over(const MapDelta& delta);
+  void take_over(const LocalOutcome& outcome);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
   void forget_patches();
   void settle_loop(const LoopHypothesis& loop);
@@ -130,8 +143,10 @@ class Mapper {
   MapperOptions options_;
   std::shared_ptr<const OfflineMap> offline_;
   TellMotion tell_;  // empty: nothing is told
+  std::shared_ptr<ScratchFile> stowed_ =
+      std::make_shared<ScratchFile>();  // what is put in comes from one job at a time
 
-  Worker<MapDelta> local_;
+  Worker<LocalOutcome> local_;
   GlobalLane global_;
   std::optional<MonocularInitialiser> initialiser_;  // until there is a map, with a rig without a baseline
   Pose told_reference_;                              // camera_from_world of its reference frame, as it was told
@@ -144,6 +159,7 @@ class Mapper {
   std::optional<KeyframeId> newest_;
   std::uint32_t first_new_ = 0;  // number of the first keyframe that is not of the map gone on with
   std::vector<KeyframeId> pending_;
+  std::vector<KeyframeFeatures> to_stow_;               // what the next job is to put into the file
   std::optional<OnlineCorrection> waiting_correction_;  // until mapping has nothing in flight
 };
 

@@ -99,6 +99,26 @@ TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCam
   EXPECT_EQ(patches_without_point(), 0);
 }
 
+TEST_F(MapperOfAMission, PutsThePatchesOfOlderKeyframesIntoAFile) {
+  Mapper mapper = this->mapper(make_inline_executor());
+  const KeyframeId first =
+      mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
+          .keyframes.front();
+  const auto patches = [&] { return mapper.online().find_keyframe(first)->frame.features->patches(); };
+  for (std::size_t frame = 1; frame < 33; ++frame) {
+    mapper.add_keyframe(mission_.frames[frame], track(mapper, frame), mission_.rig);
+    mapper.collect();
+  }
+  const Patch* const in_memory = patches().data();
+  const std::size_t count = patches().size();
+  mapper.add_keyframe(mission_.frames[33], track(mapper, 33), mission_.rig);
+  EXPECT_EQ(patches().data(), in_memory) << "the job is not taken over";
+  mapper.collect();
+  EXPECT_NE(patches().data(), in_memory);
+  ASSERT_EQ(patches().size(), count);
+  for (const Patch& patch : patches()) EXPECT_EQ(patch.pixels, Patch{}.pixels);
+}
+
 TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(5));
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));

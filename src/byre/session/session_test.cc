@@ -182,7 +182,7 @@ class ScriptedExecutor final : public Executor {
   std::optional<FinishedJob> collect() override {
     if (idle_ || !due_) return std::nullopt;
     idle_ = true;
-    return FinishedJob{std::exchange(due_, nullptr)(), 0.0};
+    return FinishedJob{LocalOutcome{std::exchange(due_, nullptr)()}, 0.0};
   }
   std::optional<FinishedJob> finish() override { return collect(); }
   bool idle() const override { return idle_; }

@@ -244,6 +244,34 @@ MapDelta difference_to(const Before& before, const MapWindow& after) {
 
 }  // namespace
 
+MapWindow outline_of(const MapWindow& window) {
+  MapWindow outline;
+  outline.rigs = window.rigs;
+  outline.motions = window.motions;
+  outline.keyframes.reserve(window.keyframes.size());
+  for (const WindowKeyframe& entry : window.keyframes) {
+    const Keyframe& keyframe = entry.keyframe;
+    outline.keyframes.push_back({entry.id,
+                                 {{.time = keyframe.frame.time},
+                                  keyframe.rig,
+                                  keyframe.recording,
+                                  keyframe.camera_from_world,
+                                  keyframe.covariance,
+                                  {},
+                                  keyframe.parent,
+                                  {}},
+                                 entry.point_of_feature,
+                                 entry.movable,
+                                 entry.is_new,
+                                 entry.removed});
+  }
+  outline.points.reserve(window.points.size());
+  for (const WindowPoint& point : window.points) {
+    outline.points.push_back({point.id, point.point, {}, 0, point.removed, 0});
+  }
+  return outline;
+}
+
 MapDelta difference(const MapWindow& before, const MapWindow& after) {
   return difference_to(WindowBefore(before), after);
 }

@@ -70,7 +70,10 @@ struct MapDelta {
   std::vector<OnlineKeyframeId> removed_keyframes;
 };
 
-// What mapping has changed between a window as it was cut and as it is now.
+// A window without what its keyframes see and who observes its points: enough of it to tell later what has changed.
+MapWindow outline_of(const MapWindow& window);
+
+// What mapping has changed between a window as it was cut, or its outline, and as it is now.
 MapDelta difference(const MapWindow& before, const MapWindow& after);
 // The same, where the map is as it was when the window was cut of it. Precondition: all keyframes are online ones.
 MapDelta difference(const Map& before, const MapWindow& after);

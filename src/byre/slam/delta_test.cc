@@ -238,6 +238,18 @@ TEST_P(RandomDelta, IsToldByTheMapAsByTheWindowBefore) {
   }
 }
 
+TEST_P(RandomDelta, IsToldByTheOutlineAsByTheWindowBefore) {
+  const MapWindow outline = outline_of(before_);
+  EXPECT_THAT(outline.keyframes.front().keyframe.sightings, IsEmpty());
+  const MapDelta expected = difference(before_, after_), delta = difference(outline, after_);
+  EXPECT_EQ(delta.removed_observations.size(), expected.removed_observations.size());
+  EXPECT_EQ(delta.new_observations.size(), expected.new_observations.size());
+  EXPECT_EQ(delta.moved_keyframes.size(), expected.moved_keyframes.size());
+  EXPECT_EQ(delta.updated_points.size(), expected.updated_points.size());
+  apply(delta, map_);
+  expect_same(map_, after_);
+}
+
 TEST_P(RandomDelta, SkipsWhatIsGone) {
   const MapDelta delta = difference(before_, after_);
   change_meanwhile(map_, GetParam());

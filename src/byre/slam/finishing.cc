@@ -2,7 +2,6 @@
 
 #include "byre/slam/mapping_steps.h"
 #include "byre/slam/recent_map.h"
-#include "byre/slam/stowed_patches.h"
 #include "byre/trajectory_error.h"
 
 #include <algorithm>
@@ -151,13 +150,9 @@ FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptio
     edges.push_back(*edge_of(loop, online));
   }
   report.loops = static_cast<int>(edges.size());
-  // Points are matched anew where loops join them. Otherwise nothing looks at patches.
-  std::optional<StowedPatches> patches;
-  if (options.first_new == 0 && edges.empty()) patches.emplace(online);
   announce(hooks, options.first_new == 0 ? "adjusting the whole map" : "adjusting what came and lies around it");
   std::uint32_t first_new = options.first_new;
   if (!stopped(hooks)) first_new = correct_around(online, edges, options, hooks, report);
-  if (patches) patches->give_back(online);
   announce(hooks, "removing what adds nothing");
   if (!stopped(hooks)) thin_out(online, first_new, options);
   for (const LoopEdge& edge : edges) {

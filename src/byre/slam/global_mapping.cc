@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -251,9 +252,14 @@ MapWindow whole_map(const MapView& map) {
 
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop) {
-  MapWindow adjusted = whole;
+  return adjust_map(MapWindow(whole), whole, loops, options, should_stop);
+}
+
+MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,
+                    const GlobalMappingOptions& options, const std::function<bool()>& should_stop) {
+  MapWindow adjusted = std::move(window);
   adjust_window(adjusted, loops, options, should_stop);
-  return difference(whole, adjusted);
+  return difference(before, adjusted);
 }
 
 void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,

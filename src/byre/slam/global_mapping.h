@@ -35,6 +35,10 @@ MapWindow whole_map(const MapView& map);
 MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                     const std::function<bool()>& should_stop = {});
 
+// The same with a copy that is used up. before: the copy, or its outline.
+MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,
+                    const GlobalMappingOptions& options, const std::function<bool()>& should_stop = {});
+
 // The same to the copy itself.
 void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                    const std::function<bool()>& should_stop = {});
@@ -44,9 +48,10 @@ void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const 
 LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                              Map& online, const std::function<bool()>& should_stop = {});
 
-// Applies what was found for a map as it was (before) to the map as it is now. Keyframes and points that came in the
-// meantime go along with those they hang from; what moved in the meantime keeps its motion. Returns the changes of
-// length by which whatever lies relative to a keyframe, such as a frame, is to follow; with stereo there are none.
+// Applies what was found for a map as it was (before, of which the outline will do) to the map as it is now. Keyframes
+// and points that came in the meantime go along with those they hang from; what moved in the meantime keeps its motion.
+// Returns the changes of length by which whatever lies relative to a keyframe, such as a frame, is to follow; with
+// stereo there are none.
 LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online);
 
 // A loop as it was measured, in the lengths that there are since.

@@ -1,24 +1,21 @@
 #pragma once
 
+#include "byre/features.h"
+#include "byre/input/scratch_file.h"
 #include "byre/map/map.h"
 
-#include <cstddef>
-#include <utility>
-#include <vector>
+#include <memory>
 
 namespace byre {
 
-// The patches of a map, taken out of it while nothing looks at them, in a third of the memory: those of a site take as
-// much as all else that its keyframes see. Patches as a map file has them, see docs/map_format.md. Those of a keyframe
-// that are not so, as it was made since, stay where they are.
-class StowedPatches {
- public:
-  explicit StowedPatches(Map& map);
-  // Once. Keyframes that have gone since are passed over.
-  void give_back(Map& map);
+// Most patches of a map are looked at seldom, and they take as much memory as all else that its keyframes see. Stowed
+// ones lie in a file and are the same wherever they are looked at.
 
- private:
-  std::vector<std::pair<KeyframeId, std::vector<std::byte>>> packed_;
-};
+// The same features with their patches in the file; as they are where there are none, the file has them or
+// has no room.
+std::shared_ptr<const Features> with_stowed_patches(const std::shared_ptr<const Features>& features, ScratchFile& file);
+
+// The patches of all keyframes that are not in the file yet.
+void stow_patches(Map& map, ScratchFile& file);
 
 }  // namespace byre

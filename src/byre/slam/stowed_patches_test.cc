@@ -3,53 +3,52 @@
 #include "byre/map/map_file.h"
 #include "byre/map/stored_map_scene.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace byre {
 namespace {
 
-// As a file has it.
-StoredMap read_scene() {
-  return read_map(write_map(StoredMapScene(5, 20).stored()), "file");
-}
-
-int count_patches(const Map& map) {
-  int count = 0;
-  for (const KeyframeId id : map.keyframe_ids()) {
-    const Features& features = *map.find_keyframe(id)->frame.features;
-    for (int i = 0; i < features.size(); ++i) count += features.find_patch(i) != nullptr ? 1 : 0;
-  }
-  return count;
-}
-
-TEST(StowedPatches, AreNotInTheMapUntilTheyAreGivenBackTheSame) {
-  StoredMap stored = read_scene();
+TEST(StowedPatches, AreTheSameInTheMap) {
+  StoredMap stored = StoredMapScene(5, 20).stored();
   const auto bytes = write_map(stored);
-  ASSERT_GT(count_patches(stored.map), 0);
-  StowedPatches patches(stored.map);
-  EXPECT_EQ(count_patches(stored.map), 0);
-  patches.give_back(stored.map);
+  std::vector<const Patch*> before;
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    before.push_back(stored.map.find_keyframe(id)->frame.features->patches().data());
+  }
+  ScratchFile file;
+  stow_patches(stored.map, file);
+  file.forget_looks();
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    const auto patches = stored.map.find_keyframe(id)->frame.features->patches();
+    EXPECT_TRUE(patches.empty() || patches.data() != before[id.number]);
+  }
   EXPECT_EQ(write_map(stored), bytes);
 }
 
-TEST(StowedPatches, OfAKeyframeThatIsGoneArePassedOver) {
-  StoredMap stored = read_scene();
-  const KeyframeId last = stored.map.keyframe_ids()[4];
-  StowedPatches patches(stored.map);
-  stored.map.remove_keyframe(last);
-  const int left = stored.map.keyframe_count();
-  patches.give_back(stored.map);
-  EXPECT_EQ(stored.map.keyframe_count(), left);
-  EXPECT_GT(count_patches(stored.map), 0);
+TEST(StowedPatches, MoveWithTheirFeatures) {
+  const StoredMap stored = StoredMapScene(5, 20).stored();
+  const auto& features = stored.map.find_keyframe({Origin::offline, 0})->frame.features;
+  ASSERT_FALSE(features->patches().empty());
+  ScratchFile file;
+  const auto stowed = with_stowed_patches(features, file);
+  const Features moved = stowed->moved(features->keypoints());
+  EXPECT_EQ(moved.patches().data(), stowed->patches().data());
+  for (int i = 0; i < moved.size(); ++i) {
+    const Patch* const patch = features->find_patch(i);
+    ASSERT_EQ(moved.find_patch(i) != nullptr, patch != nullptr);
+    if (patch == nullptr) continue;
+    EXPECT_EQ(moved.find_patch(i)->pixels, patch->pixels);
+    EXPECT_EQ(moved.find_patch(i)->centre, patch->centre);
+  }
 }
 
-TEST(StowedPatches, StayWhereTheyWouldNotBeTheSame) {
-  StoredMap stored = StoredMapScene(5, 20).stored();  // noise of 256 grey values
-  const int count = count_patches(stored.map);
-  StowedPatches patches(stored.map);
-  EXPECT_EQ(count_patches(stored.map), count);
-  patches.give_back(stored.map);
-  EXPECT_EQ(count_patches(stored.map), count);
+TEST(StowedPatches, AreNoneWhereFeaturesHaveNone) {
+  ScratchFile file;
+  EXPECT_EQ(with_stowed_patches(nullptr, file), nullptr);
+  const auto none = std::make_shared<const Features>();
+  EXPECT_EQ(with_stowed_patches(none, file), none);
 }
 
 }  // namespace

@@ -26,9 +26,16 @@ std::vector<KeyframeId> choose_movable(const Map& map, const std::vector<Keyfram
   return chosen;
 }
 
+// Mapping asks for no words, and there are windows of whole maps.
+Keyframe without_words(const Keyframe& keyframe) {
+  return {keyframe.frame,      keyframe.rig,       keyframe.recording, keyframe.camera_from_world,
+          keyframe.covariance, keyframe.sightings, keyframe.parent,    {}};
+}
+
 void append_keyframe(MapWindow& window, const MapView& map, KeyframeId id, bool movable, bool is_new) {
   const Keyframe& keyframe = *map.find_keyframe(id);
-  WindowKeyframe copy{id, keyframe, std::vector<int>(keyframe.sightings.size(), kNoPoint), movable, is_new};
+  WindowKeyframe copy{id, without_words(keyframe), std::vector<int>(keyframe.sightings.size(), kNoPoint), movable,
+                      is_new};
   for (std::size_t feature = 0; feature < keyframe.sightings.size(); ++feature) {
     if (keyframe.sightings[feature].point) copy.point_of_feature[feature] = kPointElsewhere;
   }

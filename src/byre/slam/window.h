@@ -14,7 +14,7 @@ inline constexpr int kPointElsewhere = -2;  // a point outside the window
 
 struct WindowKeyframe {
   KeyframeId id;                      // an offline keyframe is always an anchor
-  Keyframe keyframe;                  // sightings' pixels hold; which point they see is told by point_of_feature
+  Keyframe keyframe;                  // without words; which points its sightings see is told by point_of_feature
   std::vector<int> point_of_feature;  // index into MapWindow::points, kNoPoint or kPointElsewhere
   bool movable = false;               // whether mapping may move it; an anchor sees the same points and stays put
   bool is_new = false;                // mapping has not worked on it yet

@@ -1,6 +1,7 @@
 #include "byre/system/refine_map.h"
 
 #include "byre/slam/online_copy.h"
+#include "byre/slam/stowed_patches.h"
 #include "byre/system/resources.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -13,6 +14,8 @@ Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const Fini
   const Stopwatch watch;
   Map online = online_copy(stored.map);
   stored.map = Map(Origin::offline);  // hundreds of megabytes
+  ScratchFile stowed;
+  stow_patches(online, stowed);
   Finishing finishing;
   // What reading left free, and each step, is of another kind than the next step needs.
   const FinishHooks frugal{hooks.should_stop, [&hooks](const char* step) {

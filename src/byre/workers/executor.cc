@@ -35,12 +35,13 @@ class InlineExecutor final : public Executor {
   std::future<FinishedJob> result_;
 };
 
-// Runs each job on a thread of its own; when its result is handed over is left open.
+// Runs each job on a thread of its own; when its result is handed over is left open. What the job owns goes on that
+// thread, before the result is there.
 class WorkerExecutor : public Executor {
  public:
   void submit(Job job) override {
     assert(idle());
-    result_ = std::async(std::launch::async, [job = std::move(job)] { return run(job); });
+    result_ = std::async(std::launch::async, [job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
   }
   std::optional<FinishedJob> finish() override {
     if (idle()) return std::nullopt;

@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <future>
+#include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -135,6 +137,16 @@ TEST_P(PacedExecutor, WaitsForASlowJob) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Latencies, PacedExecutor, ::testing::Values(1, 2, 5));
+
+TEST_P(PacedExecutor, LetsGoOfWhatAJobOwnsBeforeItsResultIsTaken) {
+  const auto executor = make_paced_executor(1000);
+  auto owned = std::make_shared<int>(7);
+  const std::weak_ptr<int> seen = owned;
+  executor->submit([owned = std::move(owned)] { return std::any(*owned); });
+  while (!seen.expired()) std::this_thread::yield();
+  EXPECT_FALSE(executor->idle());
+  EXPECT_EQ(number_of(executor->finish()), 7);
+}
 
 TEST(LiveExecutor, DoesNotWaitForAJobThatRuns) {
   const auto executor = make_live_executor();

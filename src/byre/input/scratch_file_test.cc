@@ -1,0 +1,148 @@
+#include "byre/input/scratch_file.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+std::vector<std::byte> pattern(std::size_t count, unsigned seed) {
+  std::vector<std::byte> bytes(count);
+  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::byte>((i * 31 + i / 251 + seed) & 255u);
+  return bytes;
+}
+
+bool are(const std::vector<std::byte>& expected, const std::shared_ptr<const std::byte>& piece) {
+  return std::equal(expected.begin(), expected.end(), piece.get());
+}
+
+double resident_mb() {
+  long all = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return 1e-6 * static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(ScratchFile, HoldsWhatIsPutIntoIt) {
+  ScratchFile file;
+  std::vector<std::shared_ptr<const std::byte>> pieces;
+  for (unsigned i = 0; i < 300; ++i) pieces.push_back(file.put(pattern(200000 + i, i)));
+  file.forget_looks();
+  for (unsigned i = 0; i < 300; ++i) {
+    ASSERT_NE(pieces[i], nullptr);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pieces[i].get()) % alignof(std::max_align_t), 0u);
+    EXPECT_TRUE(are(pattern(200000 + i, i), pieces[i])) << i;
+  }
+}
+
+TEST(ScratchFile, TellsWhetherItHoldsAnAddress) {
+  ScratchFile file;
+  const auto piece = file.put(pattern(10, 1));
+  EXPECT_TRUE(file.holds(piece.get()));
+  EXPECT_FALSE(file.holds(&file));
+  EXPECT_FALSE(ScratchFile().holds(piece.get()));
+  EXPECT_NE(file.put({}), nullptr);
+}
+
+TEST(ScratchFile, StaysAsLongAsAPieceIsHeld) {
+  std::shared_ptr<const std::byte> piece;
+  {
+    ScratchFile file;
+    piece = file.put(pattern(1000, 7));
+  }
+  EXPECT_TRUE(are(pattern(1000, 7), piece));
+}
+
+TEST(ScratchFile, TakesNoMemoryForWhatNobodyLooksAt) {
+  ScratchFile file;
+  std::vector<std::shared_ptr<const std::byte>> pieces;
+  const std::vector<std::byte> bytes = pattern(1000000, 5);
+  const double before = resident_mb();
+  for (int i = 0; i < 60; ++i) pieces.push_back(file.put(bytes));
+  EXPECT_LT(resident_mb(), before + 20.0);
+  for (const auto& piece : pieces) ASSERT_TRUE(are(bytes, piece));
+  EXPECT_GT(resident_mb(), before + 40.0);
+  file.forget_looks();
+  EXPECT_LT(resident_mb(), before + 20.0);
+}
+
+TEST(ScratchFile, GivesTheRoomOfWhatNobodyHoldsBackToTheDisk) {
+  ScratchFile file;
+  const std::vector<std::byte> bytes = pattern(1000000, 5);
+  auto kept = file.put(bytes), dropped = file.put(bytes);
+  EXPECT_GE(file.bytes_on_disk(), 2000000u);
+  dropped.reset();
+  EXPECT_LT(file.bytes_on_disk(), 1100000u);
+  EXPECT_TRUE(are(bytes, kept));
+}
+
+TEST(ScratchFile, IsLookedAtWhileMoreIsPutIntoIt) {
+  ScratchFile file;
+  const std::vector<std::byte> bytes = pattern(300000, 9);
+  const auto piece = file.put(bytes);
+  bool are_same = true;
+  {
+    const std::jthread looks([&] {
+      for (int i = 0; i < 100; ++i) are_same = are_same && are(bytes, piece);
+    });
+    for (int i = 0; i < 100; ++i) {
+      file.put(bytes);
+      file.forget_looks();
+    }
+  }
+  EXPECT_TRUE(are_same);
+}
+
+// Files that may not grow are as a disk that is full.
+class FullDisk {
+ public:
+  FullDisk() {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit none = before_;
+    none.rlim_cur = 0;
+    setrlimit(RLIMIT_FSIZE, &none);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(ScratchFile, TakesNoMoreOnceTheDiskIsFull) {
+  ScratchFile file;
+  const auto piece = file.put(pattern(100, 1));
+  ASSERT_NE(piece, nullptr);
+  {
+    const FullDisk full;
+    EXPECT_EQ(file.put(pattern(100, 2)), nullptr);
+  }
+  EXPECT_EQ(file.put(pattern(100, 3)), nullptr) << "it has failed once";
+  EXPECT_TRUE(are(pattern(100, 1), piece));
+}
+
+TEST(ScratchFile, LiesWhereItCanWhenTheFolderThatIsToldIsNone) {
+  const char* const told = std::getenv("TMPDIR");
+  const std::optional<std::string> before = told ? std::optional<std::string>(told) : std::nullopt;
+  setenv("TMPDIR", "/absent", 1);
+  ScratchFile file;
+  EXPECT_NE(file.put(pattern(100, 1)), nullptr);
+  before ? setenv("TMPDIR", before->c_str(), 1) : unsetenv("TMPDIR");
+}
+
+}  // namespace
+}  // namespace byre
