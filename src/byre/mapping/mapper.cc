@@ -289,7 +289,9 @@ void Mapper::start_job() {
     if (!is_offline(keyframe)) online.push_back(keyframe.id);
   }
   add_motions(window, motions_between(online));
-  local_.start([window = std::move(window), options = options_.mapping] { return extend_map(window, options); });
+  MappingOptions mapping = options_.mapping;
+  mapping.hidden = hidden_;
+  local_.start([window = std::move(window), options = mapping] { return extend_map(window, options); });
 }
 
 void Mapper::index_place(KeyframeId id) {
