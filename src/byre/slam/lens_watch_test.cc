@@ -21,13 +21,15 @@ class Drive {
 
   int frames() const { return static_cast<int>(mission_.frames.size()); }
 
-  void go(LensWatch& watch, int first, int last, bool is_dirty) {
+  // late: by how much the frames come later.
+  void go(LensWatch& watch, int first, int last, bool is_dirty, Timestamp late = {}) {
     const MapView view(nullptr, map_);
     for (int i = first; i < last; ++i) {
-      const Frame seen = is_dirty ? soiled(mission_.frames[static_cast<std::size_t>(i)])
-                                  : mission_.frames[static_cast<std::size_t>(i)];
-      const auto tracked = track(seen, true_camera_from_world(mission_, static_cast<std::size_t>(i)), mission_.rig, view,
-                                 local_points(view, {Origin::online, static_cast<std::uint32_t>(i / 5)}, 30), {});
+      Frame seen = is_dirty ? soiled(mission_.frames[static_cast<std::size_t>(i)])
+                            : mission_.frames[static_cast<std::size_t>(i)];
+      seen.time += late;
+      const auto tracked = track(seen, true_camera_from_world(mission_, static_cast<std::size_t>(i)), mission_.rig,
+                                 view, local_points(view, {Origin::online, static_cast<std::uint32_t>(i / 5)}, 30), {});
       if (tracked) watch.note(seen, *tracked, mission_.rig, view);
       if (const auto news = watch.news()) told_.push_back(*news);
     }
@@ -79,7 +81,7 @@ TEST(LensWatch, FindsABlotWhereItIsAndThatItWasWipedOff) {
 TEST(LensWatch, LearnsNothingWhileTheRobotStands) {
   Drive drive(1.0);
   LensWatch watch;
-  for (int i = 0; i < 100; ++i) drive.go(watch, 20, 21, true);
+  for (int i = 0; i < 100; ++i) drive.go(watch, 20, 21, true, i * std::chrono::seconds(1));
   EXPECT_FALSE(watch.hidden().any());
 }
 
