@@ -1,11 +1,12 @@
 #include "byre/slam/lens_mask.h"
 
 #include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
 
-constexpr int kMinTrials = 30;        // in the rest of the image, with which a frame says anything
+constexpr int kMinTrials = 30;        // in the rest of the image, with which a cell is compared
 constexpr double kCleanShare = 0.6;   // of what the rest shows: the least that a clean cell does
 constexpr double kDirtyShare = 0.1;   // of the same: what is found behind dirt, mostly by chance
 const double kProof = std::log(1e4);  // of dirt
@@ -13,33 +14,12 @@ const double kProof = std::log(1e4);  // of dirt
 const double kProofBesideDirt = std::log(1e2);
 const double kSuspicious = std::log(10.0);  // cells that do not stand for the rest of the image
 
-struct Count {
-  int found = 0;
-  int all = 0;
-
-  double share() const { return static_cast<double>(found) / all; }
-  Count operator-(const Count& other) const { return {found - other.found, all - other.all}; }
-};
-
-using Counts = std::array<Count, HiddenCells::kCells>;
-
-Counts by_cell(std::span<const LensTrial> trials, const Rig& rig) {
-  Counts counts{};
-  for (const LensTrial& trial : trials) {
-    Count& count = counts[HiddenCells::cell_of(trial.pixel, rig)];
-    ++count.all;
-    count.found += trial.is_found ? 1 : 0;
-  }
-  return counts;
-}
-
-// What a cell's trials in one frame add to its evidence. They are often of one thing, so that together they count for
-// less than apart.
-double evidence_of(const Count& here, double rest) {
+// What trials in a cell at one time add to its evidence, found being the share of them. They are often of one thing, so
+// that together they count for less than apart.
+double evidence_of(double found, int trials, double rest) {
   const double clean = kCleanShare * rest;
   const double dirty = kDirtyShare * rest;
-  const double found = here.share();
-  return std::sqrt(here.all) *
+  return std::sqrt(trials) *
          (found * std::log(dirty / clean) + (1.0 - found) * std::log((1.0 - dirty) / (1.0 - clean)));
 }
 
@@ -54,20 +34,27 @@ bool LensMask::is_beside_dirt(std::size_t cell) const {
 }
 
 void LensMask::note(std::span<const LensTrial> trials, const Rig& rig) {
-  const Counts counts = by_cell(trials, rig);
-  std::array<bool, HiddenCells::kCells> of_rest{};
-  Count all_rest;
-  for (std::size_t cell = 0; cell < counts.size(); ++cell) {
-    of_rest[cell] = !hidden_.is_hidden(cell) && evidence_[cell] < kSuspicious;
-    if (of_rest[cell]) all_rest = {all_rest.found + counts[cell].found, all_rest.all + counts[cell].all};
+  for (const LensTrial& trial : trials) {
+    Count& count = counts_[HiddenCells::cell_of(trial.pixel, rig)];
+    ++count.all;
+    count.found += trial.is_found ? 1 : 0;
   }
+  std::array<bool, HiddenCells::kCells> of_rest{};
+  Count rest;
+  for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
+    of_rest[cell] = !hidden_.is_hidden(cell) && evidence_[cell] < kSuspicious;
+    if (of_rest[cell]) rest = {rest.found + counts_[cell].found, rest.all + counts_[cell].all};
+  }
+  if (rest.all < kMinTrials) return;
   HiddenCells after = hidden_;
-  for (std::size_t cell = 0; cell < counts.size(); ++cell) {
-    const Count& here = counts[cell];
-    const Count rest = of_rest[cell] ? all_rest - here : all_rest;
-    if (here.all == 0 || rest.all < kMinTrials || rest.found == 0) continue;
+  for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
+    const Count here = std::exchange(counts_[cell], {});
+    const Count others = of_rest[cell] ? Count{rest.found - here.found, rest.all - here.all} : rest;
+    if (here.all == 0 || others.found == 0) continue;
+    const double found = static_cast<double>(here.found) / here.all;
+    const double found_elsewhere = static_cast<double>(others.found) / others.all;
     double& evidence = evidence_[cell];
-    evidence = std::clamp(evidence + evidence_of(here, rest.share()), 0.0, kProof);
+    evidence = std::clamp(evidence + evidence_of(found, here.all, found_elsewhere), 0.0, kProof);
     if (evidence >= (is_beside_dirt(cell) ? kProofBesideDirt : kProof)) after.set(cell, true);
     if (evidence == 0.0) after.set(cell, false);
   }

@@ -20,15 +20,21 @@ struct LensTrial {
 // once the first one explains it as well.
 class LensMask {
  public:
-  // The trials of one frame.
+  // The trials of one frame. Where they are too few to compare a cell with the rest, they wait for those of the next.
   void note(std::span<const LensTrial> trials, const Rig& rig);
 
   const HiddenCells& hidden() const { return hidden_; }
 
  private:
+  struct Count {
+    int found = 0;
+    int all = 0;
+  };
+
   bool is_beside_dirt(std::size_t cell) const;
 
   std::array<double, HiddenCells::kCells> evidence_{};  // logarithm of the likelihood ratio, of being dirty to clean
+  std::array<Count, HiddenCells::kCells> counts_{};     // trials that wait
   HiddenCells hidden_;
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kEvery = 0.19;       // seconds between frames that are looked at
 constexpr double kMemory = 3.0;       // seconds since a point was seen
-constexpr int kMinSeen = 60;          // points of a frame that tells
+constexpr int kMinSeen = 30;          // points of a frame that tells
 constexpr float kFreeBorder = 19.0f;  // octave pixels along the image's rim in which there are no corners
 constexpr SearchOptions kSearch{4.0f, 80, 0.9f};
 
