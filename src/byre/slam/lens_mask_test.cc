@@ -104,7 +104,7 @@ TEST(LensMask, GrowsSoonerFromACellThanItBegins) {
   camera.take(60, mask);
   camera.soil(kCell + 1);
   camera.soil(kCell + 5);
-  camera.take(15, mask);
+  camera.take(20, mask);
   EXPECT_TRUE(mask.hidden().is_hidden(kCell + 1));
   EXPECT_FALSE(mask.hidden().is_hidden(kCell + 5));
 }
