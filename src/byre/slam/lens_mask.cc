@@ -11,7 +11,7 @@ constexpr double kCleanShare = 0.6;   // of what the rest shows: the least that 
 constexpr double kDirtyShare = 0.1;   // of the same: what is found behind dirt, mostly by chance
 const double kProof = std::log(1e6);  // of dirt
 // Dirt is more than one cell large, so a cell beside a dirty one is likely to be dirty before anything is seen of it.
-const double kProofBesideDirt = std::log(1e3);
+const double kProofBesideDirt = std::log(1e2);
 const double kSuspicious = std::log(10.0);  // cells that do not stand for the rest of the image
 
 // What trials in a cell at one time add to its evidence, found being the share of them. They are often of one thing, so
