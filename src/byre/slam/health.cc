@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr int kManyOfflinePoints = 80;     // offline points in view, from which some must be found
-constexpr double kMostHidden = 2.0 / 3.0;  // of the image; what is left must not be one thing that may have moved
+constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; what is left may be one thing that has moved
 constexpr double kMinOfflineShare = 0.04;  // share of those; fewer agree by chance where a building repeats itself
 
 double drift_of(const Health& health, const HealthOptions& options) {

@@ -7,9 +7,9 @@ namespace byre {
 namespace {
 
 constexpr int kMinTrials = 30;        // in the rest of the image, with which a cell is compared
-constexpr double kCleanShare = 0.6;   // of what the rest shows: the least that a clean cell does
-constexpr double kDirtyShare = 0.1;   // of the same: what is found behind dirt, mostly by chance
-const double kProof = std::log(1e6);  // of dirt
+constexpr double kCleanShare = 0.6;   // share of what the rest shows: the least that a clean cell does
+constexpr double kDirtyShare = 0.1;   // share that is found behind dirt, mostly by chance
+const double kProof = std::log(1e6);  // likelihood ratio that tells dirt
 // Dirt is more than one cell large, so a cell beside a dirty one is likely to be dirty before anything is seen of it.
 const double kProofBesideDirt = std::log(1e2);
 const double kSuspicious = std::log(10.0);  // cells that do not stand for the rest of the image

@@ -11,9 +11,9 @@ namespace byre {
 namespace {
 
 // What a frame's trials come to: so many in each cell, of which such a share is found.
-class Camera {
+class TriedLens {
  public:
-  explicit Camera(double found) : found_(found) {}
+  explicit TriedLens(double found) : found_(found) {}
 
   void soil(std::size_t cell, double found = 0.0) { soiled_.push_back({cell, found}); }
   void wipe() { soiled_.clear(); }
@@ -56,7 +56,7 @@ constexpr std::size_t kCell = 37;
 TEST(LensMask, FindsNothingOnACleanLensHoweverLongItLooks) {
   for (const double found : {0.2, 0.5, 0.9}) {
     LensMask mask;
-    Camera camera(found);
+    TriedLens camera(found);
     for (int second = 0; second < 200; ++second) {
       camera.take(5, mask);
       ASSERT_FALSE(mask.hidden().any()) << found << ", second " << second;
@@ -66,7 +66,7 @@ TEST(LensMask, FindsNothingOnACleanLensHoweverLongItLooks) {
 
 TEST(LensMask, LeavesACellAloneThatShowsLessThanTheRest) {
   LensMask mask;
-  Camera camera(0.5);
+  TriedLens camera(0.5);
   camera.soil(kCell, 0.3);
   camera.take(1000, mask);
   EXPECT_FALSE(mask.hidden().any());
@@ -74,7 +74,7 @@ TEST(LensMask, LeavesACellAloneThatShowsLessThanTheRest) {
 
 TEST(LensMask, FindsADirtyCellWithinSecondsAndNoOther) {
   LensMask mask;
-  Camera camera(0.5);
+  TriedLens camera(0.5);
   camera.soil(kCell);
   camera.take(10, mask);
   EXPECT_FALSE(mask.hidden().any());
@@ -85,7 +85,7 @@ TEST(LensMask, FindsADirtyCellWithinSecondsAndNoOther) {
 
 TEST(LensMask, KeepsTheCellWhileItIsDirtyAndForgetsItOnceItIsWiped) {
   LensMask mask;
-  Camera camera(0.5);
+  TriedLens camera(0.5);
   camera.soil(kCell, 0.02);
   camera.take(50, mask);
   for (int frame = 0; frame < 500; ++frame) {
@@ -99,7 +99,7 @@ TEST(LensMask, KeepsTheCellWhileItIsDirtyAndForgetsItOnceItIsWiped) {
 
 TEST(LensMask, GrowsSoonerFromACellThanItBegins) {
   LensMask mask;
-  Camera camera(0.5);
+  TriedLens camera(0.5);
   camera.soil(kCell);
   camera.take(60, mask);
   camera.soil(kCell + 1);
@@ -111,20 +111,20 @@ TEST(LensMask, GrowsSoonerFromACellThanItBegins) {
 
 TEST(LensMask, LearnsNothingWhereTheWholeImageShowsNothing) {
   LensMask mask;
-  Camera(0.0).take(200, mask);
+  TriedLens(0.0).take(200, mask);
   EXPECT_FALSE(mask.hidden().any());
 }
 
 TEST(LensMask, FindsHalfOfTheImageDirty) {
   LensMask mask;
-  Camera camera(0.5);
+  TriedLens camera(0.5);
   for (std::size_t cell = 0; cell < HiddenCells::kCells / 2; ++cell) camera.soil(cell);
   camera.take(100, mask);
   EXPECT_DOUBLE_EQ(mask.hidden().share(), 0.5);
 }
 
 TEST(LensMask, LetsTrialsOfOneFrameCountForLessThanThoseOfMany) {
-  const Camera camera(0.5);
+  const TriedLens camera(0.5);
   std::vector<LensTrial> trials;  // a thing that hides a cell for a moment, from many points at once
   for (int i = 0; i < 100; ++i) trials.push_back({camera.middle_of(kCell), false});
   for (int i = 0; i < 200; ++i) trials.push_back({camera.middle_of(kCell + 2), i % 2 == 0});

@@ -8,10 +8,10 @@ namespace byre {
 namespace {
 
 constexpr double kEvery = 0.19;       // seconds between frames that are looked at
-constexpr double kMemory = 3.0;       // seconds since a point was seen
+constexpr double kRemembered = 3.0;   // seconds since a point was seen
 constexpr int kMinSeen = 30;          // points of a frame that tells
 constexpr float kFreeBorder = 19.0f;  // octave pixels along the image's rim in which there are no corners
-constexpr SearchOptions kSearch{4.0f, 80, 0.9f};
+constexpr SearchOptions kBehindDirt{4.0f, 80, 0.9f};
 
 float cell_size(const Rig& rig) {
   return std::max(static_cast<float>(rig.width) / HiddenCells::kColumns,
@@ -52,7 +52,7 @@ void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, co
       sight.seen = frame.time;
       if (frame.right_condition) sight.is_in_right = seen->is_in_right;
     }
-    return to_seconds(frame.time - sight.seen) > kMemory;
+    return to_seconds(frame.time - sight.seen) > kRemembered;
   };
   std::erase_if(sights_, is_over);
 }
@@ -67,7 +67,7 @@ void LensWatch::try_sight(const Frame& frame, const Sight& before, const Sight* 
   if (now != nullptr && before.is_in_right && is_inside(right, border + cell_size(rig), rig)) {
     trials_right_.push_back({right, now->is_in_right});
   }
-  trials_.push_back({left, now != nullptr || find_feature(*frame.features, descriptor, projection, kSearch)});
+  trials_.push_back({left, now != nullptr || find_feature(*frame.features, descriptor, projection, kBehindDirt)});
 }
 
 std::optional<SessionEvent> LensWatch::news() {
