@@ -68,8 +68,8 @@ struct Health {
   double distance_since_offline = 0.0;  // metres travelled since offline points last held the pose
   double seconds_since_offline = 0.0;
   double focal_error = 0.0;             // share by which the focal length seems too long, by the offline map
-  double hidden_share = 0.0;            // of the left image behind dirt, where no points are asked for
-  double hidden_share_right = 0.0;      // of the right image
+  double hidden_share = 0.0;            // share of the left image behind dirt, where no points are asked for
+  double hidden_share_right = 0.0;      // share of the right image behind dirt
   std::optional<ImageCondition> image;  // empty for simulated frames
 };
 

@@ -35,8 +35,8 @@ struct MissionStatistics {
   ErrorStatistics online_inliers;   // online inliers of frames with a pose
   int most_suspended = 0;           // most offline points suspended at a time
   double most_hidden = 0.0;         // most of a left image that dirt hid, as a share
-  double most_hidden_right = 0.0;   // the same of a right image
-  int frames_with_dirt = 0;         // in which it hid any of either
+  double most_hidden_right = 0.0;   // most of a right image that it hid, as a share
+  int frames_with_dirt = 0;         // frames with any of either image hidden
 };
 
 // So many frames are missing that what is said of the others does not stand for the mission.

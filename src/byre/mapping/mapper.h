@@ -94,7 +94,7 @@ class Mapper {
   bool correct_online();                                         // whether a waiting correction was carried out
   void start_job();                                              // job for pending keyframes
 
-  void note_hidden(const HiddenCells& hidden) { hidden_ = hidden; }  // of the frames that come, see MappingOptions
+  void note_hidden(const HiddenCells& hidden) { hidden_ = hidden; }  // see MappingOptions
   void hurry() { global_.hurry(); }  // a correction of the whole map ends soon, with what it has reached
 
   // After the last frame. What jobs still have to give, then the last steps, with those changes of length that poses

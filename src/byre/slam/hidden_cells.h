@@ -28,7 +28,7 @@ class HiddenCells {
   bool is_hidden(std::size_t cell) const { return cells_.test(cell); }
   bool hides(const Eigen::Vector2d& pixel, const Rig& rig) const { return cells_.test(cell_of(pixel, rig)); }
   bool any() const { return cells_.any(); }
-  double share() const { return static_cast<double>(cells_.count()) / kCells; }  // of the image
+  double share() const { return static_cast<double>(cells_.count()) / kCells; }  // share of the image
 
   bool operator==(const HiddenCells&) const = default;
 

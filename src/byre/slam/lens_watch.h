@@ -40,7 +40,7 @@ class LensWatch {
   std::vector<Sight> sights_;  // ascending by point
   LensMask left_;
   LensMask right_;
-  double told_share_ = 0.0;  // of both images, the last time
+  double told_share_ = 0.0;  // shares hidden in both images when that was told last
   std::vector<Sight> now_;   // memory, as the next
   std::vector<Sight> joined_;
   std::vector<LensTrial> trials_;
