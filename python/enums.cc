@@ -74,6 +74,7 @@ void bind_enums_of_reports(py::module_& module) {
                     {"cameras_disagree", Doubt::cameras_disagree},
                     {"calibration", Doubt::calibration},
                     {"bridged", Doubt::bridged},
+                    {"dirty", Doubt::dirty},
                     {"off_the_plane", Doubt::off_the_plane},
                     {"in_wall", Doubt::in_wall},
                     {"outside", Doubt::outside},
@@ -93,7 +94,9 @@ void bind_enums_of_reports(py::module_& module) {
                            {"online_corrected", SessionEvent::online_corrected},
                            {"loop_found", SessionEvent::loop_found},
                            {"map_corrected", SessionEvent::map_corrected},
-                           {"recalibrated", SessionEvent::recalibrated}});
+                           {"recalibrated", SessionEvent::recalibrated},
+                           {"dirt_found", SessionEvent::dirt_found},
+                           {"dirt_gone", SessionEvent::dirt_gone}});
 }
 
 }  // namespace

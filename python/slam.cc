@@ -36,7 +36,10 @@ void bind_reports(py::module_& module) {
       .def_readonly("position_sigma", &Health::position_sigma, "Metres.")
       .def_readonly("rotation_sigma", &Health::rotation_sigma, "Radians.")
       .def_readonly("distance_since_offline", &Health::distance_since_offline, "Metres.")
-      .def_readonly("seconds_since_offline", &Health::seconds_since_offline);
+      .def_readonly("seconds_since_offline", &Health::seconds_since_offline)
+      .def_readonly("hidden_share", &Health::hidden_share, "Of the left image behind dirt.")
+      .def_readonly("hidden_share_right", &Health::hidden_share_right, "Of the right image behind dirt.")
+      .def_property_readonly("note_on_dirt", &note_on_dirt, "What there is to be done about dirt; empty without dirt.");
   py::class_<FrameReport>(module, "FrameReport", "What is known after one frame. Poses are 4x4 matrices.")
       .def_property_readonly("time_ns", [](const FrameReport& report) { return report.time.count(); })
       .def_readonly("state", &FrameReport::state)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace byre {
@@ -34,6 +35,7 @@ enum class Doubt : std::uint8_t {
   cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
   calibration,         // points of the map fit the images by another focal length
   bridged,             // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
+  dirty,               // dirt hides most of the image
   // There is no pose, for the robot cannot be where it was found:
   off_the_plane,  // it would stand too high, too low or too tilted on the ground that the map was driven on
   in_wall,        // it would be inside a wall of the floor plan
@@ -53,7 +55,7 @@ struct Agreement {
 struct Health {
   Verdict verdict = Verdict::untrusted;
   Doubt doubt = Doubt::no_pose;
-  int offline_expected = 0;  // offline points in the frustum that are not suspended
+  int offline_expected = 0;  // offline points in the frustum that are not suspended, nor behind dirt
   int offline_matches = 0;   // offline points that were matched
   int offline_inliers = 0;   // offline points that agree with the pose
   int online_inliers = 0;
@@ -66,7 +68,12 @@ struct Health {
   double distance_since_offline = 0.0;  // metres travelled since offline points last held the pose
   double seconds_since_offline = 0.0;
   double focal_error = 0.0;             // share by which the focal length seems too long, by the offline map
+  double hidden_share = 0.0;            // share of the left image behind dirt, where no points are asked for
+  double hidden_share_right = 0.0;      // share of the right image behind dirt
   std::optional<ImageCondition> image;  // empty for simulated frames
 };
+
+// What there is to be done about dirt: "dirt hides 12 % of the left image: clean the lens"; empty without dirt.
+std::string note_on_dirt(const Health& health);
 
 }  // namespace byre

@@ -21,7 +21,9 @@ enum class SessionEvent : std::uint8_t {
   online_corrected,     // the online map was moved so that it agrees with the offline one
   loop_found,           // the online map met itself: its ends are fused, or a correction was begun
   map_corrected,        // a correction of the whole online map was taken over
-  recalibrated          // what the map tells of the calibration was taken over
+  recalibrated,         // what the map tells of the calibration was taken over
+  dirt_found,           // dirt on a lens hides a part of the image; told again when it has become half as much again
+  dirt_gone             // no part of an image is hidden any more
 };
 
 std::string_view to_string(SessionEvent event);

@@ -61,6 +61,7 @@ void EventLog::note(int number, const MappedFrame& frame) {
     Json line = line_of(number, report, to_string(event));
     if (moves_the_pose(event)) line["jump_m"] = jump_json(report, map_from_odometry_);
     if (event == SessionEvent::place_refused) line["reason"] = to_string(report.refused_place);
+    if (event == SessionEvent::dirt_found) line["note"] = note_on_dirt(report.health);
     if (event == SessionEvent::blinded) line["image"] = health_json(report.health).at("image");
     write(line);
   }

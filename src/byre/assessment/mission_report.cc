@@ -44,6 +44,14 @@ std::string describe_losses(const MissionStatistics& statistics) {
                    statistics.relocalisations, statistics.navigation_errors);
 }
 
+// What it was at most.
+std::string describe_dirt(const MissionStatistics& statistics) {
+  Health health;
+  health.hidden_share = statistics.most_hidden;
+  health.hidden_share_right = statistics.most_hidden_right;
+  return note_on_dirt(health) + formatted(" (at most; %d frames)", statistics.frames_with_dirt);
+}
+
 // Empty where the mission did not come to such places.
 std::string keyframe_row(const char* places, const KeyframeRate& rate) {
   if (rate.minutes <= 0.0) return "";
@@ -119,6 +127,7 @@ std::string to_text(const MissionStatistics& statistics) {
   text += keyframe_row("known", statistics.in_known_places);
   text += keyframe_row("changed or new", statistics.in_changed_or_new);
   text += row("inliers", describe_inliers(statistics));
+  if (statistics.frames_with_dirt > 0) text += row("dirt", describe_dirt(statistics));
   return text;
 }
 
@@ -148,7 +157,10 @@ Json to_json(const MissionStatistics& statistics) {
           {"in_changed_or_new_places", to_json(statistics.in_changed_or_new)},
           {"offline_inliers_median", statistics.offline_inliers.median},
           {"online_inliers_median", statistics.online_inliers.median},
-          {"most_suspended", statistics.most_suspended}};
+          {"most_suspended", statistics.most_suspended},
+          {"frames_with_dirt", statistics.frames_with_dirt},
+          {"most_hidden", statistics.most_hidden},
+          {"most_hidden_right", statistics.most_hidden_right}};
 }
 
 Json to_json(const MissionErrors& errors) {

@@ -76,6 +76,16 @@ TEST(MissionText, TellsKeyframesOfPlacesTheMissionCameTo) {
   EXPECT_THAT(text, HasSubstr("inliers      offline median 120, online 30; up to 17 offline points suspended\n"));
 }
 
+TEST(MissionText, TellsOfDirtWhereThereWasAny) {
+  EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("dirt")));
+  MissionStatistics statistics = small_mission();
+  statistics.frames_with_dirt = 40;
+  statistics.most_hidden = 0.12;
+  EXPECT_THAT(to_text(statistics),
+              HasSubstr("dirt         dirt hides 12 % of the left image: clean the lens (at most; 40 frames)\n"));
+  EXPECT_EQ(to_json(statistics).at("most_hidden"), 0.12);
+}
+
 TEST(MissionText, TellsErrorsInTheMapsFrameAndOfTrustedFramesApart) {
   const std::string text = to_text(small_errors());
   EXPECT_THAT(text, HasSubstr("truth        the map alone is aligned to it, by 12 poses of the run that made it\n"));

@@ -29,6 +29,12 @@ void count_events(const FrameReport& report, MissionStatistics& statistics) {
   statistics.navigation_errors += report.has(SessionEvent::navigation_error) ? 1 : 0;
 }
 
+void note_dirt(const Health& health, MissionStatistics& statistics) {
+  statistics.most_hidden = std::max(statistics.most_hidden, health.hidden_share);
+  statistics.most_hidden_right = std::max(statistics.most_hidden_right, health.hidden_share_right);
+  if (health.hidden_share > 0.0 || health.hidden_share_right > 0.0) ++statistics.frames_with_dirt;
+}
+
 std::vector<std::pair<Doubt, int>> count_doubts(const std::vector<MappedFrame>& frames) {
   std::map<Doubt, int> counts;
   for (const MappedFrame& frame : frames) {
@@ -72,6 +78,7 @@ MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int 
     count_verdict(report.health, statistics);
     count_events(report, statistics);
     statistics.most_suspended = std::max(statistics.most_suspended, report.health.suspended);
+    note_dirt(report.health, statistics);
     if (!report.map_from_body) continue;
     if (!statistics.seconds_to_first_pose) {
       statistics.seconds_to_first_pose = to_seconds(frame.time - frames.front().time);

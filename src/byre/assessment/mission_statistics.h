@@ -34,6 +34,9 @@ struct MissionStatistics {
   ErrorStatistics offline_inliers;  // offline inliers of frames with a pose
   ErrorStatistics online_inliers;   // online inliers of frames with a pose
   int most_suspended = 0;           // most offline points suspended at a time
+  double most_hidden = 0.0;         // most of a left image that dirt hid, as a share
+  double most_hidden_right = 0.0;   // most of a right image that it hid, as a share
+  int frames_with_dirt = 0;         // frames with any of either image hidden
 };
 
 // So many frames are missing that what is said of the others does not stand for the mission.

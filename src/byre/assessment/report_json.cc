@@ -39,6 +39,8 @@ Json health_json(const Health& health) {
           {"distance_since_offline_m", health.distance_since_offline},
           {"seconds_since_offline", health.seconds_since_offline},
           {"focal_error_percent", 100.0 * health.focal_error},
+          {"hidden_share", health.hidden_share},
+          {"hidden_share_right", health.hidden_share_right},
           {"image", condition_json(health.image)}};
 }
 

@@ -39,6 +39,8 @@ std::vector<ros::KeyValue> values_of(const FrameReport& report) {
           number("rotation_sigma_rad", health.rotation_sigma),
           number("distance_since_offline_m", health.distance_since_offline),
           number("seconds_since_offline", health.seconds_since_offline),
+          number("hidden_share", health.hidden_share),
+          number("hidden_share_right", health.hidden_share_right),
           number("track_seconds", report.track_seconds)};
 }
 

@@ -66,8 +66,10 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   if (sees_enough(mission_)) rival_.forget();
   const std::vector<PointId> due = mission_.due_again(seen.offline_around);
   if (!due.empty()) {
+    TrackOptions options = options_.track;
+    options.hidden = seen.hidden;
     mission_.note_again(
-        look_for_points(seen.frame, track.tracked.camera_from_world, seen.rig, mapper.map(), due, options_.track));
+        look_for_points(seen.frame, track.tracked.camera_from_world, seen.rig, mapper.map(), due, options));
   }
   if (now == before || now == OfflineView::changed) return {};
   if (now == OfflineView::off_the_map) return {SessionEvent::left_mapped_area};
@@ -92,10 +94,10 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   // nothing.
   const bool is_way_in_doubt = whereabouts.confirmation().is_proven() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
-                 way = is_way_in_doubt ? std::nullopt : sought.way, offline = offline_,
+                 way = is_way_in_doubt ? std::nullopt : sought.way, hidden = sought.hidden, offline = offline_,
                  options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds},
                  tracked_share = mission_.seen_share()] {
-    PlaceSearch search = search_place(*offline, {frame, rig, hint, way}, options);
+    PlaceSearch search = search_place(*offline, {frame, rig, hint, way, hidden}, options);
     if (search.found) search.found->tracked_share = tracked_share;
     return search;
   });

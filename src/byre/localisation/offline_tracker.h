@@ -59,6 +59,7 @@ class OfflineTracker {
     double step = 0.0;  // metres from the frame before
     bool image_is_faulty = false;
     const std::vector<PointId>& offline_around;  // suspended ones included
+    const HiddenCells& hidden;                   // where no points are asked for
   };
   // What a frame, or a place found, means for the session.
   struct Consequence {

@@ -41,8 +41,8 @@ class OnAnOfflineMap : public ::testing::Test {
     ASSERT_TRUE(whereabouts_.confirmation().is_believed());
   }
   OfflineTracker::Consequence note(std::size_t frame, int inliers) {
-    return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}}, whereabouts_,
-                         mapper_);
+    return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
+                         whereabouts_, mapper_);
   }
   struct Way {
     std::size_t begin = 0;    // its first frame
@@ -56,7 +56,7 @@ class OnAnOfflineMap : public ::testing::Test {
       const HybridTrack track = track_of(i, way.inliers, 1000);
       const bool is_find = way.is_by_hint && i == way.begin;
       whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find}, mission_.rig, mapper_.map());
-      tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
+      tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}}, whereabouts_, mapper_);
       EXPECT_NE(whereabouts_.confirmation().is_proven(), way.is_by_hint) << i;
       FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
       rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
@@ -160,7 +160,7 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
 TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   note_found(0);
   const HybridTrack track = track_of(4, 70, 1000);
-  tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}}, whereabouts_, mapper_);
+  tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}, {}}, whereabouts_, mapper_);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found);

@@ -28,7 +28,9 @@ PoseHint surroundings_of(const PoseHint& hint) {
 
 BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
                                 const PlaceSearchOptions& options) {
-  const auto& [frame, rig, hint, way] = sought;
+  const auto& [frame, rig, hint, way, hidden] = sought;
+  LocaliseOptions localise_options = options.localise;
+  localise_options.hidden = hidden;
   const Map nothing_online(Origin::online);
   const MapView map(&offline.map(), nothing_online);
   const PlaceBounds bounds(offline, options.bounds);
@@ -46,7 +48,7 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
     };
   }
   Localisation& found = result.found;
-  found = localise(frame, rig, map, offline.places(), options.localise, filter);
+  found = localise(frame, rig, map, offline.places(), localise_options, filter);
   if (!hint || !found.tracked) return result;
   if (is_near(*hint, inverse(found.tracked->camera_from_world) * camera_from_body)) return result;
   found.tracked.reset();

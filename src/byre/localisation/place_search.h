@@ -21,6 +21,7 @@ struct SoughtFrame {
   const Rig& rig;
   std::optional<PoseHint> hint{};         // where alone it is looked for; empty: everywhere
   std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
+  HiddenCells hidden{};                   // where no points are asked for
 };
 
 // The frame in the offline map alone, but not where the robot cannot be.

@@ -296,13 +296,14 @@ void Mapper::start_job() {
     if (!is_offline(keyframe)) online.push_back(keyframe.id);
   }
   add_motions(window, motions_between(online));
-  local_.start(
-      [window = std::move(window), options = options_.mapping, to_stow = std::exchange(to_stow_, {}), file = stowed_] {
-        LocalOutcome outcome{extend_map(window, options), to_stow};
-        for (KeyframeFeatures& of : outcome.stowed) of.stowed = with_stowed_patches(of.features, *file);
-        file->forget_looks();
-        return outcome;
-      });
+  MappingOptions mapping = options_.mapping;
+  mapping.hidden = hidden_;
+  local_.start([window = std::move(window), options = mapping, to_stow = std::exchange(to_stow_, {}), file = stowed_] {
+    LocalOutcome outcome{extend_map(window, options), to_stow};
+    for (KeyframeFeatures& of : outcome.stowed) of.stowed = with_stowed_patches(of.features, *file);
+    file->forget_looks();
+    return outcome;
+  });
 }
 
 void Mapper::index_place(KeyframeId id) {

@@ -107,6 +107,7 @@ class Mapper {
   bool correct_online();                                         // whether a waiting correction was carried out
   void start_job();                                              // job for pending keyframes
 
+  void note_hidden(const HiddenCells& hidden) { hidden_ = hidden; }  // see MappingOptions
   void hurry() { global_.hurry(); }  // a correction of the whole map ends soon, with what it has reached
 
   // After the last frame. What jobs still have to give, then the last steps, with those changes of length that poses
@@ -151,6 +152,7 @@ class Mapper {
   std::optional<MonocularInitialiser> initialiser_;  // until there is a map, with a rig without a baseline
   Pose told_reference_;                              // camera_from_world of its reference frame, as it was told
   std::optional<Calibrator> calibrator_;
+  HiddenCells hidden_;
   Map online_{Origin::online};
   int revision_ = 0;
   Submaps submaps_;

@@ -4,6 +4,8 @@
 #include "byre/assessment/ros_report.h"
 #include "byre/input/formatted.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -41,6 +43,10 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   const std::string advice = advice_for(health.doubt);
   status.message = verdict_and_doubt(health);
   if (!advice.empty()) status.message += "; " + advice;
+  if (const std::string dirt = note_on_dirt(health); !dirt.empty()) {
+    status.level = std::max(status.level, ros::DiagnosticStatus::kWarn);
+    status.message += "; " + dirt;
+  }
   status.values = {{"verdict", std::string(to_string(health.verdict))},
                    {"doubt", std::string(to_string(health.doubt))},
                    {"state", std::string(to_string(report.state))},

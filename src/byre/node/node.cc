@@ -245,6 +245,10 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
 
 void Node::note_events(const FrameReport& report) {
   for (const SessionEvent event : report.events) {
+    if (event == SessionEvent::dirt_found) {
+      log_(LogLevel::warning, note_on_dirt(report.health));
+      continue;
+    }
     log_(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
   }
   if (last_report_ && last_report_->health.verdict == report.health.verdict) return;

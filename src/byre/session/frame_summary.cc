@@ -112,6 +112,8 @@ Health health_of(const FrameSummary& summary, const Matrix6& covariance, const H
   const Frame& frame = summary.input.frame;
   Health health = summary.track ? measured(*summary.track, summary.rig) : Health{};
   if (summary.mission) health = summary.mission->added_to(health, frame.time, summary.first_frame);
+  health.hidden_share = summary.lens.hidden().share();
+  health.hidden_share_right = summary.lens.hidden_right().share();
   health.image = frame.condition;
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());

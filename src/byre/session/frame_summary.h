@@ -5,6 +5,7 @@
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/mapper.h"
 #include "byre/slam/health.h"
+#include "byre/slam/lens_watch.h"
 
 namespace byre {
 
@@ -24,6 +25,7 @@ struct FrameSummary {
   const Whereabouts& whereabouts;
   const Mapper& mapper;
   const OfflineTracker* mission = nullptr;  // on an offline map
+  const LensWatch& lens;
   Timestamp first_frame{};
   Doubt refused_place = Doubt::none;  // see FrameReport
 

@@ -83,6 +83,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   report.keyframe_added = located.begins_submap;
   if (located.track) {
     remember(input, located, report);
+    look_for_dirt(input, located, report);
     extend_map(input, *located.track, report);
   } else if (located.begins_submap) {
     const bool is_first = mapper_.submaps().size() == 1;
@@ -96,8 +97,15 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
   const bool is_believed = whereabouts_.confirmation().is_believed();
-  const FrameSummary summary{input,   located.track ? &*located.track : nullptr, rig_,          whereabouts_,
-                             mapper_, mission_ ? &*mission_ : nullptr,           *first_frame_, report.refused_place};
+  const FrameSummary summary{input,
+                             located.track ? &*located.track : nullptr,
+                             rig_,
+                             whereabouts_,
+                             mapper_,
+                             mission_ ? &*mission_ : nullptr,
+                             lens_watch_,
+                             *first_frame_,
+                             report.refused_place};
   state_ = next_state(state_, {whereabouts_.has_pose(), is_believed, seconds_without}, options_.state);
   report = described(std::move(report), summary);
   report.state = state_;
@@ -204,7 +212,8 @@ Session::Located Session::locate(const InputFrame& input) {
                              whereabouts_.confirmation().is_proven(),
                              trusted_place_.way_from_there(),
                              mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr,
-                             input.cuts.online_points};
+                             input.cuts.online_points,
+                             lens_watch_.hidden()};
   const bool can_search = mission_ || mapper_.places();
   const bool is_led_back = can_search && whereabouts_.may_be_led_back();
   Located located;
@@ -275,9 +284,10 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
     shutter_.note(input.frame, rig_, track.tracked, map(), whereabouts_.motion().velocity());
   }
   if (mission_ && is_registered(mapper_)) {
-    const OfflineTracker::Consequence consequence = mission_->note(
-        {input.frame, track, rig_, progress.step, input.fault != ImageFault::none, tracker_.offline_points()},
-        whereabouts_, mapper_);
+    const OfflineTracker::Consequence consequence =
+        mission_->note({input.frame, track, rig_, progress.step, input.fault != ImageFault::none,
+                        tracker_.offline_points(), lens_watch_.hidden()},
+                       whereabouts_, mapper_);
     report.events.insert(report.events.end(), consequence.events.begin(), consequence.events.end());
     if (consequence.correction) mapper_.correct_later(*consequence.correction);
   }
@@ -287,6 +297,15 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   } else if (has_lost_its_way(state_)) {
     report.events.push_back(SessionEvent::relocalised);
   }
+}
+
+// Where the pose is known by what is seen all over the image.
+void Session::look_for_dirt(const InputFrame& input, const Located& located, FrameReport& report) {
+  const bool is_known = whereabouts_.confirmation().is_believed();
+  if (located.from_nothing || !is_known || input.fault != ImageFault::none || located.track->maps_disagree) return;
+  lens_watch_.note(input.frame, located.track->tracked, rig_, map());
+  mapper_.note_hidden(lens_watch_.hidden());
+  if (const auto news = lens_watch_.news()) report.events.push_back(*news);
 }
 
 // A keyframe is made where one is needed; loops and places are looked for with every tracked frame.
@@ -301,7 +320,8 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
   }
   if (look_for_loop(input.frame, report.keyframe_added)) report.events.push_back(SessionEvent::loop_found);
   if (mission_)
-    mission_->search_beside({input.frame, rig_, hint_.get(), trusted_place_.way_from_there()}, whereabouts_, mapper_);
+    mission_->search_beside({input.frame, rig_, hint_.get(), trusted_place_.way_from_there(), lens_watch_.hidden()},
+                            whereabouts_, mapper_);
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) {

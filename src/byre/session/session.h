@@ -14,6 +14,7 @@
 #include "byre/slam/frame_budget.h"
 #include "byre/slam/health.h"
 #include "byre/slam/input_watch.h"
+#include "byre/slam/lens_watch.h"
 #include "byre/slam/state.h"
 #include "byre/workers/executor.h"
 
@@ -132,6 +133,7 @@ class Session {
   bool may_begin_submap(const InputFrame& input) const;
   Located begin_submap(const Frame& frame);
   void remember(const InputFrame& input, const Located& located, FrameReport& report);
+  void look_for_dirt(const InputFrame& input, const Located& located, FrameReport& report);
   void extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report);
   bool may_add_keyframe(const InputFrame& input, const HybridTrack& track);
   bool look_for_loop(const Frame& frame, bool keyframe_added);
@@ -149,6 +151,7 @@ class Session {
   Whereabouts whereabouts_;
   KeyframeWatch keyframe_watch_;
   InputWatch input_watch_;
+  LensWatch lens_watch_;
   Shutter shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;

@@ -73,6 +73,22 @@ int count_trusted(const std::vector<FrameReport>& reports) {
       std::ranges::count(reports, Verdict::trusted, [](const FrameReport& report) { return report.health.verdict; }));
 }
 
+// What is seen through a lens with blots on it.
+Frame soiled(const Frame& frame) {
+  const auto is_behind = [](const Eigen::Vector2f& pixel) {
+    const bool is_in_middle = pixel.x() > 250.0f && pixel.x() < 450.0f && pixel.y() > 150.0f && pixel.y() < 330.0f;
+    return is_in_middle || (pixel.x() < 180.0f && pixel.y() < 200.0f);
+  };
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  for (int i = 0; i < frame.features->size(); ++i) {
+    if (is_behind(frame.features->keypoint(i).pixel)) continue;
+    keypoints.push_back(frame.features->keypoint(i));
+    descriptors.push_back(frame.features->descriptor(i));
+  }
+  return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
+}
+
 // The largest error of a pose that was reported as trusted, metres; the map's frame is the truth's.
 double worst_trusted(const std::vector<FrameReport>& reports, const Trajectory& truth) {
   double worst = 0.0;
@@ -353,6 +369,34 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   const auto reports = reports_of(session, mission.frames);
   EXPECT_GT(reports.back().health.suspended, 10);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, TellsOfDirtAndMissesNoPointsBehindItUntilItIsWipedOff) {
+  constexpr std::size_t kWiped = 2 * kLapFrames, kEnd = 3 * kLapFrames;
+  const SimulatedMission mission = circling(3.0, 2);
+  Session session = session_on(mapped(1.0));
+  std::vector<Frame> frames = mission.frames;
+  for (std::size_t i = 0; i < kWiped; ++i) frames[i] = soiled(frames[i]);
+  const auto reports = reports_of(session, frames);
+
+  const Health& dirty = reports[kWiped - 1].health;
+  EXPECT_THAT(dirty.hidden_share, testing::AllOf(testing::Gt(0.08), testing::Lt(0.2)));
+  EXPECT_THAT(note_on_dirt(dirty), testing::MatchesRegex("dirt hides [0-9]+ % of the left image: clean the lens"));
+  EXPECT_LT(dirty.offline_expected, 0.95 * reports[kEnd - 1].health.offline_expected);
+  EXPECT_EQ(dirty.verdict, Verdict::trusted);
+  EXPECT_EQ(dirty.suspended, 0);
+  EXPECT_GE(count(reports, SessionEvent::dirt_found), 1);
+
+  EXPECT_EQ(reports[kEnd - 1].health.hidden_share, 0.0);
+  EXPECT_EQ(note_on_dirt(reports[kEnd - 1].health), "");
+  EXPECT_EQ(count(reports, SessionEvent::dirt_gone), 1);
+  EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, FindsNoDirtOnACleanLens) {
+  const SimulatedMission mission = circling(2.0, 2);
+  Session session = session_on(mapped(1.0));
+  for (const FrameReport& report : reports_of(session, mission.frames)) ASSERT_EQ(report.health.hidden_share, 0.0);
 }
 
 TEST(Mission, TellsANavigationErrorOnceAndGoesOnSearching) {

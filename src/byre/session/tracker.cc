@@ -82,8 +82,10 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
                                                const HybridLimits& limits) {
   const std::vector<PointId>& online = online_points(scene);
   const MapView map = scene.mapper.map();
+  TrackOptions options = options_.track;
+  options.hidden = scene.hidden;
   if (!scene.mission) {
-    auto tracked = byre::track(frame, predicted, scene.rig, map, online, options_.track);
+    auto tracked = byre::track(frame, predicted, scene.rig, map, online, options);
     return tracked ? std::optional(found_in(Origin::online, *std::move(tracked))) : std::nullopt;
   }
   candidates_.clear();
@@ -91,7 +93,7 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     scene.mission->append_candidates(offline_points_around(predicted, *scene.mission), candidates_);
   }
   candidates_.insert(candidates_.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, scene.rig, map, candidates_, options_.track, limits, scene.weigh_focal_lengths);
+  return track_hybrid(frame, predicted, scene.rig, map, candidates_, options, limits, scene.weigh_focal_lengths);
 }
 
 std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,
@@ -119,14 +121,17 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
 Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
   Find result;
   if (scene.mission) {
-    const auto [found, refused] = localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way},
-                                              {options_.relocalise, options_.mission.bounds});
+    const auto [found, refused] =
+        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way, scene.hidden},
+                    {options_.relocalise, options_.mission.bounds});
     if (found.tracked) return {found_in(Origin::offline, *found.tracked)};
     result.refused = refused;
   }
   const PlaceIndex* const places = scene.mapper.places();
   if (!places || scene.mapper.online().keyframe_count() == 0) return result;
-  const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options_.relocalise);
+  LocaliseOptions options = options_.relocalise;
+  options.hidden = scene.hidden;
+  const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options);
   if (found.tracked && !is_like_another_place(*found.tracked)) result.track = found_in(Origin::online, *found.tracked);
   return result;
 }

@@ -35,6 +35,7 @@ class Tracker {
     std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
     const DrivenGround* ground = nullptr;   // ground that the body is held to; nullptr for none
     bool is_pressed = false;                // few online points are looked for, see FrameCuts
+    HiddenCells hidden{};                   // where no points are asked for
   };
   // The last frame that had a pose.
   struct LastPose {

@@ -252,7 +252,7 @@ MapWindow outline_of(const MapWindow& window) {
   for (const WindowKeyframe& entry : window.keyframes) {
     const Keyframe& keyframe = entry.keyframe;
     outline.keyframes.push_back({entry.id,
-                                 {{.time = keyframe.frame.time},
+                                 {{.time = keyframe.frame.time, .features = nullptr},
                                   keyframe.rig,
                                   keyframe.recording,
                                   keyframe.camera_from_world,

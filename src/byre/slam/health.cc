@@ -1,9 +1,13 @@
 #include "byre/slam/health.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace byre {
 namespace {
 
 constexpr int kManyOfflinePoints = 80;     // offline points in view, from which some must be found
+constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; what is left may be one thing that has moved
 constexpr double kMinOfflineShare = 0.04;  // share of those; fewer agree by chance where a building repeats itself
 
 double drift_of(const Health& health, const HealthOptions& options) {
@@ -70,6 +74,7 @@ Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, cons
   if (health.offline_inliers + health.online_inliers < options.min_points) {
     return evidence.image_fault == ImageFault::none ? Doubt::few_points : Doubt::blinded;
   }
+  if (health.hidden_share > kMostHidden) return Doubt::dirty;
   if (health.spread < options.min_spread) return Doubt::clustered;
   if (health.rotation_sigma > options.max_rotation_sigma) return Doubt::uncertain;
   return misses_offline_points(health, options) ? Doubt::few_offline_points : Doubt::none;
@@ -123,6 +128,8 @@ std::string_view to_string(Doubt doubt) {
       return "calibration does not fit the map";
     case Doubt::bridged:
       return "bridged by wheels or a gyroscope";
+    case Doubt::dirty:
+      return "dirt hides most of the image";
     case Doubt::off_the_plane:
       return "place found is off the driving plane";
     case Doubt::in_wall:
@@ -133,6 +140,19 @@ std::string_view to_string(Doubt doubt) {
       return "place found is behind a wall";
   }
   return "";
+}
+
+std::string note_on_dirt(const Health& health) {
+  const auto hidden = [](double share, const char* image) {
+    return std::to_string(std::max(1L, std::lround(100.0 * share))) + " % of the " + image + " image";
+  };
+  const bool is_left = health.hidden_share > 0.0, is_right = health.hidden_share_right > 0.0;
+  if (!is_left && !is_right) return "";
+  std::string text = "dirt hides ";
+  if (is_left) text += hidden(health.hidden_share, "left");
+  if (is_left && is_right) text += " and ";
+  if (is_right) text += hidden(health.hidden_share_right, "right");
+  return text + (is_left && is_right ? ": clean the lenses" : ": clean the lens");
 }
 
 double position_error(const Health& measured, const HealthOptions& options) {

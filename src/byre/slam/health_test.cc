@@ -113,6 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
                   Doubt::blinded},
         Judgement{"points in a corner", with([](Health& h) { h.spread = 0.01; }), kPose, Verdict::degraded,
                   Doubt::clustered},
+        Judgement{"a third of the image behind dirt", with([](Health& h) { h.hidden_share = 0.33; }), kPose,
+                  Verdict::trusted, Doubt::none},
+        Judgement{"most of the image behind dirt", with([](Health& h) { h.hidden_share = 0.7; }), kPose,
+                  Verdict::degraded, Doubt::dirty},
         Judgement{"a place that only resembles another", with([](Health& h) {
                     h.offline_expected = 1800;
                     h.offline_inliers = 50;
@@ -191,6 +195,17 @@ INSTANTIATE_TEST_SUITE_P(
                   {.pose_found = true, .is_calibration_open = true},
                   Verdict::degraded,
                   Doubt::unconfirmed}));
+
+TEST(NoteOnDirt, TellsWhichLensesToClean) {
+  Health health;
+  EXPECT_EQ(note_on_dirt(health), "");
+  health.hidden_share = 0.1187;
+  EXPECT_EQ(note_on_dirt(health), "dirt hides 12 % of the left image: clean the lens");
+  health.hidden_share_right = 0.003;
+  EXPECT_EQ(note_on_dirt(health), "dirt hides 12 % of the left image and 1 % of the right image: clean the lenses");
+  health.hidden_share = 0.0;
+  EXPECT_EQ(note_on_dirt(health), "dirt hides 1 % of the right image: clean the lens");
+}
 
 }  // namespace
 }  // namespace byre

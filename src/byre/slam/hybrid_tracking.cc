@@ -98,8 +98,9 @@ std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::
 
 void project(const Query& query, const ByMap<Pose>& camera_from_world, ByMap<std::vector<ExpectedPoint>>& expected) {
   const ByMap<std::vector<PointId>>& points = query.memory.points;
-  project_points(query.map, points.offline, camera_from_world.offline, query.rig, expected.offline);
-  project_points(query.map, points.online, camera_from_world.online, query.rig, expected.online);
+  const HiddenCells& hidden = query.options.hidden;
+  project_visible(query.map, points.offline, camera_from_world.offline, query.rig, hidden, expected.offline);
+  project_visible(query.map, points.online, camera_from_world.online, query.rig, hidden, expected.online);
 }
 
 // Rows of columns and fences look the same a bay farther on, where offline points fit a pose as well.
@@ -391,7 +392,7 @@ PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, 
                              const std::vector<PointId>& points, const TrackOptions& options) {
   const Query query{frame, rig, map, options};
   Found& found = query.memory.found;
-  project_points(map, points, camera_from_world, rig, found.expected.offline);
+  project_visible(map, points, camera_from_world, rig, options.hidden, found.expected.offline);
   match_and_measure(query, found.expected.offline, camera_from_world, found.measured.offline);
   PartedPoints& parted = query.memory.parted;
   part_by_agreement(camera_from_world, rig, found.measured.offline, 1.0, parted);

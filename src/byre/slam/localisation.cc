@@ -21,7 +21,11 @@ constexpr int kMaxDraws = 2000;         // draws of three points
 constexpr double kMaxMatchError = 6.0;  // pixels, largest error of such a match
 constexpr double kRivalShare = 0.7;     // share of the best place's inliers with which a second place is a rival
 // The search around a first pose, which is a guess of another kind than one from motion.
-constexpr TrackOptions kAroundFirstPose{};
+TrackOptions around_first_pose(const LocaliseOptions& options) {
+  TrackOptions around;
+  around.hidden = options.hidden;
+  return around;
+}
 
 using Failure = LocalisationFailure;
 
@@ -60,7 +64,7 @@ std::optional<AbsolutePose> pose_from_matches(const FrameQuery& query, const std
 std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_from_world, KeyframeId place) {
   const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
     return track(query.frame, predicted, query.rig, query.map, local_points(query.map, reference, kKeyframesOfPlace),
-                 kAroundFirstPose);
+                 around_first_pose(query.options));
   };
   const std::optional<TrackedFrame> first = track_near(camera_from_world, place);
   if (!first || first->reference == place) return first;

@@ -36,6 +36,7 @@ struct LocaliseOptions {
   double min_spread = 0.05;          // deviation of the inliers where they spread least over the image's diagonal
   double max_position_sigma = 0.02;  // position's sigma over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
+  HiddenCells hidden{};              // where no points are asked for
 };
 
 struct Localisation {

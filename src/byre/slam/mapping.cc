@@ -12,7 +12,7 @@ MapDelta extend_map(const MapWindow& window, const MappingOptions& options) {
     triangulate_new_points(extended, keyframe, options);
   }
   adjust_bundle(extended, options);
-  remove_weak_points(extended, extended.keyframes.front().id);
+  remove_weak_points(extended, extended.keyframes.front().id, options.hidden);
   refresh_points(extended);
   remove_redundant_keyframes(extended, options);
   return difference(window, extended);

@@ -2,6 +2,7 @@
 
 #include "byre/optimise/bundle_adjustment.h"
 #include "byre/slam/delta.h"
+#include "byre/slam/hidden_cells.h"
 
 namespace byre {
 
@@ -16,6 +17,7 @@ struct MappingOptions {
   double offline_weight = 2.0;            // weight of sightings of offline points in bundle adjustment; others have 1
   int first_bundle_iterations = 5;        // iterations before outliers are taken out
   int second_bundle_iterations = 8;       // iterations after outliers were taken out
+  HiddenCells hidden{};                   // cells of the newest keyframe in which points are not missed
 };
 
 // One mapping job: new points between the new keyframes and their neighbours, online and offline, points seen twice

@@ -50,7 +50,8 @@ void refresh_covariances(MapWindow& window, const MappingOptions& options);
 void refresh_points(MapWindow& window);
 
 // Points that keyframes made since should have confirmed and did not; newest: the keyframe by which age is told.
-void remove_weak_points(MapWindow& window, KeyframeId newest);
+// hidden: of the window's first keyframe; what lies behind dirt there waits until it comes out.
+void remove_weak_points(MapWindow& window, KeyframeId newest, const HiddenCells& hidden = {});
 
 // Keyframes that add nothing: nearly all of their points are offline, or seen by three other online keyframes at least.
 void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options);

@@ -3,6 +3,7 @@
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/mapping_steps.h"
 #include "byre/slam/mission_scene.h"
 
 #include <map>
@@ -236,6 +237,29 @@ TEST_F(MappingOnNoisyFeatures, ForgetsOldPointsThatNoOtherKeyframeConfirmed) {
   }
   EXPECT_LE(old_left, 0.1 * old_points);  // chance may confirm one
   EXPECT_GE(new_left, 0.9 * new_points);
+}
+
+TEST_F(MappingOnNoisyFeatures, WaitsForOldPointsThatDirtHidesInTheNewestKeyframe) {
+  const std::uint32_t next = map_.point_ids().back().number + 1;
+  const int old_points = add_stereo_points(map_, {Origin::online, 14});
+  MapWindow window = cut_window(MapView(nullptr, map_), {kNewest}, {});
+  HiddenCells hidden;
+  for (std::size_t cell = 0; cell < HiddenCells::kCells; ++cell) hidden.set(cell, true);
+  remove_weak_points(window, kNewest, hidden);
+  const WindowKeyframe& newest = window.keyframes.front();
+  int waiting = 0, in_view = 0;
+  for (const WindowPoint& point : window.points) {
+    if (!point.id || point.id->number < next || point.id->number >= next + static_cast<std::uint32_t>(old_points))
+      continue;
+    const Eigen::Vector3d in_camera = newest.keyframe.camera_from_world * point.point.position_in_world;
+    const Rig& rig = window.rig_of(newest);
+    const bool is_in_view = in_camera.z() > 0.0 && rig.contains(rig.project(in_camera).head<2>());
+    in_view += is_in_view ? 1 : 0;
+    waiting += is_in_view && !point.removed ? 1 : 0;
+    EXPECT_TRUE(is_in_view || point.removed);
+  }
+  EXPECT_GT(in_view, 0);
+  EXPECT_EQ(waiting, in_view);
 }
 
 TEST_F(MappingOnNoisyFeatures, RefreshesThePointsItSees) {

@@ -113,6 +113,17 @@ void remove_keyframe(MapWindow& window, int index) {
   }
 }
 
+// Whether dirt hides the point in the window's first keyframe.
+bool is_behind_dirt(const MapWindow& window, const WindowPoint& point, const HiddenCells& hidden) {
+  if (!hidden.any()) return false;
+  const WindowKeyframe& keyframe = window.keyframes.front();
+  const Eigen::Vector3d in_camera = keyframe.keyframe.camera_from_world * point.point.position_in_world;
+  if (in_camera.z() <= 0.0) return false;
+  const Rig& rig = window.rig_of(keyframe);
+  const Eigen::Vector2d pixel = rig.project(in_camera).head<2>();
+  return rig.contains(pixel) && hidden.hides(pixel, rig);
+}
+
 }  // namespace
 
 void refresh_points(MapWindow& window) {
@@ -124,14 +135,14 @@ void refresh_points(MapWindow& window) {
   }
 }
 
-void remove_weak_points(MapWindow& window, KeyframeId newest) {
+void remove_weak_points(MapWindow& window, KeyframeId newest, const HiddenCells& hidden) {
   constexpr std::uint32_t kKeyframesToConfirm = 3;
   for (int i = 0; i < static_cast<int>(window.points.size()); ++i) {
     const WindowPoint& point = window.points[static_cast<std::size_t>(i)];
     if (point.removed || is_offline(point)) continue;
     const bool had_its_chance = newest.number >= point.point.reference.keyframe.number + kKeyframesToConfirm;
     const bool alone = !point.id && times_seen(point) < 2;  // one made here, and refuted at once
-    const bool unconfirmed = had_its_chance && times_seen(point) < 2;
+    const bool unconfirmed = had_its_chance && times_seen(point) < 2 && !is_behind_dirt(window, point, hidden);
     if (alone || unconfirmed || is_undetermined(window, point)) remove_point(window, i);
   }
 }

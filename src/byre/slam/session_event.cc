@@ -34,6 +34,10 @@ std::string_view to_string(SessionEvent event) {
       return "map corrected";
     case SessionEvent::recalibrated:
       return "recalibrated";
+    case SessionEvent::dirt_found:
+      return "dirt on the lens";
+    case SessionEvent::dirt_gone:
+      return "lens is clean";
   }
   return "";
 }

@@ -103,14 +103,14 @@ std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_came
                                   const TrackOptions& options) {
   thread_local std::vector<ExpectedPoint> expected;  // memory, as the next
   thread_local std::vector<GuidedMatch> matches;
-  project_points(map, candidates, predicted_camera_from_world, rig, expected);
+  project_visible(map, candidates, predicted_camera_from_world, rig, options.hidden, expected);
   std::optional<Pose> first;
   for (const float radius : {options.search_radius, options.wide_radius}) {
     if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, expected, radius, options);
   }
   if (!first) return std::nullopt;
 
-  project_points(map, candidates, *first, rig, expected);
+  project_visible(map, candidates, *first, rig, options.hidden, expected);
   match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f}, matches);
   auto tracked = refine_on_matches(frame, *first, rig, map, matches, options);
   if (tracked) tracked->expected = static_cast<int>(expected.size());

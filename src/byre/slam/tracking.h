@@ -2,6 +2,7 @@
 
 #include "byre/map/map_view.h"
 #include "byre/optimise/pose_refinement.h"
+#include "byre/slam/hidden_cells.h"
 
 #include <cstdint>
 #include <optional>
@@ -53,6 +54,7 @@ struct TrackOptions {
   int min_inliers = 25;
   OfflinePolicy offline_policy = OfflinePolicy::first;
   double offline_weight = 2.0;  // weight of a measured offline point, against 1 of an online one
+  HiddenCells hidden{};         // where no points are asked for
 };
 
 // Points seen by a keyframe and by those most covisible with it; ascending, bounded whatever the map's size.

@@ -45,6 +45,14 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
   return observation;
 }
 
+void project_visible(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
+                     const Rig& rig, const HiddenCells& hidden, std::vector<ExpectedPoint>& expected) {
+  project_points(map, points, camera_from_world, rig, expected);
+  if (!hidden.any()) return;
+  std::erase_if(expected,
+                [&](const ExpectedPoint& point) { return hidden.hides(point.projection.predicted.head<2>(), rig); });
+}
+
 void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                      const std::vector<GuidedMatch>& matches, MeasuredPoints& measured) {
   const CameraView view{*frame.features, rig, camera_from_world};

@@ -16,6 +16,10 @@ inline constexpr float kNarrowRadius = 4.0f;  // pixels at octave 0, about where
 PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
                                  double disparity_sigma);
 
+// As project_points(), but for points that are hidden. Refills `expected`.
+void project_visible(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
+                     const Rig& rig, const HiddenCells& hidden, std::vector<ExpectedPoint>& expected);
+
 // Matches measured in the image: what each says of the pose, and what it becomes when it is an inlier; in step.
 struct MeasuredPoints {
   std::vector<PoseObservation> observations;

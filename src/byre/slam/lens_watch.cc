@@ -1,0 +1,100 @@
+#include "byre/slam/lens_watch.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kEvery = 0.19;       // seconds between frames that are looked at
+constexpr double kRemembered = 3.0;   // seconds since a point was seen
+constexpr int kMinSeen = 30;          // points of a frame that tells
+constexpr float kFreeBorder = 19.0f;  // octave pixels along the image's rim in which there are no corners
+constexpr SearchOptions kBehindDirt{4.0f, 80, 0.9f};
+
+float cell_size(const Rig& rig) {
+  return std::max(static_cast<float>(rig.width) / HiddenCells::kColumns,
+                  static_cast<float>(rig.height) / HiddenCells::kRows);
+}
+
+bool is_inside(const Eigen::Vector2d& pixel, double border, const Rig& rig) {
+  return std::min(pixel.x(), rig.width - 1 - pixel.x()) > border &&
+         std::min(pixel.y(), rig.height - 1 - pixel.y()) > border;
+}
+
+// Pixels along the rim that are free of corners of that octave, or of one beside it.
+double border_of(const Projection& projection) {
+  const int octave = std::min(projection.octave + 1, kOctaves - 1);
+  return kFreeBorder * kScaleOfOctave[static_cast<std::size_t>(octave)];
+}
+
+}  // namespace
+
+// Each point is looked for once for each cell that it passes, found or not.
+void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map) {
+  const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
+  trials_.clear();
+  trials_right_.clear();
+  const auto is_over = [&](Sight& sight) {
+    const MapPoint* const point = map.find_point(sight.point);
+    const auto projection =
+        point ? project_point(*point, camera_from_world, camera_in_world, rig) : std::optional<Projection>();
+    if (!projection) return true;
+    const auto seen = std::ranges::lower_bound(now_, sight.point, {}, &Sight::point);
+    const bool is_seen = seen != now_.end() && seen->point == sight.point;
+    const Eigen::Vector2f pixel = projection->predicted.head<2>().cast<float>();
+    if ((pixel - sight.pixel).norm() > cell_size(rig)) {
+      try_sight(frame, sight, is_seen ? &*seen : nullptr, *projection, rig, point->descriptor);
+      sight.pixel = pixel;
+    }
+    if (is_seen) {
+      sight.seen = frame.time;
+      if (frame.right_condition) sight.is_in_right = seen->is_in_right;
+    }
+    return to_seconds(frame.time - sight.seen) > kRemembered;
+  };
+  std::erase_if(sights_, is_over);
+}
+
+// The right image is asked for what the left one shows, but not along its rim, where rectifying may have left nothing.
+void LensWatch::try_sight(const Frame& frame, const Sight& before, const Sight* now, const Projection& projection,
+                          const Rig& rig, const Descriptor& descriptor) {
+  const double border = border_of(projection);
+  const Eigen::Vector2d left = projection.predicted.head<2>();
+  if (!is_inside(left, border, rig)) return;
+  const Eigen::Vector2d right(left.x() - projection.predicted.z(), left.y());
+  if (now != nullptr && before.is_in_right && is_inside(right, border + cell_size(rig), rig)) {
+    trials_right_.push_back({right, now->is_in_right});
+  }
+  trials_.push_back({left, now != nullptr || find_feature(*frame.features, descriptor, projection, kBehindDirt)});
+}
+
+std::optional<SessionEvent> LensWatch::news() {
+  constexpr double kMuchMore = 1.5;  // times what was told
+  const double share = hidden().share() + hidden_right().share();
+  if (share == 0.0 && told_share_ == 0.0) return std::nullopt;
+  if (share > 0.0 && told_share_ > 0.0 && share < kMuchMore * told_share_) return std::nullopt;
+  told_share_ = share;
+  return share > 0.0 ? SessionEvent::dirt_found : SessionEvent::dirt_gone;
+}
+
+void LensWatch::note(const Frame& frame, const TrackedFrame& tracked, const Rig& rig, const MapView& map) {
+  if (last_ && to_seconds(frame.time - *last_) < kEvery) return;
+  if (static_cast<int>(tracked.features.size()) < kMinSeen) return;
+  last_ = frame.time;
+  now_.clear();
+  for (const TrackedFeature& feature : tracked.features) {
+    const bool is_in_right = frame.features->keypoint(feature.feature).has_disparity();
+    now_.push_back({feature.point, feature.pixel, frame.time, is_in_right});
+  }
+  std::ranges::sort(now_, {}, &Sight::point);
+  try_sights(frame, tracked.camera_from_world, rig, map);
+  left_.note(trials_, rig);
+  if (frame.right_condition) right_.note(trials_right_, rig);
+  joined_.clear();
+  std::ranges::set_union(sights_, now_, std::back_inserter(joined_), {}, &Sight::point, &Sight::point);
+  std::swap(sights_, joined_);
+}
+
+}  // namespace byre

@@ -1,0 +1,89 @@
+#include "byre/slam/lens_watch.h"
+
+#include "byre/slam/mission_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+bool is_behind(const Eigen::Vector2f& pixel) {
+  return pixel.x() > 300.0f && pixel.x() < 420.0f && pixel.y() > 150.0f && pixel.y() < 260.0f;
+}
+
+// A drive round a room, its points known, their places told by the truth; a blot on the lens from some frame on.
+class Drive {
+ public:
+  explicit Drive(double laps)
+      : mission_(simulate_mission(simulated_rig(), circling_trajectory(static_cast<int>(200 * laps), 10.0, 2.0, laps),
+                                  without_noise())),
+        map_(true_map(mission_, 5, Origin::online)) {}
+
+  int frames() const { return static_cast<int>(mission_.frames.size()); }
+
+  // late: by how much the frames come later.
+  void go(LensWatch& watch, int first, int last, bool is_dirty, Timestamp late = {}) {
+    const MapView view(nullptr, map_);
+    for (int i = first; i < last; ++i) {
+      Frame seen = is_dirty ? soiled(mission_.frames[static_cast<std::size_t>(i)])
+                            : mission_.frames[static_cast<std::size_t>(i)];
+      seen.time += late;
+      const auto tracked = track(seen, true_camera_from_world(mission_, static_cast<std::size_t>(i)), mission_.rig,
+                                 view, local_points(view, {Origin::online, static_cast<std::uint32_t>(i / 5)}, 30), {});
+      if (tracked) watch.note(seen, *tracked, mission_.rig, view);
+      if (const auto news = watch.news()) told_.push_back(*news);
+    }
+  }
+
+  const std::vector<SessionEvent>& told() const { return told_; }
+  const Rig& rig() const { return mission_.rig; }
+
+ private:
+  Frame soiled(const Frame& frame) const {
+    std::vector<Keypoint> keypoints;
+    std::vector<Descriptor> descriptors;
+    for (int i = 0; i < frame.features->size(); ++i) {
+      if (is_behind(frame.features->keypoint(i).pixel)) continue;
+      keypoints.push_back(frame.features->keypoint(i));
+      descriptors.push_back(frame.features->descriptor(i));
+    }
+    return {frame.time, std::make_shared<const Features>(mission_.rig.width, mission_.rig.height, std::move(keypoints),
+                                                         std::move(descriptors), std::vector<Patch>{})};
+  }
+
+  SimulatedMission mission_;
+  Map map_;
+  std::vector<SessionEvent> told_;
+};
+
+TEST(LensWatch, FindsNothingOnACleanLens) {
+  Drive drive(1.0);
+  LensWatch watch;
+  drive.go(watch, 0, drive.frames(), false);
+  EXPECT_FALSE(watch.hidden().any());
+  EXPECT_TRUE(drive.told().empty());
+}
+
+TEST(LensWatch, FindsABlotWhereItIsAndThatItWasWipedOff) {
+  Drive drive(2.0);
+  LensWatch watch;
+  drive.go(watch, 0, drive.frames() / 2, true);
+  EXPECT_TRUE(watch.hidden().hides({360.0, 205.0}, drive.rig()));
+  EXPECT_FALSE(watch.hidden().hides({150.0, 205.0}, drive.rig()));
+  EXPECT_FALSE(watch.hidden_right().any()) << "nobody knows of a right image";
+  ASSERT_FALSE(drive.told().empty());
+  EXPECT_EQ(drive.told().front(), SessionEvent::dirt_found);
+  drive.go(watch, drive.frames() / 2, drive.frames(), false);
+  EXPECT_FALSE(watch.hidden().any());
+  EXPECT_EQ(drive.told().back(), SessionEvent::dirt_gone);
+}
+
+TEST(LensWatch, LearnsNothingWhileTheRobotStands) {
+  Drive drive(1.0);
+  LensWatch watch;
+  for (int i = 0; i < 100; ++i) drive.go(watch, 20, 21, true, i * std::chrono::seconds(1));
+  EXPECT_FALSE(watch.hidden().any());
+}
+
+}  // namespace
+}  // namespace byre
