@@ -31,40 +31,46 @@ double border_of(const Projection& projection) {
 
 }  // namespace
 
+bool LensWatch::has_left_cell(const Eigen::Vector2f& pixel, const Sight& since, const Rig& rig) {
+  return (pixel - since.pixel).norm() > cell_size(rig);
+}
+
 // Each point is looked for once for each cell that it passes, found or not.
 void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   trials_.clear();
   trials_right_.clear();
+  auto seen = now_.begin();  // both are in the order of points
   const auto is_over = [&](Sight& sight) {
+    while (seen != now_.end() && seen->point < sight.point) ++seen;
+    const bool is_seen = seen != now_.end() && seen->point == sight.point;
+    if (is_seen) sight.seen = frame.time;
+    if (to_seconds(frame.time - sight.seen) > kRemembered) return true;
+    const bool was_in_right = sight.is_in_right;
+    if (is_seen && frame.right_condition) sight.is_in_right = seen->is_in_right;
+    if (is_seen && !has_left_cell(seen->pixel, sight, rig)) return false;
     const MapPoint* const point = map.find_point(sight.point);
     const auto projection =
         point ? project_point(*point, camera_from_world, camera_in_world, rig) : std::optional<Projection>();
     if (!projection) return true;
-    const auto seen = std::ranges::lower_bound(now_, sight.point, {}, &Sight::point);
-    const bool is_seen = seen != now_.end() && seen->point == sight.point;
     const Eigen::Vector2f pixel = projection->predicted.head<2>().cast<float>();
-    if ((pixel - sight.pixel).norm() > cell_size(rig)) {
-      try_sight(frame, sight, is_seen ? &*seen : nullptr, *projection, rig, point->descriptor);
+    if (has_left_cell(pixel, sight, rig)) {
+      try_sight(frame, was_in_right, is_seen ? &*seen : nullptr, *projection, rig, point->descriptor);
       sight.pixel = pixel;
     }
-    if (is_seen) {
-      sight.seen = frame.time;
-      if (frame.right_condition) sight.is_in_right = seen->is_in_right;
-    }
-    return to_seconds(frame.time - sight.seen) > kRemembered;
+    return false;
   };
   std::erase_if(sights_, is_over);
 }
 
 // The right image is asked for what the left one shows, but not along its rim, where rectifying may have left nothing.
-void LensWatch::try_sight(const Frame& frame, const Sight& before, const Sight* now, const Projection& projection,
+void LensWatch::try_sight(const Frame& frame, bool was_in_right, const Sight* now, const Projection& projection,
                           const Rig& rig, const Descriptor& descriptor) {
   const double border = border_of(projection);
   const Eigen::Vector2d left = projection.predicted.head<2>();
   if (!is_inside(left, border, rig)) return;
   const Eigen::Vector2d right(left.x() - projection.predicted.z(), left.y());
-  if (now != nullptr && before.is_in_right && is_inside(right, border + cell_size(rig), rig)) {
+  if (now != nullptr && was_in_right && is_inside(right, border + cell_size(rig), rig)) {
     trials_right_.push_back({right, now->is_in_right});
   }
   trials_.push_back({left, now != nullptr || find_feature(*frame.features, descriptor, projection, kBehindDirt)});

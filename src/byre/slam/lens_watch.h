@@ -32,9 +32,10 @@ class LensWatch {
     bool is_in_right = false;  // it was found in the right image then
   };
 
+  static bool has_left_cell(const Eigen::Vector2f& pixel, const Sight& since, const Rig& rig);
   void try_sights(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map);
-  void try_sight(const Frame& frame, const Sight& before, const Sight* now, const Projection& projection,
-                 const Rig& rig, const Descriptor& descriptor);
+  void try_sight(const Frame& frame, bool was_in_right, const Sight* now, const Projection& projection, const Rig& rig,
+                 const Descriptor& descriptor);
 
   std::optional<Timestamp> last_;
   std::vector<Sight> sights_;  // ascending by point

@@ -47,6 +47,9 @@ std::vector<std::string> values(const EngineOptions& options) {
   return all;
 }
 
+// Cells that dirt hides are found out, and nobody's to set: of tracking and of finding places.
+constexpr std::size_t kHiddenCells = 2;
+
 TEST(OptionTable, ListsEveryLeaf) {
   const EngineOptions options;
   [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, known, self_calibration, vocabulary, mounting,
@@ -56,7 +59,7 @@ TEST(OptionTable, ListsEveryLeaf) {
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
                  HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>() -
-      1;  // without the length that a map of one camera calls one
+      1 - kHiddenCells;  // without the length that a map of one camera calls one
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
                                  member_count<PlaceBoundsOptions>() - 1;  // without what other cameras set
