@@ -28,4 +28,11 @@ Value median_or(std::vector<Value> values, Value of_none) {
   return values.empty() ? of_none : median(std::move(values));
 }
 
+// The standard deviation of most of these if they are normal, from how far each is off, in its own sigmas. Never less
+// than one, and one where there is none.
+inline double robust_scale(std::vector<double> deviations) {
+  constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over the median of absolute deviations
+  return deviations.empty() ? 1.0 : std::max(1.0, kSigmasOfMedian * median(std::move(deviations)));
+}
+
 }  // namespace byre

@@ -79,14 +79,7 @@ Frame soiled(const Frame& frame) {
     const bool is_in_middle = pixel.x() > 250.0f && pixel.x() < 450.0f && pixel.y() > 150.0f && pixel.y() < 330.0f;
     return is_in_middle || (pixel.x() < 180.0f && pixel.y() < 200.0f);
   };
-  std::vector<Keypoint> keypoints;
-  std::vector<Descriptor> descriptors;
-  for (int i = 0; i < frame.features->size(); ++i) {
-    if (is_behind(frame.features->keypoint(i).pixel)) continue;
-    keypoints.push_back(frame.features->keypoint(i));
-    descriptors.push_back(frame.features->descriptor(i));
-  }
-  return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
+  return seen_beside(frame, simulated_rig(), is_behind);
 }
 
 // The largest error of a pose that was reported as trusted, metres; the map's frame is the truth's.

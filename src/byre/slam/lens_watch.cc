@@ -60,7 +60,11 @@ void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, co
     }
     return false;
   };
-  std::erase_if(sights_, is_over);
+  auto kept = sights_.begin();
+  for (Sight& sight : sights_) {
+    if (!is_over(sight)) *kept++ = sight;
+  }
+  sights_.erase(kept, sights_.end());
 }
 
 // The right image is asked for what the left one shows, but not along its rim, where rectifying may have left nothing.

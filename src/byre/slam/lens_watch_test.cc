@@ -39,17 +39,7 @@ class Drive {
   const Rig& rig() const { return mission_.rig; }
 
  private:
-  Frame soiled(const Frame& frame) const {
-    std::vector<Keypoint> keypoints;
-    std::vector<Descriptor> descriptors;
-    for (int i = 0; i < frame.features->size(); ++i) {
-      if (is_behind(frame.features->keypoint(i).pixel)) continue;
-      keypoints.push_back(frame.features->keypoint(i));
-      descriptors.push_back(frame.features->descriptor(i));
-    }
-    return {frame.time, std::make_shared<const Features>(mission_.rig.width, mission_.rig.height, std::move(keypoints),
-                                                         std::move(descriptors), std::vector<Patch>{})};
-  }
+  Frame soiled(const Frame& frame) const { return seen_beside(frame, mission_.rig, is_behind); }
 
   SimulatedMission mission_;
   Map map_;

@@ -5,6 +5,8 @@
 #include "byre/simulation/simulated_mission.h"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -25,6 +27,20 @@ inline SimulatedMission quarter_circle(const SimulationOptions& options) {
 
 inline Pose true_camera_from_world(const SimulatedMission& mission, std::size_t frame) {
   return inverse(mission.truth[frame].world_from_body * mission.rig.body_from_camera);
+}
+
+// What a lens shows of the frame that hides some pixels of the rig's image.
+template <typename IsHidden>
+Frame seen_beside(const Frame& frame, const Rig& rig, IsHidden is_hidden) {
+  std::vector<Keypoint> keypoints;
+  std::vector<Descriptor> descriptors;
+  for (int i = 0; i < frame.features->size(); ++i) {
+    if (is_hidden(frame.features->keypoint(i).pixel)) continue;
+    keypoints.push_back(frame.features->keypoint(i));
+    descriptors.push_back(frame.features->descriptor(i));
+  }
+  return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
+                                                       std::move(descriptors), std::vector<Patch>{})};
 }
 
 // The frame a keyframe was made of; keyframes keep their frame's time.

@@ -13,8 +13,7 @@ namespace {
 
 constexpr int kPartColumns = 8;
 constexpr int kPartRows = 6;
-constexpr double kRowHuberWidth = 2.0;      // sigmas
-constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over the median of absolute deviations, if normal
+constexpr double kRowHuberWidth = 2.0;  // sigmas
 
 // The mean over the rows of one part of the image.
 struct PartMean {
@@ -27,10 +26,6 @@ struct WeighedRows {
   CalibrationEquations equations;  // as though all rows erred by themselves
   std::vector<PartMean> means;     // one for each part that shows any
 };
-
-double robust_scale(std::vector<double> deviations) {
-  return deviations.empty() ? 1.0 : std::max(1.0, kSigmasOfMedian * median(std::move(deviations)));
-}
 
 // Each row weighed by what is left of it after the change.
 WeighedRows weighed(const std::vector<RowMeasurement>& rows, const CalibrationVector& change) {

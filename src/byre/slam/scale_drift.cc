@@ -8,8 +8,6 @@
 namespace byre {
 namespace {
 
-constexpr double kDeviationOfMedian = 1.4826;  // standard deviation over the median of absolute values, if normal
-
 struct LogRatio {
   double value = 0.0;
   double sigma = 0.0;
@@ -31,7 +29,7 @@ std::vector<LogRatio> log_ratios(std::span<const DepthPair> pairs) {
 double spread_about(double centre, const std::vector<LogRatio>& ratios) {
   std::vector<double> errors;
   for (const LogRatio& ratio : ratios) errors.push_back(std::abs(ratio.value - centre) / ratio.sigma);
-  return std::max(1.0, kDeviationOfMedian * median(std::move(errors)));
+  return robust_scale(std::move(errors));
 }
 
 }  // namespace
