@@ -35,8 +35,8 @@ std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_fr
   return near.empty() ? std::nullopt : std::optional(near.front());
 }
 
-void Mission::append_candidates(const std::vector<PointId>& around, std::vector<PointId>& candidates) const {
-  candidates.reserve(candidates.size() + around.size());
+void Mission::append_candidates(std::span<const PointId> around, ReusedVector<PointId>& candidates) const {
+  make_room(candidates, candidates.size() + around.size());
   std::ranges::copy_if(around, std::back_inserter(candidates),
                        [this](PointId id) { return !moved_points_.is_suspended(id); });
 }
@@ -63,8 +63,8 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
   }
 }
 
-std::vector<PointId> Mission::due_again(const std::vector<PointId>& around) const {
-  std::vector<PointId> due;
+ReusedVector<PointId> Mission::due_again(std::span<const PointId> around) const {
+  ReusedVector<PointId> due;
   if (moved_points_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
   std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return moved_points_.is_suspended(id); });
   return due;

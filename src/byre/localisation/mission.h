@@ -48,12 +48,12 @@ class Mission {
   // the last frame, or around the one nearest to the pose.
   std::optional<KeyframeId> keyframe_near(const Pose& predicted_camera_from_world) const;
   // The points around it that are looked for.
-  void append_candidates(const std::vector<PointId>& around, std::vector<PointId>& candidates) const;
+  void append_candidates(std::span<const PointId> around, ReusedVector<PointId>& candidates) const;
 
   // A frame was tracked, so many metres from the one before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
   // Suspended points around, in frames where they are to be looked for again; else none.
-  std::vector<PointId> due_again(const std::vector<PointId>& around) const;
+  ReusedVector<PointId> due_again(std::span<const PointId> around) const;
   void note_again(const PlacedPoints& placed) { moved_points_.note_again(placed.agreed, placed.moved); }
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }

@@ -64,7 +64,7 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
   if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
   if (sees_enough(mission_)) rival_.forget();
-  const std::vector<PointId> due = mission_.due_again(seen.offline_around);
+  const ReusedVector<PointId> due = mission_.due_again(seen.offline_around);
   if (!due.empty()) {
     TrackOptions options = options_.track;
     options.hidden = seen.hidden;

@@ -58,8 +58,8 @@ class OfflineTracker {
     const Rig& rig;
     double step = 0.0;  // metres from the frame before
     bool image_is_faulty = false;
-    const std::vector<PointId>& offline_around;  // suspended ones included
-    const HiddenCells& hidden;                   // where no points are asked for
+    std::span<const PointId> offline_around;  // suspended ones included
+    const HiddenCells& hidden;                // where no points are asked for
   };
   // What a frame, or a place found, means for the session.
   struct Consequence {

@@ -261,9 +261,14 @@ std::optional<PointId> Map::point_of_foreign_view(const Observation& observation
   return known->second;
 }
 
-std::vector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
+ReusedVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
   if (!find_bare_keyframe(id)) return {};
-  std::vector<Covisible> covisible = source_ ? source_->covisible(id.number) : slot(id).covisible;
+  ReusedVector<Covisible> covisible;
+  if (source_) {
+    covisible = source_->covisible(id.number);
+  } else {
+    covisible.assign(slot(id).covisible.begin(), slot(id).covisible.end());
+  }
   const auto count = std::min(covisible.size(), static_cast<std::size_t>(std::max(max_count, 0)));
   std::ranges::partial_sort(covisible, covisible.begin() + static_cast<std::ptrdiff_t>(count), shares_more);
   covisible.resize(count);

@@ -3,6 +3,7 @@
 #include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/map/ids.h"
+#include "byre/workers/reused_memory.h"
 
 #include <cstdint>
 #include <functional>
@@ -95,8 +96,8 @@ class MapSource {
   // bare: the same without what it sees.
   virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const = 0;
   virtual const ObservedPoint& point(std::uint32_t number) const = 0;
-  virtual std::vector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
-  virtual void visit_words(const WordVisitor& visit) const = 0;              // as Map does
+  virtual ReusedVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
+  virtual void visit_words(const WordVisitor& visit) const = 0;               // as Map does
 };
 
 // A plain value: copy it, change the copy, save it. Keeps both ends of every observation in step.
@@ -188,7 +189,7 @@ class Map {
   std::optional<PointId> point_of_foreign_view(const Observation& observation) const;
 
   // Keyframes that share points with this one, most shared first (ties: lower id first); maintained, not computed.
-  std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+  ReusedVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
   // The pose of a keyframe now, also of a removed one, through its parents. Precondition: the id was once given out.
   Pose camera_from_world(KeyframeId id) const;

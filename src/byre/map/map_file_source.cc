@@ -32,7 +32,7 @@ const ObservedPoint& MapFileSource::point(std::uint32_t number) const {
   return blocks_.get(block, [&] { return read_block(block); })[number % kPointsOfBlock];
 }
 
-std::vector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
+ReusedVector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
   const PartPlace& place = lookup_.keyframes[number].covisible;
   const std::size_t first_byte = file_.lookup + lookup_.first_byte_of_covisible + place.begin;
   return read_covisible(

@@ -32,7 +32,7 @@ class MapFileSource : public MapSource {
 
   const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const override;
   const ObservedPoint& point(std::uint32_t number) const override;
-  std::vector<Covisible> covisible(std::uint32_t number) const override;
+  ReusedVector<Covisible> covisible(std::uint32_t number) const override;
   void visit_words(const WordVisitor& visit) const override;
 
  private:

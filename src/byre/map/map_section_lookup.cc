@@ -69,7 +69,7 @@ void write_observers(const std::vector<Observation>& observations, ByteWriter& w
 }
 
 void write_covisible(const Map& map, KeyframeId id, ByteWriter& writer) {
-  std::vector<Covisible> all = map.covisible_keyframes(id, std::numeric_limits<int>::max());
+  ReusedVector<Covisible> all = map.covisible_keyframes(id, std::numeric_limits<int>::max());
   std::ranges::sort(all, {}, &Covisible::keyframe);
   writer.write_varint(static_cast<std::uint32_t>(all.size()));
   AscendingWriter keyframes(writer);
@@ -194,10 +194,10 @@ Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSecti
   return lookup;
 }
 
-std::vector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count) {
+ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count) {
   const std::uint32_t count = reader.read_varint();
   if (count > reader.remaining()) reader.fail("has more covisible keyframes than its bytes can hold");
-  std::vector<Covisible> all;
+  ReusedVector<Covisible> all;
   all.reserve(count);
   AscendingReader numbers(reader, keyframe_count);
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -158,7 +158,7 @@ struct PartSectionSizes {
   std::size_t points = 0, observers = 0;
 };
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes);
-std::vector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count);
+ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count);
 // The observations of one point, the next one. Their features are such as the keyframes have.
 std::vector<Observation> read_observers(ByteReader& reader, const std::vector<KeyframeParts>& keyframes);
 

@@ -21,9 +21,9 @@ const Rig& MapView::rig_of(const Keyframe& keyframe, KeyframeId id) const {
   return of(id.origin)->rigs()[static_cast<std::size_t>(keyframe.rig)];
 }
 
-std::vector<Covisible> MapView::covisible_keyframes(KeyframeId id, int max_count) const {
+ReusedVector<Covisible> MapView::covisible_keyframes(KeyframeId id, int max_count) const {
   const Map* const map = of(id.origin);
-  return map == nullptr ? std::vector<Covisible>{} : map->covisible_keyframes(id, max_count);
+  return map == nullptr ? ReusedVector<Covisible>{} : map->covisible_keyframes(id, max_count);
 }
 
 }  // namespace byre

@@ -37,7 +37,7 @@ class MapView {
   }
 
   // Keyframes of the same map that share points with this one, most shared first.
-  std::vector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+  ReusedVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
  private:
   const Map* of(Origin origin) const { return origin == Origin::offline ? offline_ : online_; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/rig.h"
+#include "byre/workers/reused_memory.h"
 
 #include <array>
 #include <cstddef>
@@ -30,7 +31,7 @@ struct WeighedPoint {
 class WeighedPoints {
  public:
   void clear();  // the memory stays
-  void reserve(std::size_t points) { blocks_.reserve((points + kLanes - 1) / kLanes); }
+  void reserve(std::size_t points) { make_room(blocks_, (points + kLanes - 1) / kLanes); }
   void add(const WeighedPoint& point);
   void square_weights();
 

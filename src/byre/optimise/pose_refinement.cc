@@ -111,7 +111,7 @@ void sight(std::span<const PoseObservation> observations, const Rig& rig, const 
            double systematic_sigma, std::vector<Sighting>& sightings) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   sightings.clear();
-  sightings.reserve(observations.size());
+  make_room(sightings, observations.size());
   for (const PoseObservation& observation : observations) {
     sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
   }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "byre/rig.h"
+#include "byre/workers/reused_memory.h"
 
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace byre {
 
@@ -34,7 +34,7 @@ struct PoseRefinementOptions {
 struct PoseRefinement {
   Pose camera_from_world;
   Matrix6 covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * camera_from_world
-  std::vector<bool> inliers;             // one per observation; at or behind the camera never
+  ReusedVector<bool> inliers;            // one per observation; at or behind the camera never
   int inlier_count = 0;
   // Factor by which the residuals' variance exceeds the one stated, at least 1: where the map is not settled yet all
   // errors are larger than their sigmas. Gates, loss and covariance are widened by it.

@@ -45,7 +45,7 @@ bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper
          mapper.submaps().is_in_present_frame(*reference);
 }
 
-const std::vector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
+const ReusedVector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
   if (online_.keyframe && online_.keyframe == reference_ && online_.revision == mapper.revision()) {
     return online_.points;
   }
@@ -55,7 +55,7 @@ const std::vector<PointId>& Tracker::points_around_reference(const Mapper& mappe
   return online_.points;
 }
 
-const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
+const ReusedVector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
   const std::optional<KeyframeId> around = mission.keyframe_near(predicted);
   if (around == offline_.keyframe) return offline_.points;
   const Map nothing_online(Origin::online);
@@ -66,7 +66,7 @@ const std::vector<PointId>& Tracker::offline_points_around(const Pose& predicted
 }
 
 // None where offline points hold the pose and time is short.
-const std::vector<PointId>& Tracker::online_points(const Scene& scene) {
+const ReusedVector<PointId>& Tracker::online_points(const Scene& scene) {
   if (!scene.is_pressed) return points_around_reference(scene.mapper);
   few_.clear();
   const bool is_held = scene.mission && scene.is_place_proven && scene.mapper.submaps().is_registered() &&
@@ -80,7 +80,7 @@ const std::vector<PointId>& Tracker::online_points(const Scene& scene) {
 
 std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                                const HybridLimits& limits) {
-  const std::vector<PointId>& online = online_points(scene);
+  const ReusedVector<PointId>& online = online_points(scene);
   const MapView map = scene.mapper.map();
   TrackOptions options = options_.track;
   options.hidden = scene.hidden;

@@ -61,20 +61,20 @@ class Tracker {
   // The frame has become a keyframe.
   void restart_from(KeyframeId newest) { reference_ = newest; }
   // Offline points around the last prediction, suspended ones included.
-  const std::vector<PointId>& offline_points() const { return offline_.points; }
+  const ReusedVector<PointId>& offline_points() const { return offline_.points; }
 
  private:
   // Points around a keyframe, kept while that and the map stay: frames come more often than either changes.
   struct PointsAround {
     std::optional<KeyframeId> keyframe;
     int revision = 0;  // revision of the map
-    std::vector<PointId> points;
+    ReusedVector<PointId> points;
   };
 
   bool is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const;
-  const std::vector<PointId>& points_around_reference(const Mapper& mapper);
-  const std::vector<PointId>& online_points(const Scene& scene);
-  const std::vector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
+  const ReusedVector<PointId>& points_around_reference(const Mapper& mapper);
+  const ReusedVector<PointId>& online_points(const Scene& scene);
+  const ReusedVector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
   std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                         const HybridLimits& limits);
 
@@ -84,8 +84,8 @@ class Tracker {
   int last_inliers_ = 0;                 // in the last frame tracked
   PointsAround online_;
   PointsAround offline_;
-  std::vector<PointId> few_;         // online points looked for where time is short
-  std::vector<PointId> candidates_;  // memory
+  ReusedVector<PointId> few_;         // online points looked for where time is short
+  ReusedVector<PointId> candidates_;  // memory
 };
 
 }  // namespace byre

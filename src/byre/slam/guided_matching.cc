@@ -71,11 +71,11 @@ std::optional<FoundFeature> find_feature(const Features& features, const Descrip
   return FoundFeature{best.feature, best.distance};
 }
 
-void project_points(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
-                    const Rig& rig, std::vector<ExpectedPoint>& expected) {
+void project_points(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
+                    std::vector<ExpectedPoint>& expected) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   expected.clear();
-  expected.reserve(points.size());
+  make_room(expected, points.size());
   for (const PointId id : points) {
     const MapPoint* const point = map.find_point(id);
     if (point == nullptr) continue;
@@ -84,7 +84,7 @@ void project_points(const MapView& map, const std::vector<PointId>& points, cons
   }
 }
 
-std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<PointId>& points,
+std::vector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
                                           const Pose& camera_from_world, const Rig& rig) {
   std::vector<ExpectedPoint> expected;
   project_points(map, points, camera_from_world, rig, expected);
@@ -98,6 +98,7 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     int distance = std::numeric_limits<int>::max();
   };
   thread_local std::vector<Claim> claims;
+  make_room(claims, static_cast<std::size_t>(features.size()));
   claims.assign(static_cast<std::size_t>(features.size()), {});
   for (const ExpectedPoint& candidate : expected) {
     const MapPoint* const point = map.find_point(candidate.id);
@@ -108,7 +109,7 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
   matches.clear();
-  matches.reserve(claims.size());
+  make_room(matches, claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});

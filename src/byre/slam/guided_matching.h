@@ -41,12 +41,12 @@ struct ExpectedPoint {
   Projection projection;
 };
 
-std::vector<ExpectedPoint> project_points(const MapView& map, const std::vector<PointId>& points,
+std::vector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
                                           const Pose& camera_from_world, const Rig& rig);
 
 // The same; refills `expected`.
-void project_points(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
-                    const Rig& rig, std::vector<ExpectedPoint>& expected);
+void project_points(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
+                    std::vector<ExpectedPoint>& expected);
 
 struct GuidedMatch {
   int feature = 0;

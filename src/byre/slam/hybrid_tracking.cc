@@ -39,7 +39,6 @@ struct Memory {
   PartedPoints parted;
   MeasuredPoints joined;
   std::vector<double> depths;
-  std::vector<PointId> offline_inliers;
   SharedPoints shared;
 };
 
@@ -58,7 +57,7 @@ struct Query {
   Memory& memory = memory_of_thread();
 };
 
-void split(const std::vector<PointId>& candidates, ByMap<std::vector<PointId>>& points) {
+void split(std::span<const PointId> candidates, ByMap<std::vector<PointId>>& points) {
   points.offline.clear();
   points.online.clear();
   for (const PointId id : candidates) (id.origin == Origin::offline ? points.offline : points.online).push_back(id);
@@ -152,6 +151,8 @@ const Found& look_for(const Query& query, const ByMap<Pose>& guesses) {
 
 // A feature that shows a point of each map is left to the offline one.
 void join(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight, MeasuredPoints& both) {
+  make_room(both.observations, offline.observations.size() + online.observations.size());
+  make_room(both.features, offline.features.size() + online.features.size());
   both = offline;
   for (PoseObservation& observation : both.observations) observation.weight = offline_weight;
   for (std::size_t i = 0; i < online.features.size(); ++i) {
@@ -289,15 +290,11 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
   return std::nullopt;
 }
 
-void sort_by_feature(std::vector<TrackedFeature>& features) {
-  std::ranges::sort(features, {}, &TrackedFeature::feature);
-}
-
 // What the solution says of each offline match. Elsewhere is a point only when its very patch was found there, not just
 // a corner that resembles it.
 void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
-  std::vector<PointId>& inliers = query.memory.offline_inliers;
-  inliers.clear();
+  ReusedVector<PointId>& inliers = result.offline_agreed;
+  inliers.reserve(result.tracked.features.size());
   for (const TrackedFeature& feature : result.tracked.features) {
     if (feature.point.origin == Origin::offline) inliers.push_back(feature.point);
   }
@@ -308,11 +305,10 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
     if (std::ranges::binary_search(inliers, feature.point)) continue;
     if (shows_patch(feature, *query.frame.features)) result.offline_moved.push_back(feature.point);
   }
-  result.offline_agreed = inliers;
 }
 
 ByImageRegion<PointsInView> by_region(const std::vector<ExpectedPoint>& expected,
-                                      const std::vector<TrackedFeature>& inliers, const Rig& rig) {
+                                      std::span<const TrackedFeature> inliers, const Rig& rig) {
   ByImageRegion<PointsInView> regions{};
   for (const ExpectedPoint& point : expected) {
     const StereoPixel& pixel = point.projection.predicted;
@@ -336,15 +332,15 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
   result.maps_disagree = opinions.maps_disagree;
   result.offline_stands = opinions.offline_stands;
 
-  std::vector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
-  sort_by_feature(inliers);
+  ReusedVector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
+  std::ranges::sort(inliers, {}, &TrackedFeature::feature);
   SharedPoints& shared = query.memory.shared;
   count_shared_points(query.map, inliers, shared);
   result.offline_reference = most_shared(shared, Origin::offline);
   result.online_reference = most_shared(shared, Origin::online);
   result.tracked =
       tracked_frame(solution.refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), query.map);
-  std::vector<TrackedFeature>& outliers = result.tracked.outliers;
+  ReusedVector<TrackedFeature>& outliers = result.tracked.outliers;
   outliers = outliers_of(solution.refined, *solution.measured);
   outliers.insert(outliers.end(), solution.left_out.begin(), solution.left_out.end());
 
@@ -368,7 +364,7 @@ bool is_within(const Agreement& agreement, const DriftBound& drift) {
 }
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                                        const MapView& map, const std::vector<PointId>& candidates,
+                                        const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits,
                                         bool weighs_focal_lengths) {
   const Query query{frame, rig, map, options, limits};
@@ -389,7 +385,7 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
 }
 
 PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                             const std::vector<PointId>& points, const TrackOptions& options) {
+                             std::span<const PointId> points, const TrackOptions& options) {
   const Query query{frame, rig, map, options};
   Found& found = query.memory.found;
   project_visible(map, points, camera_from_world, rig, options.hidden, found.expected.offline);

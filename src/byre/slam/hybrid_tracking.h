@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace byre {
@@ -43,9 +44,9 @@ struct HybridTrack {
   bool maps_disagree = false;                        // both poses are farther apart than their covariances explain
   // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
   bool offline_stands = false;
-  std::optional<FocalEvidence> focal;   // what offline points say of the focal length, where they were asked
-  std::vector<PointId> offline_agreed;  // offline points that fit the pose
-  std::vector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
+  std::optional<FocalEvidence> focal;    // what offline points say of the focal length, where they were asked
+  ReusedVector<PointId> offline_agreed;  // offline points that fit the pose
+  ReusedVector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
 
   // The online map does not lie where it should.
   bool is_online_off() const { return maps_disagree && offline_stands; }
@@ -67,18 +68,18 @@ struct HybridLimits {
 // was moved: where the maps disagree the online pose stands, and offline points are used that agree with that.
 // weighs_focal_lengths: offline points are asked what they make of other ones, see FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                                        const MapView& map, const std::vector<PointId>& candidates,
+                                        const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits = {},
                                         bool weighs_focal_lengths = false);
 
 // Which points a pose that is known has in their places, and which elsewhere.
 struct PlacedPoints {
-  std::vector<PointId> agreed;
-  std::vector<PointId> moved;
+  ReusedVector<PointId> agreed;
+  ReusedVector<PointId> moved;
 };
 
 // Looks for points where the pose expects them, without a say in it. Those not found are in neither.
 PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                             const std::vector<PointId>& points, const TrackOptions& options);
+                             std::span<const PointId> points, const TrackOptions& options);
 
 }  // namespace byre

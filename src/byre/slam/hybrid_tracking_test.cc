@@ -231,7 +231,7 @@ TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
   const auto track = track_frame();
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
-  const auto count_shelf = [&](const std::vector<PointId>& points) {
+  const auto count_shelf = [&](std::span<const PointId> points) {
     return std::ranges::count_if(points, [&](PointId id) { return std::ranges::binary_search(shelf, id); });
   };
   EXPECT_GT(count_shelf(track->offline_moved), 10);

@@ -40,6 +40,8 @@ void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, co
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   trials_.clear();
   trials_right_.clear();
+  make_room(trials_, sights_.size());
+  make_room(trials_right_, sights_.size());
   auto seen = now_.begin();  // both are in the order of points
   const auto is_over = [&](Sight& sight) {
     while (seen != now_.end() && seen->point < sight.point) ++seen;
@@ -94,6 +96,7 @@ void LensWatch::note(const Frame& frame, const TrackedFrame& tracked, const Rig&
   if (static_cast<int>(tracked.features.size()) < kMinSeen) return;
   last_ = frame.time;
   now_.clear();
+  make_room(now_, tracked.features.size());
   for (const TrackedFeature& feature : tracked.features) {
     const bool is_in_right = frame.features->keypoint(feature.feature).has_disparity();
     now_.push_back({feature.point, feature.pixel, frame.time, is_in_right});
@@ -103,6 +106,7 @@ void LensWatch::note(const Frame& frame, const TrackedFrame& tracked, const Rig&
   left_.note(trials_, rig);
   if (frame.right_condition) right_.note(trials_right_, rig);
   joined_.clear();
+  make_room(joined_, sights_.size() + now_.size());
   std::ranges::set_union(sights_, now_, std::back_inserter(joined_), {}, &Sight::point, &Sight::point);
   std::swap(sights_, joined_);
 }

@@ -144,7 +144,7 @@ std::string_view to_string(LocalisationFailure failure) {
   return "";
 }
 
-double spread_of(const std::vector<TrackedFeature>& features, const Rig& rig) {
+double spread_of(std::span<const TrackedFeature> features, const Rig& rig) {
   if (features.empty()) return 0.0;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const TrackedFeature& feature : features) mean += feature.pixel.cast<double>();

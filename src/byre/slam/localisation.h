@@ -65,7 +65,7 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
                          const LocaliseOptions& options, const PlaceFilter& filter = {});
 
 // Standard deviation of the pixels along the direction in which they spread least, as a share of the image's diagonal.
-double spread_of(const std::vector<TrackedFeature>& features, const Rig& rig);
+double spread_of(std::span<const TrackedFeature> features, const Rig& rig);
 
 // Why a pose, however it was found, is not to be relied on; none when it is.
 LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,

@@ -14,9 +14,9 @@ struct JudgedPoint {
   bool moved = false;
 };
 
-std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
-                                       std::span<const PointId> moved) {
-  std::vector<JudgedPoint> judged;
+ReusedVector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
+                                        std::span<const PointId> moved) {
+  ReusedVector<JudgedPoint> judged;
   judged.reserve(agreed.size() + moved.size());
   for (const PointId id : moved) judged.push_back({offline.find_point(id)->position_in_world, true});
   for (const PointId id : agreed) judged.push_back({offline.find_point(id)->position_in_world, false});
@@ -24,7 +24,7 @@ std::vector<JudgedPoint> judged_points(const Map& offline, std::span<const Point
 }
 
 // Share of the nearest judged points about one of them that has moved.
-double share_around(const std::vector<JudgedPoint>& judged, std::size_t point) {
+double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
   thread_local std::vector<std::pair<double, bool>> others;  // squared metres, moved; memory
   others.clear();
   for (std::size_t i = 0; i < judged.size(); ++i) {
@@ -41,11 +41,11 @@ double share_around(const std::vector<JudgedPoint>& judged, std::size_t point) {
 
 }  // namespace
 
-std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
-                                    std::span<const PointId> moved) {
+ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                     std::span<const PointId> moved) {
   if (moved.empty()) return {};  // as in most frames
-  const std::vector<JudgedPoint> judged = judged_points(offline, agreed, moved);
-  std::vector<PointId> together;
+  const ReusedVector<JudgedPoint> judged = judged_points(offline, agreed, moved);
+  ReusedVector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (share_around(judged, i) >= kMinShareMoved) {
       together.push_back(moved[i]);

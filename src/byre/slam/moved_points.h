@@ -2,6 +2,7 @@
 
 #include "byre/map/ids.h"
 #include "byre/map/map.h"
+#include "byre/workers/reused_memory.h"
 
 #include <cstdint>
 #include <span>
@@ -16,8 +17,8 @@ struct MovedPointsOptions {
 
 // Points found elsewhere that lie among others of them: a thing that was moved is a cluster in space, and a point that
 // disagrees alone, among neighbours in place, was mistaken for another. All ascending.
-std::vector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
-                                    std::span<const PointId> moved);
+ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                     std::span<const PointId> moved);
 
 // Offline points that are not where the map has them: what they belong to was moved. They are left out until they are
 // found in their places again; the map itself stays as it is.

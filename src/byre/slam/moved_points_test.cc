@@ -68,7 +68,7 @@ TEST(MovedTogether, KeepsClustersAndNoPointThatDisagreesAlone) {
     const bool alone = id.number == 5 || id.number == 12;
     (in_thing || alone ? moved : agreed).push_back(id);
   }
-  const std::vector<PointId> together = moved_together(map, agreed, moved);
+  const ReusedVector<PointId> together = moved_together(map, agreed, moved);
   EXPECT_THAT(together, testing::SizeIs(testing::Ge(9U)));
   EXPECT_THAT(together, testing::Each(testing::Field(&PointId::number, testing::Ge(20U))));
 }

@@ -94,7 +94,7 @@ ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const Track
   constexpr double kMinTurn = 0.3;  // radians a second: what errs looks the same in each frame to who drives ahead
   if (velocity.tail<3>().norm() < kMinTurn) return {};
   FrameEquations equations;
-  for (const std::vector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
+  for (const ReusedVector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
     for (const TrackedFeature& feature : *features) {
       const MapPoint* const point = map.find_point(feature.point);
       if (point == nullptr || (tracked.camera_from_world * point->position_in_world).z() <= 0.0) continue;

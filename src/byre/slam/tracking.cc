@@ -16,7 +16,7 @@ namespace {
 
 // Appends the points of one map, each once, ascending. A bit is marked for each, and bits are read in order: points of
 // a neighbourhood have numbers near each other, so that this takes a tenth of sorting them.
-void append_distinct(Origin origin, const std::vector<PointId>& points, std::vector<PointId>& distinct) {
+void append_distinct(Origin origin, std::span<const PointId> points, ReusedVector<PointId>& distinct) {
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
   for (const PointId id : points) {
     if (id.origin != origin) continue;
@@ -26,7 +26,9 @@ void append_distinct(Origin origin, const std::vector<PointId>& points, std::vec
   if (first > last) return;
   constexpr std::size_t kBits = 64;
   thread_local std::vector<std::uint64_t> marks;
-  marks.assign(std::size_t{last - first} / kBits + 1, 0);
+  const std::size_t words = std::size_t{last - first} / kBits + 1;
+  make_room(marks, words);
+  marks.assign(words, 0);
   for (const PointId id : points) {
     if (id.origin != origin) continue;
     const std::size_t bit = id.number - first;
@@ -41,8 +43,8 @@ void append_distinct(Origin origin, const std::vector<PointId>& points, std::vec
 }
 
 // Each once, ascending.
-std::vector<PointId> distinct(const std::vector<PointId>& points) {
-  std::vector<PointId> once;
+ReusedVector<PointId> distinct(std::span<const PointId> points) {
+  ReusedVector<PointId> once;
   once.reserve(points.size());
   append_distinct(Origin::offline, points, once);
   append_distinct(Origin::online, points, once);
@@ -57,7 +59,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
-  std::vector<TrackedFeature> inliers = inliers_of(*refined, measured);
+  ReusedVector<TrackedFeature> inliers = inliers_of(*refined, measured);
   count_shared_points(map, inliers, shared);
   const KeyframeId reference = most_shared(shared).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
@@ -78,12 +80,12 @@ std::vector<int> contradicting_features(const TrackedFrame& tracked, const Featu
 }
 
 void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& seen) {
-  seen.reserve(seen.size() + tracked.features.size() + tracked.outliers.size());
+  make_room(seen, seen.size() + tracked.features.size() + tracked.outliers.size());
   for (const TrackedFeature& feature : tracked.features) seen.push_back({feature.point, feature.pixel, true});
   for (const TrackedFeature& feature : tracked.outliers) seen.push_back({feature.point, feature.pixel, false});
 }
 
-std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
+ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
   thread_local std::vector<PointId> points;  // memory
   points.clear();
   const auto append = [&](KeyframeId id) {
@@ -99,7 +101,7 @@ std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int 
 }
 
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                                  const MapView& map, const std::vector<PointId>& candidates,
+                                  const MapView& map, std::span<const PointId> candidates,
                                   const TrackOptions& options) {
   thread_local std::vector<ExpectedPoint> expected;  // memory, as the next
   thread_local std::vector<GuidedMatch> matches;

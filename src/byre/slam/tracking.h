@@ -3,9 +3,11 @@
 #include "byre/map/map_view.h"
 #include "byre/optimise/pose_refinement.h"
 #include "byre/slam/hidden_cells.h"
+#include "byre/workers/reused_memory.h"
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace byre {
@@ -24,8 +26,8 @@ struct TrackedFrame {
   Matrix6 covariance = Matrix6::Zero();
   Matrix6 match_covariance = Matrix6::Zero();  // what the matches leave open, relative to the map around the camera
   KeyframeId reference;                        // the keyframe that shares most points
-  std::vector<TrackedFeature> features;        // inliers only, ascending
-  std::vector<TrackedFeature> outliers;        // matches that are not where the pose has their points
+  ReusedVector<TrackedFeature> features;       // inliers only, ascending
+  ReusedVector<TrackedFeature> outliers;       // matches that are not where the pose has their points
   int expected = 0;                            // map points in the frustum
   int matches = 0;                             // expected points matched, before outliers were taken out
 };
@@ -58,14 +60,13 @@ struct TrackOptions {
 };
 
 // Points seen by a keyframe and by those most covisible with it; ascending, bounded whatever the map's size.
-std::vector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
+ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
 
 // Projects the candidates from the predicted pose, matches them nearby, refines the pose, matches the rest around it,
 // refines all matches in the image, and the pose again on those. A first search that finds too little, or too much that
 // does not agree, is repeated in wide_radius. Empty when too few inliers remain or most matches disagree.
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                                  const MapView& map, const std::vector<PointId>& candidates,
-                                  const TrackOptions& options);
+                                  const MapView& map, std::span<const PointId> candidates, const TrackOptions& options);
 
 // Where prediction has failed: matches descriptors with one keyframe's points wherever they are in the image, and
 // finds the pose from three points at a time. The result is a prediction for track().

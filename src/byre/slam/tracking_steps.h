@@ -5,6 +5,7 @@
 #include "byre/slam/tracking.h"
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,8 +18,8 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
                                  double disparity_sigma);
 
 // As project_points(), but for points that are hidden. Refills `expected`.
-void project_visible(const MapView& map, const std::vector<PointId>& points, const Pose& camera_from_world,
-                     const Rig& rig, const HiddenCells& hidden, std::vector<ExpectedPoint>& expected);
+void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
+                     const HiddenCells& hidden, std::vector<ExpectedPoint>& expected);
 
 // Matches measured in the image: what each says of the pose, and what it becomes when it is an inlier; in step.
 struct MeasuredPoints {
@@ -52,19 +53,19 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
 
 // How many of the points each keyframe sees, by keyframe. Refills `shared`.
 using SharedPoints = std::vector<std::pair<KeyframeId, int>>;
-void count_shared_points(const MapView& map, const std::vector<TrackedFeature>& features, SharedPoints& shared);
+void count_shared_points(const MapView& map, std::span<const TrackedFeature> features, SharedPoints& shared);
 
 // The keyframe that sees most of them; of one map only, unless origin is empty.
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});
 
-std::vector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
-std::vector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+ReusedVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+ReusedVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
 
 // Whether the feature was found to show the point itself, and not just to resemble it, as far as patches can tell.
 bool shows_patch(const TrackedFeature& feature, const Features& features);
 
 // What is left to the caller: counts of expected points and of matches.
-TrackedFrame tracked_frame(const PoseRefinement& refined, std::vector<TrackedFeature> inliers, KeyframeId reference,
+TrackedFrame tracked_frame(const PoseRefinement& refined, ReusedVector<TrackedFeature> inliers, KeyframeId reference,
                            const MapView& map);
 
 }  // namespace byre

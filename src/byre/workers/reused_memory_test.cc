@@ -1,0 +1,58 @@
+#include "byre/workers/reused_memory.h"
+
+#include <cstddef>
+#include <numeric>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::Each;
+
+TEST(ReusedMemory, IsHandedOutAgain) {
+  void* const first = take_reused_memory(1000);
+  give_reused_memory(first, 1000);
+  EXPECT_EQ(take_reused_memory(900), first) << "blocks of about the same size take each other's place";
+  void* const second = take_reused_memory(1000);
+  EXPECT_NE(second, first) << "it is in use";
+  give_reused_memory(first, 900);
+  give_reused_memory(second, 1000);
+}
+
+TEST(ReusedMemory, IsNeverSmallerThanAskedFor) {
+  constexpr std::size_t kMost = 3 << 20;
+  for (std::size_t bytes = 1; bytes < kMost; bytes = bytes * 3 + 1) {
+    give_reused_memory(take_reused_memory(bytes), bytes);
+    ReusedVector<std::byte> filled(bytes + 1, std::byte{7});  // the sanitizers tell where it is too small
+    EXPECT_THAT(std::vector(filled.end() - 1, filled.end()), Each(std::byte{7})) << bytes;
+  }
+}
+
+TEST(ReusedMemory, HoldsListsThatGoFromThreadToThread) {
+  ReusedVector<int> made;
+  std::thread([&] {
+    ReusedVector<int> numbers(5000);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    made = std::move(numbers);
+  }).join();
+  const ReusedVector<int> copy = made;
+  std::thread([gone = std::move(made)]() mutable { gone = {}; }).join();
+  EXPECT_EQ(copy.size(), 5000U);
+  EXPECT_EQ(std::accumulate(copy.begin(), copy.end(), 0), 4999 * 5000 / 2);
+}
+
+TEST(ReusedMemory, HoldsListsThatOutliveItsStore) {
+  thread_local ReusedVector<int> outlives;  // made before the store, hence destroyed after it
+  std::thread([] {
+    outlives.clear();
+    outlives.assign(1000, 1);
+    EXPECT_EQ(outlives.size(), 1000U);
+  }).join();
+}
+
+}  // namespace
+}  // namespace byre
