@@ -92,7 +92,7 @@ TEST_F(SmallMap, MovesSightingsWithTheirFeatures) {
   map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f});
   const Features& before = *map.find_keyframe(first)->frame.features;
   const Eigen::Vector2f was = before.keypoint(2).pixel;
-  std::vector<Keypoint> keypoints = before.keypoints();
+  std::vector<Keypoint> keypoints = to_vector(before.keypoints());
   keypoints[2].pixel += Eigen::Vector2f(2.0f, -1.0f);
   map.move_features(first, before.moved(keypoints));
   EXPECT_EQ(map.find_keyframe(first)->frame.features->keypoint(2).pixel, was + Eigen::Vector2f(2.0f, -1.0f));

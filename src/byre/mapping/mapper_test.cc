@@ -67,11 +67,12 @@ TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
 // A third of the features gets no disparity, hence no point from one frame alone.
 Frame with_patches(const Frame& frame, const Rig& rig) {
   const Features& bare = *frame.features;
-  std::vector<Keypoint> keypoints = bare.keypoints();
+  std::vector<Keypoint> keypoints = to_vector(bare.keypoints());
   for (std::size_t i = 0; i < keypoints.size(); i += 3) keypoints[i].disparity = keypoints[i].disparity_sigma = -1.0f;
   Frame result = frame;
-  result.features = std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), bare.descriptors(),
-                                                     std::vector<Patch>(static_cast<std::size_t>(bare.size())));
+  result.features =
+      std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints), to_vector(bare.descriptors()),
+                                       std::vector<Patch>(static_cast<std::size_t>(bare.size())));
   return result;
 }
 

@@ -33,7 +33,7 @@ TEST(StowedPatches, MoveWithTheirFeatures) {
   ASSERT_FALSE(features->patches().empty());
   ScratchFile file;
   const auto stowed = with_stowed_patches(features, file);
-  const Features moved = stowed->moved(features->keypoints());
+  const Features moved = stowed->moved(to_vector(features->keypoints()));
   EXPECT_EQ(moved.patches().data(), stowed->patches().data());
   for (int i = 0; i < moved.size(); ++i) {
     const Patch* const patch = features->find_patch(i);
