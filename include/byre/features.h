@@ -82,8 +82,12 @@ class Features {
 
   // The same, but for the patches of other features. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
-  // The same, whose patches lie elsewhere. Precondition: equal ones, as patches() gives them.
-  Features with_patches_at(std::shared_ptr<const Patch> patches) const;
+
+  // All that takes memory, list by list, and the same features whose lists lie elsewhere. A list without another place
+  // stays where it is. Precondition: copies of what lists() shows, aligned as that is.
+  static constexpr std::size_t kLists = 5;
+  std::array<std::span<const std::byte>, kLists> lists() const;
+  Features with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const;
 
   int size() const { return static_cast<int>(keypoints().size()); }
   std::span<const Keypoint> keypoints() const { return keypoints_.view(); }
@@ -92,12 +96,12 @@ class Features {
   const Descriptor& descriptor(int i) const { return descriptors()[static_cast<std::size_t>(i)]; }
   // nullptr where none was kept: a patch takes several times the memory of all the rest.
   const Patch* find_patch(int i) const {
-    const std::span<const int> patches = patch_of_keypoint_.view();
-    const int patch = patches.empty() ? -1 : patches[static_cast<std::size_t>(i)];
-    return patch < 0 ? nullptr : patches_.get() + patch;
+    const std::span<const int> indices = patch_of_keypoint_.view();
+    const int patch = indices.empty() ? -1 : indices[static_cast<std::size_t>(i)];
+    return patch < 0 ? nullptr : patches().data() + patch;
   }
   // Those that were kept, in any order.
-  std::span<const Patch> patches() const { return {patches_.get(), patch_count_}; }
+  std::span<const Patch> patches() const { return patches_.view(); }
 
   // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
   // [min_octave, max_octave], in ascending order of rows of cells.
@@ -124,6 +128,15 @@ class Features {
       elsewhere_ = std::exchange(other.elsewhere_, {});
       view_ = std::exchange(other.view_, {});
       return *this;
+    }
+
+    // As many of them that lie elsewhere.
+    Items(std::shared_ptr<const Item> elsewhere, std::size_t count)
+        : elsewhere_(std::move(elsewhere)), view_(elsewhere_.get(), count) {}
+    // The same at that place, if there is one.
+    Items at(const std::shared_ptr<const std::byte>& place) const {
+      if (!place) return *this;
+      return {{place, reinterpret_cast<const Item*>(place.get())}, view_.size()};
     }
 
     std::span<const Item> view() const { return view_; }
@@ -153,8 +166,7 @@ class Features {
   float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
   Items<Keypoint> keypoints_;
   Items<Descriptor> descriptors_;
-  std::shared_ptr<const Patch> patches_;  // the first of them; shared with copies that were moved
-  std::size_t patch_count_ = 0;
+  Items<Patch> patches_;  // elsewhere: shared with copies that were moved
   Items<int> patch_of_keypoint_;
   Items<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
 };

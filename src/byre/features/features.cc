@@ -101,7 +101,7 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
   cell_begin_.take(std::move(cell_begin));
   keypoints_.take(in_order(std::move(keypoints), cells.order));
   descriptors_.take(in_order(std::move(descriptors), cells.order));
-  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patch_count_);
+  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_.view().size());
   patch_of_keypoint_.take(in_order(std::move(patch_of_keypoint), cells.order));
 }
 
@@ -122,7 +122,7 @@ void Features::refill(int width, int height, const std::vector<Keypoint>& keypoi
   descriptors_.refill([&](std::vector<Descriptor>& sorted) { take_in_order(descriptors, *order, sorted); });
   patch_of_keypoint_.refill([&](std::vector<int>& patch_of_keypoint) {
     patch_of_keypoint.clear();
-    if (patch_count_ > 0) patch_of_keypoint = *order;
+    if (!patches_.view().empty()) patch_of_keypoint = *order;
   });
 }
 
@@ -171,15 +171,28 @@ Features Features::with_patches_of(std::span<const int> features) const {
   return result;
 }
 
-Features Features::with_patches_at(std::shared_ptr<const Patch> patches) const {
-  Features result = *this;
-  result.patches_ = std::move(patches);
+// What is looked at together comes first, near each other.
+std::array<std::span<const std::byte>, Features::kLists> Features::lists() const {
+  return {std::as_bytes(keypoints()), std::as_bytes(patch_of_keypoint_.view()), std::as_bytes(cell_begin_.view()),
+          std::as_bytes(descriptors()), std::as_bytes(patches())};
+}
+
+Features Features::with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const {
+  Features result;
+  result.cell_size_ = cell_size_;
+  result.columns_ = columns_;
+  result.rows_ = rows_;
+  result.slack_ = slack_;
+  result.keypoints_ = keypoints_.at(places[0]);
+  result.patch_of_keypoint_ = patch_of_keypoint_.at(places[1]);
+  result.cell_begin_ = cell_begin_.at(places[2]);
+  result.descriptors_ = descriptors_.at(places[3]);
+  result.patches_ = patches_.at(places[4]);
   return result;
 }
 
 void Features::take_patches(const std::shared_ptr<const std::vector<Patch>>& patches) {
-  patches_ = std::shared_ptr<const Patch>(patches, patches->data());
-  patch_count_ = patches->size();
+  patches_ = Items<Patch>(std::shared_ptr<const Patch>(patches, patches->data()), patches->size());
 }
 
 }  // namespace byre
