@@ -47,7 +47,7 @@ void add_room(const Map& room, MapParts& parts) {
     keyframe.words.resize(keyframe.sightings.size());
     if (keyframe.parent) keyframe.parent->number += first_keyframe;
     for (Sighting& sighting : keyframe.sightings) {
-      if (sighting.point) sighting.point->number += first_point;
+      if (sighting.point) sighting.point = PointId{Origin::offline, sighting.point->number + first_point};
     }
     parts.keyframes.push_back(std::move(keyframe));
   }

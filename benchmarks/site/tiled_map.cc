@@ -119,7 +119,7 @@ void append(MapParts copy, const Eigen::Vector3d& shift, Timestamp later, MapPar
     keyframe.camera_from_world.translation -= keyframe.camera_from_world.rotation * shift;
     if (keyframe.parent) keyframe.parent->number += first_keyframe;
     for (Sighting& sighting : keyframe.sightings) {
-      if (sighting.point) sighting.point->number += first_point;
+      if (sighting.point) sighting.point = PointId{Origin::offline, sighting.point->number + first_point};
     }
     site.keyframes.push_back(std::move(keyframe));
   }

@@ -75,6 +75,36 @@ class SmallMap : public ::testing::Test {
   PointId shared, lonely;
 };
 
+TEST(OptionalPoint, IsWhatItStandsFor) {
+  EXPECT_EQ(sizeof(OptionalPoint), 4u);
+  for (const Origin origin : {Origin::offline, Origin::online}) {
+    for (const std::uint32_t number : {0u, 1u, 12345678u, 0x7FFFFFFEu}) {
+      const PointId id{origin, number};
+      OptionalPoint point = id;
+      ASSERT_TRUE(point.has_value());
+      EXPECT_EQ(*point, id);
+      EXPECT_EQ(point->number, number);
+      EXPECT_EQ(std::optional<PointId>(point), id);
+      EXPECT_EQ(OptionalPoint(std::optional(id)), point);
+      EXPECT_EQ(point, id);
+      EXPECT_FALSE(point == (PointId{origin, number ^ 1u}));
+      EXPECT_FALSE(point == OptionalPoint());
+      point.reset();
+      EXPECT_FALSE(point);
+    }
+  }
+}
+
+TEST(OptionalPoint, MayBeNone) {
+  const std::optional<PointId> none;
+  const OptionalPoint point = none;
+  EXPECT_FALSE(point.has_value());
+  EXPECT_EQ(point, std::nullopt);
+  EXPECT_EQ(point, none);
+  EXPECT_EQ(std::optional<PointId>(point), std::nullopt);
+  EXPECT_FALSE(point == PointId{});
+}
+
 TEST_F(SmallMap, KeepsBothEndsOfAnObservation) {
   EXPECT_THAT(map.observations(shared),
               ElementsAre(Observation{first, 0}, Observation{second, 0}, Observation{third, 0}));
