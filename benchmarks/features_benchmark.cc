@@ -52,7 +52,7 @@ DetectedPair detected_pair() {
   pair.rig = rectifier.rig();
   build_pyramid(rectifier.left(as_matrix(images.left)), pair.left);
   build_pyramid(rectifier.right(as_matrix(*images.right)), pair.right);
-  pair.keypoints = Extractor(calibration, {}).extract({{}, images.left, {}}).frame.features->keypoints();
+  pair.keypoints = to_vector(Extractor(calibration, {}).extract({{}, images.left, {}}).frame.features->keypoints());
   return pair;
 }
 

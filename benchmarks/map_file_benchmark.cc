@@ -34,8 +34,8 @@ std::shared_ptr<const Features> with_patches(const Map& map, KeyframeId id) {
     patches.emplace_back().centre.setConstant(Patch::kSize / 2);
   }
   const Features& features = *keyframe.frame.features;
-  return std::make_shared<const Features>(rig.width, rig.height, features.keypoints(), features.descriptors(), patches,
-                                          patch_of_keypoint);
+  return std::make_shared<const Features>(rig.width, rig.height, to_vector(features.keypoints()),
+                                          to_vector(features.descriptors()), patches, patch_of_keypoint);
 }
 
 void add_room(const Map& room, MapParts& parts) {
@@ -47,7 +47,7 @@ void add_room(const Map& room, MapParts& parts) {
     keyframe.words.resize(keyframe.sightings.size());
     if (keyframe.parent) keyframe.parent->number += first_keyframe;
     for (Sighting& sighting : keyframe.sightings) {
-      if (sighting.point) sighting.point->number += first_point;
+      if (sighting.point) sighting.point = PointId{Origin::offline, sighting.point->number + first_point};
     }
     parts.keyframes.push_back(std::move(keyframe));
   }

@@ -77,7 +77,7 @@ struct BundleSize {
 std::vector<std::vector<BundleObservation>> views_of_landmarks(const SimulatedMission& mission) {
   std::vector<std::vector<BundleObservation>> views(mission.landmarks_in_world.size());
   for (std::size_t frame = 0; frame < mission.frames.size(); ++frame) {
-    const std::vector<Keypoint>& keypoints = mission.frames[frame].features->keypoints();
+    const std::span<const Keypoint> keypoints = mission.frames[frame].features->keypoints();
     for (std::size_t i = 0; i < keypoints.size(); ++i) {
       auto& views_of_this = views[mission.landmark_of_feature[frame][i]];
       views_of_this.push_back(measured<BundleObservation>(keypoints[i]));

@@ -48,7 +48,7 @@ void append(const SimulatedMission& lap, int hall, SimulatedMission& building) {
 const Vocabulary& vocabulary() {
   static const Vocabulary trained = [] {
     std::vector<std::vector<Descriptor>> images;
-    for (const Frame& frame : lap(0, 1).frames) images.push_back(frame.features->descriptors());
+    for (const Frame& frame : lap(0, 1).frames) images.push_back(to_vector(frame.features->descriptors()));
     return Vocabulary::train(images, {.branching = 10, .depth = 4, .rounds = 3, .seed = 1});
   }();
   return trained;

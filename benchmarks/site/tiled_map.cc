@@ -92,14 +92,14 @@ std::shared_ptr<const Features> with_descriptors(const Features& features, const
     patch_of_keypoint[i] = static_cast<int>(patches.size());
     patches.push_back(*patch);
   }
-  return std::make_shared<const Features>(rig.width, rig.height, features.keypoints(), std::move(descriptors),
-                                          std::move(patches), std::move(patch_of_keypoint));
+  return std::make_shared<const Features>(rig.width, rig.height, to_vector(features.keypoints()),
+                                          std::move(descriptors), std::move(patches), std::move(patch_of_keypoint));
 }
 
 // The features of a keyframe whose points were described otherwise before.
 void follow_points(const std::vector<MapPoint>& before, const MapParts& parts, const Vocabulary& vocabulary,
                    Keyframe& keyframe) {
-  std::vector<Descriptor> descriptors = keyframe.frame.features->descriptors();
+  std::vector<Descriptor> descriptors = to_vector(keyframe.frame.features->descriptors());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const std::optional<PointId>& point = keyframe.sightings[i].point;
     if (!point) continue;
@@ -119,7 +119,7 @@ void append(MapParts copy, const Eigen::Vector3d& shift, Timestamp later, MapPar
     keyframe.camera_from_world.translation -= keyframe.camera_from_world.rotation * shift;
     if (keyframe.parent) keyframe.parent->number += first_keyframe;
     for (Sighting& sighting : keyframe.sightings) {
-      if (sighting.point) sighting.point->number += first_point;
+      if (sighting.point) sighting.point = PointId{Origin::offline, sighting.point->number + first_point};
     }
     site.keyframes.push_back(std::move(keyframe));
   }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,7 +49,14 @@ struct Patch {
   Eigen::Vector2f centre;                            // place of the keypoint in the patch, octave pixels, near (8, 8)
 };
 
+// A list of one's own of what a view shows.
+template <typename Item>
+std::vector<Item> to_vector(std::span<const Item> items) {
+  return {items.begin(), items.end()};
+}
+
 // Keypoints, their descriptors and patches, one each; sorted by grid cell, so that an area is a few short ranges.
+// Views of them last as long as the features do.
 class Features {
  public:
   Features() = default;
@@ -74,21 +82,26 @@ class Features {
 
   // The same, but for the patches of other features. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
-  // The same, whose patches lie elsewhere. Precondition: equal ones, as patches() gives them.
-  Features with_patches_at(std::shared_ptr<const Patch> patches) const;
 
-  int size() const { return static_cast<int>(keypoints_.size()); }
-  const std::vector<Keypoint>& keypoints() const { return keypoints_; }
-  const std::vector<Descriptor>& descriptors() const { return descriptors_; }
-  const Keypoint& keypoint(int i) const { return keypoints_[static_cast<std::size_t>(i)]; }
-  const Descriptor& descriptor(int i) const { return descriptors_[static_cast<std::size_t>(i)]; }
+  // All that takes memory, list by list, and the same features whose lists lie elsewhere. A list without another place
+  // stays where it is. Precondition: copies of what lists() shows, aligned as that is.
+  static constexpr std::size_t kLists = 5;
+  std::array<std::span<const std::byte>, kLists> lists() const;
+  Features with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const;
+
+  int size() const { return static_cast<int>(keypoints().size()); }
+  std::span<const Keypoint> keypoints() const { return keypoints_.view(); }
+  std::span<const Descriptor> descriptors() const { return descriptors_.view(); }
+  const Keypoint& keypoint(int i) const { return keypoints()[static_cast<std::size_t>(i)]; }
+  const Descriptor& descriptor(int i) const { return descriptors()[static_cast<std::size_t>(i)]; }
   // nullptr where none was kept: a patch takes several times the memory of all the rest.
   const Patch* find_patch(int i) const {
-    const int patch = patch_of_keypoint_.empty() ? -1 : patch_of_keypoint_[static_cast<std::size_t>(i)];
-    return patch < 0 ? nullptr : patches_.get() + patch;
+    const std::span<const int> indices = patch_of_keypoint_.view();
+    const int patch = indices.empty() ? -1 : indices[static_cast<std::size_t>(i)];
+    return patch < 0 ? nullptr : patches().data() + patch;
   }
   // Those that were kept, in any order.
-  std::span<const Patch> patches() const { return {patches_.get(), patch_count_}; }
+  std::span<const Patch> patches() const { return patches_.view(); }
 
   // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
   // [min_octave, max_octave], in ascending order of rows of cells.
@@ -96,19 +109,66 @@ class Features {
   void visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave, Visitor visit) const;
 
  private:
-  void note_moves(const std::vector<Keypoint>& keypoints);
+  // Items of its own, or such as lie elsewhere, which copies share.
+  template <typename Item>
+  class Items {
+   public:
+    Items() = default;
+    Items(const Items& other) { *this = other; }
+    Items(Items&& other) noexcept { *this = std::move(other); }
+    ~Items() = default;
+    Items& operator=(const Items& other) {
+      own_ = other.own_;
+      elsewhere_ = other.elsewhere_;
+      view_ = elsewhere_ ? other.view_ : own_;
+      return *this;
+    }
+    Items& operator=(Items&& other) noexcept {
+      own_ = std::exchange(other.own_, {});
+      elsewhere_ = std::exchange(other.elsewhere_, {});
+      view_ = std::exchange(other.view_, {});
+      return *this;
+    }
+
+    // As many of them that lie elsewhere.
+    Items(std::shared_ptr<const Item> elsewhere, std::size_t count)
+        : elsewhere_(std::move(elsewhere)), view_(elsewhere_.get(), count) {}
+    // The same at that place, if there is one.
+    Items at(const std::shared_ptr<const std::byte>& place) const {
+      if (!place) return *this;
+      return {{place, reinterpret_cast<const Item*>(place.get())}, view_.size()};
+    }
+
+    std::span<const Item> view() const { return view_; }
+    // Has fill write items of its own, in the memory that it has.
+    template <typename Fill>
+    void refill(Fill fill) {
+      elsewhere_.reset();
+      fill(own_);
+      view_ = own_;
+    }
+    void take(std::vector<Item> items) {
+      refill([&](std::vector<Item>& own) { own = std::move(items); });
+    }
+
+   private:
+    std::vector<Item> own_;  // empty where they lie elsewhere
+    std::shared_ptr<const Item> elsewhere_;
+    std::span<const Item> view_;
+  };
+
+  void note_moves(std::span<const Keypoint> keypoints);
   void take_patches(const std::shared_ptr<const std::vector<Patch>>& patches);
 
   int cell_size_ = 0;  // pixels
   int columns_ = 0;
   int rows_ = 0;
   float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
-  std::vector<Keypoint> keypoints_;
-  std::vector<Descriptor> descriptors_;
-  std::shared_ptr<const Patch> patches_;  // the first of them; shared with copies that were moved
-  std::size_t patch_count_ = 0;
-  std::vector<int> patch_of_keypoint_;
-  std::vector<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
+  Items<Keypoint> keypoints_;
+  Items<Descriptor> descriptors_;
+  Items<Patch> patches_;  // elsewhere: shared with copies that were moved
+  Items<int> patch_of_keypoint_;
+  Items<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
 };
 
 // What the rest of byre sees of one (stereo) image: never pixels, never changed once made.
@@ -142,8 +202,8 @@ void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_oc
     count = 0;
   };
   for (int row = cell(pixel.y() - reach, rows_); row <= last_row; ++row) {
-    const int begin = cell_begin_[static_cast<std::size_t>(row * columns_ + first_column)];
-    const int end = cell_begin_[static_cast<std::size_t>(row * columns_ + last_column + 1)];
+    const int begin = cell_begin_.view()[static_cast<std::size_t>(row * columns_ + first_column)];
+    const int end = cell_begin_.view()[static_cast<std::size_t>(row * columns_ + last_column + 1)];
     for (int i = begin; i < end; ++i) {
       const Keypoint& candidate = keypoint(i);
       const auto is_outside = static_cast<int>(candidate.octave < min_octave) |

@@ -60,7 +60,7 @@ std::optional<std::vector<Descriptor>> ImageDescriber::descriptors_of(const fs::
   std::optional<Image> image = read_image(path);
   if (!image) return std::nullopt;
   Extractor& extractor = extractor_for(image->width, image->height);
-  return extractor.extract({{}, std::move(*image), {}}).frame.features->descriptors();
+  return to_vector(extractor.extract({{}, std::move(*image), {}}).frame.features->descriptors());
 }
 
 }  // namespace byre

@@ -46,16 +46,14 @@ struct Cells {
   int size = 0;  // pixels
   int columns = 0;
   int rows = 0;
-  std::vector<int>& begin;  // see Features::cell_begin_
   // Indices of keypoints. Memory of the thread, used again by the next that are sorted.
   std::vector<int>& order;
 
-  // begin: memory.
-  Cells(int width, int height, const std::vector<Keypoint>& keypoints, std::vector<int>& cell_begin)
+  // begin becomes Features::cell_begin_, in the memory that it has.
+  Cells(int width, int height, const std::vector<Keypoint>& keypoints, std::vector<int>& begin)
       : size(cell_size_for(width, height, keypoints.size())),
         columns((width + size - 1) / size),
         rows((height + size - 1) / size),
-        begin(cell_begin),
         order(memory()[0]) {
     begin.assign(static_cast<std::size_t>(columns * rows + 1), 0);
     std::vector<int>& cells = memory()[1];
@@ -95,14 +93,16 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
                    std::vector<Patch> patches, std::vector<int> patch_of_keypoint) {
   take_patches(std::make_shared<const std::vector<Patch>>(std::move(patches)));
   if (keypoints.empty()) return;
-  const Cells cells(width, height, keypoints, cell_begin_);
+  std::vector<int> cell_begin;
+  const Cells cells(width, height, keypoints, cell_begin);
   cell_size_ = cells.size;
   columns_ = cells.columns;
   rows_ = cells.rows;
-  keypoints_ = in_order(std::move(keypoints), cells.order);
-  descriptors_ = in_order(std::move(descriptors), cells.order);
-  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patch_count_);
-  patch_of_keypoint_ = in_order(std::move(patch_of_keypoint), cells.order);
+  cell_begin_.take(std::move(cell_begin));
+  keypoints_.take(in_order(std::move(keypoints), cells.order));
+  descriptors_.take(in_order(std::move(descriptors), cells.order));
+  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_.view().size());
+  patch_of_keypoint_.take(in_order(std::move(patch_of_keypoint), cells.order));
 }
 
 void Features::refill(int width, int height, const std::vector<Keypoint>& keypoints,
@@ -110,15 +110,20 @@ void Features::refill(int width, int height, const std::vector<Keypoint>& keypoi
                       const std::shared_ptr<const std::vector<Patch>>& patches) {
   take_patches(patches);
   slack_ = 0.0f;
-  cell_begin_.clear();
-  patch_of_keypoint_.clear();
-  const Cells cells(width, height, keypoints, cell_begin_);
-  cell_size_ = cells.size;
-  columns_ = keypoints.empty() ? 0 : cells.columns;
-  rows_ = keypoints.empty() ? 0 : cells.rows;
-  take_in_order(keypoints, cells.order, keypoints_);
-  take_in_order(descriptors, cells.order, descriptors_);
-  if (patch_count_ > 0) patch_of_keypoint_.assign(cells.order.begin(), cells.order.end());
+  std::vector<int>* order = nullptr;
+  cell_begin_.refill([&](std::vector<int>& begin) {
+    const Cells cells(width, height, keypoints, begin);
+    cell_size_ = cells.size;
+    columns_ = keypoints.empty() ? 0 : cells.columns;
+    rows_ = keypoints.empty() ? 0 : cells.rows;
+    order = &cells.order;
+  });
+  keypoints_.refill([&](std::vector<Keypoint>& sorted) { take_in_order(keypoints, *order, sorted); });
+  descriptors_.refill([&](std::vector<Descriptor>& sorted) { take_in_order(descriptors, *order, sorted); });
+  patch_of_keypoint_.refill([&](std::vector<int>& patch_of_keypoint) {
+    patch_of_keypoint.clear();
+    if (!patches_.view().empty()) patch_of_keypoint = *order;
+  });
 }
 
 std::vector<int> Features::order_of(int width, int height, const std::vector<Keypoint>& keypoints) {
@@ -127,56 +132,67 @@ std::vector<int> Features::order_of(int width, int height, const std::vector<Key
 }
 
 Features Features::moved(std::vector<Keypoint> keypoints) const {
-  assert(keypoints.size() == keypoints_.size());
+  assert(static_cast<int>(keypoints.size()) == size());
   Features result = *this;
   result.note_moves(keypoints);
-  result.keypoints_ = std::move(keypoints);
+  result.keypoints_.take(std::move(keypoints));
   return result;
 }
 
 void Features::refill_moved(const Features& features, const std::vector<Keypoint>& keypoints) {
-  assert(keypoints.size() == features.keypoints_.size());
+  assert(static_cast<int>(keypoints.size()) == features.size());
   *this = features;
   note_moves(keypoints);
-  keypoints_ = keypoints;
+  keypoints_.refill([&](std::vector<Keypoint>& own) { own = keypoints; });
 }
 
-void Features::note_moves(const std::vector<Keypoint>& keypoints) {
+void Features::note_moves(std::span<const Keypoint> keypoints) {
   float farthest = 0.0f;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    farthest = std::max(farthest, (keypoints[i].pixel - keypoints_[i].pixel).cwiseAbs().maxCoeff());
+    farthest = std::max(farthest, (keypoints[i].pixel - this->keypoints()[i].pixel).cwiseAbs().maxCoeff());
   }
   slack_ += farthest;
 }
 
 Features Features::with_patches_of(std::span<const int> features) const {
-  std::vector<int> of_features;
+  std::vector<int> patch_of_keypoint(static_cast<std::size_t>(size()), -1);
   std::vector<Patch> kept;
   kept.reserve(features.size());
   for (const int i : features) {
     const Patch* const patch = find_patch(i);
     if (patch == nullptr) continue;
-    of_features.push_back(i);
+    patch_of_keypoint[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
     kept.push_back(*patch);
   }
+  if (kept.empty()) patch_of_keypoint = {};
   Features result = *this;
-  result.patch_of_keypoint_ = std::vector<int>(kept.empty() ? 0 : keypoints_.size(), -1);
-  for (std::size_t i = 0; i < of_features.size(); ++i) {
-    result.patch_of_keypoint_[static_cast<std::size_t>(of_features[i])] = static_cast<int>(i);
-  }
+  result.patch_of_keypoint_.take(std::move(patch_of_keypoint));
   result.take_patches(std::make_shared<const std::vector<Patch>>(std::move(kept)));
   return result;
 }
 
-Features Features::with_patches_at(std::shared_ptr<const Patch> patches) const {
-  Features result = *this;
-  result.patches_ = std::move(patches);
+// What is looked at together comes first, near each other.
+std::array<std::span<const std::byte>, Features::kLists> Features::lists() const {
+  return {std::as_bytes(keypoints()), std::as_bytes(patch_of_keypoint_.view()), std::as_bytes(cell_begin_.view()),
+          std::as_bytes(descriptors()), std::as_bytes(patches())};
+}
+
+Features Features::with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const {
+  Features result;
+  result.cell_size_ = cell_size_;
+  result.columns_ = columns_;
+  result.rows_ = rows_;
+  result.slack_ = slack_;
+  result.keypoints_ = keypoints_.at(places[0]);
+  result.patch_of_keypoint_ = patch_of_keypoint_.at(places[1]);
+  result.cell_begin_ = cell_begin_.at(places[2]);
+  result.descriptors_ = descriptors_.at(places[3]);
+  result.patches_ = patches_.at(places[4]);
   return result;
 }
 
 void Features::take_patches(const std::shared_ptr<const std::vector<Patch>>& patches) {
-  patches_ = std::shared_ptr<const Patch>(patches, patches->data());
-  patch_count_ = patches->size();
+  patches_ = Items<Patch>(std::shared_ptr<const Patch>(patches, patches->data()), patches->size());
 }
 
 }  // namespace byre

@@ -119,8 +119,8 @@ TEST(Features, KeepTheOrderGivenWithinACell) {
 
 TEST(Features, AreUnchangedWhenOrderedAgain) {
   const Features once = make_features(random_keypoints(300, 5));
-  const Features twice(kOddWidth, kOddHeight, once.keypoints(), once.descriptors(), {});
-  EXPECT_EQ(once.descriptors(), twice.descriptors());
+  const Features twice(kOddWidth, kOddHeight, to_vector(once.keypoints()), to_vector(once.descriptors()), {});
+  EXPECT_TRUE(std::ranges::equal(once.descriptors(), twice.descriptors()));
 }
 
 TEST(Features, MayComeWithoutPatches) {

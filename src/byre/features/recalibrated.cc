@@ -20,14 +20,14 @@ Keypoint recalibrated(Keypoint keypoint, const RectifiedChange& change) {
 }  // namespace
 
 Features recalibrated(const Features& features, const RectifiedChange& change) {
-  std::vector<Keypoint> keypoints = features.keypoints();
+  std::vector<Keypoint> keypoints = to_vector(features.keypoints());
   for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
   return features.moved(std::move(keypoints));
 }
 
 void recalibrate_into(const Features& features, const RectifiedChange& change, Features& result) {
   thread_local std::vector<Keypoint> keypoints;  // memory
-  keypoints = features.keypoints();
+  keypoints.assign(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
   result.refill_moved(features, keypoints);
 }

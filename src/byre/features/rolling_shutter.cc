@@ -21,7 +21,7 @@ Keypoint seen_at_once(Keypoint keypoint, const Rig& rig, const CameraMotion& mot
 }  // namespace
 
 Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time) {
-  std::vector<Keypoint> keypoints = features.keypoints();
+  std::vector<Keypoint> keypoints = to_vector(features.keypoints());
   for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
   return features.moved(std::move(keypoints));
 }
@@ -29,7 +29,7 @@ Features seen_at_once(const Features& features, const Rig& rig, const CameraMoti
 void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
                  Features& result) {
   thread_local std::vector<Keypoint> keypoints;  // memory
-  keypoints = features.keypoints();
+  keypoints.assign(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
   result.refill_moved(features, keypoints);
 }

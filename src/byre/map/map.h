@@ -5,6 +5,7 @@
 #include "byre/map/ids.h"
 #include "byre/workers/reused_memory.h"
 
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -33,9 +34,45 @@ struct MapPoint {
   Observation reference;  // the view whose patch defines the point in the image
 };
 
+// A point or none, in a third of the memory of what it stands for: there is one for each feature of each keyframe.
+class OptionalPoint {
+ public:
+  OptionalPoint() = default;
+  OptionalPoint(std::nullopt_t) {}
+  // Precondition: a number below 2^31 - 1.
+  OptionalPoint(PointId id) : bits_(id.number << 1U | static_cast<std::uint32_t>(id.origin)) {
+    assert(id.number < kNone >> 1U);
+  }
+  OptionalPoint(const std::optional<PointId>& id) : OptionalPoint(id ? OptionalPoint(*id) : OptionalPoint()) {}
+
+  bool has_value() const { return bits_ != kNone; }
+  explicit operator bool() const { return has_value(); }
+  operator std::optional<PointId>() const { return has_value() ? std::optional(**this) : std::nullopt; }
+  // Preconditions: has_value().
+  PointId operator*() const { return {static_cast<Origin>(bits_ & 1U), bits_ >> 1U}; }
+  auto operator->() const { return Held{**this}; }
+
+  void reset() { bits_ = kNone; }
+
+  bool operator==(const OptionalPoint&) const = default;
+  bool operator==(const std::optional<PointId>& other) const { return *this == OptionalPoint(other); }
+  bool operator==(PointId other) const { return *this == OptionalPoint(other); }
+  bool operator==(std::nullopt_t) const { return !has_value(); }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  struct Held {
+    PointId id;
+    const PointId* operator->() const { return &id; }
+  };
+
+  std::uint32_t bits_ = kNone;  // the number, and the origin as the lowest bit
+};
+
 // What a keyframe's feature has measured of a point: the keypoint, refined in the image against the point's reference.
 struct Sighting {
-  std::optional<PointId> point;                     // a point of this map or an offline one
+  OptionalPoint point;                              // a point of this map or an offline one
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // full-resolution pixels
   float pixel_sigma = 1.0f;                         // pixels
 };

@@ -46,10 +46,10 @@ StoredMap broken_map(const BrokenInvariant& broken) {
 
 // Changes the keypoints of a keyframe of the first rig, without patches.
 void with_keypoints(Keyframe& keyframe, const std::function<void(std::vector<Keypoint>&)>& change) {
-  std::vector<Keypoint> keypoints = keyframe.frame.features->keypoints();
+  std::vector<Keypoint> keypoints = to_vector(keyframe.frame.features->keypoints());
   change(keypoints);
   keyframe.frame.features = std::make_shared<const Features>(
-      320, 240, keypoints, keyframe.frame.features->descriptors(), std::vector<Patch>{});
+      320, 240, keypoints, to_vector(keyframe.frame.features->descriptors()), std::vector<Patch>{});
 }
 
 auto with_keypoint(const std::function<void(Keypoint&)>& change) {
@@ -77,7 +77,8 @@ auto with_point(const std::function<void(MapPoint&)>& change) {
 std::shared_ptr<const Features> with_patch_at(const Features& features, const Eigen::Vector2f& centre) {
   std::vector<Patch> patches(features.keypoints().size());
   for (Patch& patch : patches) patch.centre = centre;
-  return std::make_shared<const Features>(320, 240, features.keypoints(), features.descriptors(), patches);
+  return std::make_shared<const Features>(320, 240, to_vector(features.keypoints()), to_vector(features.descriptors()),
+                                          patches);
 }
 
 const std::vector<BrokenInvariant>& broken_invariants() {

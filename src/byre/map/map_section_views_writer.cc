@@ -29,7 +29,7 @@ void write_keypoint(const Keypoint& keypoint, std::uint8_t bits, const Rig& rig,
 }
 
 void write_descriptors(const Map& map, const Keyframe& keyframe, ByteWriter& writer) {
-  const std::vector<Descriptor>& descriptors = features_of(keyframe).descriptors();
+  const std::span<const Descriptor> descriptors = features_of(keyframe).descriptors();
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const std::optional<PointId>& point = keyframe.sightings[i].point;
     if (point) {

@@ -75,6 +75,36 @@ class SmallMap : public ::testing::Test {
   PointId shared, lonely;
 };
 
+TEST(OptionalPoint, IsWhatItStandsFor) {
+  EXPECT_EQ(sizeof(OptionalPoint), 4u);
+  for (const Origin origin : {Origin::offline, Origin::online}) {
+    for (const std::uint32_t number : {0u, 1u, 12345678u, 0x7FFFFFFEu}) {
+      const PointId id{origin, number};
+      OptionalPoint point = id;
+      ASSERT_TRUE(point.has_value());
+      EXPECT_EQ(*point, id);
+      EXPECT_EQ(point->number, number);
+      EXPECT_EQ(std::optional<PointId>(point), id);
+      EXPECT_EQ(OptionalPoint(std::optional(id)), point);
+      EXPECT_EQ(point, id);
+      EXPECT_FALSE(point == (PointId{origin, number ^ 1u}));
+      EXPECT_FALSE(point == OptionalPoint());
+      point.reset();
+      EXPECT_FALSE(point);
+    }
+  }
+}
+
+TEST(OptionalPoint, MayBeNone) {
+  const std::optional<PointId> none;
+  const OptionalPoint point = none;
+  EXPECT_FALSE(point.has_value());
+  EXPECT_EQ(point, std::nullopt);
+  EXPECT_EQ(point, none);
+  EXPECT_EQ(std::optional<PointId>(point), std::nullopt);
+  EXPECT_FALSE(point == PointId{});
+}
+
 TEST_F(SmallMap, KeepsBothEndsOfAnObservation) {
   EXPECT_THAT(map.observations(shared),
               ElementsAre(Observation{first, 0}, Observation{second, 0}, Observation{third, 0}));
@@ -92,7 +122,7 @@ TEST_F(SmallMap, MovesSightingsWithTheirFeatures) {
   map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f});
   const Features& before = *map.find_keyframe(first)->frame.features;
   const Eigen::Vector2f was = before.keypoint(2).pixel;
-  std::vector<Keypoint> keypoints = before.keypoints();
+  std::vector<Keypoint> keypoints = to_vector(before.keypoints());
   keypoints[2].pixel += Eigen::Vector2f(2.0f, -1.0f);
   map.move_features(first, before.moved(keypoints));
   EXPECT_EQ(map.find_keyframe(first)->frame.features->keypoint(2).pixel, was + Eigen::Vector2f(2.0f, -1.0f));

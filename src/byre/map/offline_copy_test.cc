@@ -31,7 +31,7 @@ class OfflineCopy : public testing::Test {
     for (Keyframe keyframe : scene_.parts().keyframes) {
       if (keyframe.parent) keyframe.parent->origin = Origin::online;
       for (Sighting& sighting : keyframe.sightings) {
-        if (sighting.point) sighting.point->origin = Origin::online;
+        if (sighting.point) sighting.point = PointId{Origin::online, sighting.point->number};
       }
       online_.add_keyframe(keyframe);
     }

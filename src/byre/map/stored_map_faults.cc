@@ -31,7 +31,7 @@ bool are_dense(const std::vector<Id>& ids) {
 }
 
 bool are_in_grid_order(const Features& features, const Rig& rig) {
-  const Features sorted(rig.width, rig.height, features.keypoints(), features.descriptors(), {});
+  const Features sorted(rig.width, rig.height, to_vector(features.keypoints()), to_vector(features.descriptors()), {});
   return std::ranges::equal(sorted.keypoints(), features.keypoints(), {}, &Keypoint::pixel, &Keypoint::pixel);
 }
 

@@ -15,7 +15,7 @@ void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std:
   outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
   worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
     return adjust_map(std::move(*recent), *outline, loops, options, [&] {
-      stowed->forget_looks();  // points were fused by patches
+      stowed->forget_looks();  // at features of the whole map
       return is_hurried->load();
     });
   });
@@ -25,8 +25,11 @@ void GlobalLane::calibrate(const MapView& map, const CalibrationState& state, in
                            const SelfCalibrationOptions& options) {
   assert(idle());
   const auto snapshot = std::make_shared<const MapWindow>(whole_map(map));
-  worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_] {
-    return self_calibrate(*snapshot, state, rig, options, [&is_hurried] { return is_hurried->load(); });
+  worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_, stowed = stowed_] {
+    return self_calibrate(*snapshot, state, rig, options, [&] {
+      stowed->forget_looks();
+      return is_hurried->load();
+    });
   });
 }
 

@@ -25,7 +25,7 @@ struct AppliedCorrection {
 // correction waits until local mapping has nothing in flight, for what that works on would be out of date.
 class GlobalLane {
  public:
-  // stowed: where patches of the maps lie that are corrected.
+  // stowed: where features of the maps lie that are corrected.
   GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options,
              std::shared_ptr<const ScratchFile> stowed)
       : options_(options), stowed_(std::move(stowed)), worker_(std::move(executor)) {}

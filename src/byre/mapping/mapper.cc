@@ -10,6 +10,11 @@
 #include <utility>
 
 namespace byre {
+namespace {
+
+constexpr std::uint32_t kNewKeyframes = 32;  // as many as a window holds: all of what they see stays in memory
+
+}  // namespace
 
 Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
                std::unique_ptr<Executor> global, MapperKnowledge knowledge)
@@ -34,6 +39,7 @@ void Mapper::continue_map(Map online) {
   newest_ = online_.keyframe_ids().back();
   first_new_ = next_keyframe_number();
   submaps_.begin_in_map_frame(0);
+  stow_all_anew();
 }
 
 void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
@@ -142,18 +148,17 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
   ++revision_;
   pending_.push_back(id);
   start_job();
-  forget_patches();
+  stow_old_keyframe();
   return id;
 }
 
 // Patches at corners that see no point serve to find new points, which is done among the newest keyframes. At the
 // others they serve for as long as the map grows: points are fused, and defined by another view. Without them errors of
-// maps with loops grow by some percent. But few of them at a time, so that they lie in a file. It is written by jobs,
-// as a disk may be busy.
-void Mapper::forget_patches() {
-  constexpr std::uint32_t kNew = 32;  // keyframes, as many as a window holds
-  if (newest_->number < kNew) return;
-  const KeyframeId old{newest_->origin, newest_->number - kNew};
+// maps with loops grow by some percent. But few of them at a time, as of all that a keyframe's features are, so that
+// they lie in a file. It is written by jobs, as a disk may be busy.
+void Mapper::stow_old_keyframe() {
+  if (newest_->number < kNewKeyframes) return;
+  const KeyframeId old{newest_->origin, newest_->number - kNewKeyframes};
   const Keyframe* const keyframe = online_.find_keyframe(old);
   if (keyframe == nullptr) return;
   std::vector<int> kept;
@@ -161,7 +166,20 @@ void Mapper::forget_patches() {
     if (keyframe->sightings[static_cast<std::size_t>(i)].point) kept.push_back(i);
   }
   online_.keep_patches(old, kept);
-  to_stow_.push_back({old, keyframe->frame.features});
+  stow_later(old);
+}
+
+void Mapper::stow_later(KeyframeId id) {
+  const Keyframe* const keyframe = online_.find_keyframe(id);
+  if (keyframe != nullptr) to_stow_.push_back({id, keyframe->frame.features});
+}
+
+// A map that was read has all in memory, and features that moved have keypoints of their own again.
+void Mapper::stow_all_anew() {
+  to_stow_.clear();
+  for (const KeyframeId id : online_.keyframe_ids()) {
+    if (id.number + kNewKeyframes <= newest_->number) stow_later(id);
+  }
 }
 
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
@@ -224,6 +242,7 @@ void Mapper::take_over(const LocalOutcome& outcome) {
 bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
   if (!shutter.has_change() || !local_.idle() || !global_.idle()) return false;
   shutter.take_over(rig, online_);
+  stow_all_anew();
   ++revision_;
   loop_closer_.forget_hypothesis();
   if (!offline_ && online_.keyframe_count() > 1) bend();
@@ -237,6 +256,7 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
     const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
     const RigTurn turn = recalibrate(*refined, rig);
+    stow_all_anew();
     if (is_large && global_.idle()) bend();
     return turn;
   }
@@ -300,7 +320,7 @@ void Mapper::start_job() {
   mapping.hidden = hidden_;
   local_.start([window = std::move(window), options = mapping, to_stow = std::exchange(to_stow_, {}), file = stowed_] {
     LocalOutcome outcome{extend_map(window, options), to_stow};
-    for (KeyframeFeatures& of : outcome.stowed) of.stowed = with_stowed_patches(of.features, *file);
+    for (KeyframeFeatures& of : outcome.stowed) of.stowed = stowed(of.features, *file);
     file->forget_looks();
     return outcome;
   });
@@ -329,11 +349,19 @@ LengthChanges Mapper::finish() {
   }
 }
 
+// The same, asked now and then by what looks at features of the whole map.
+std::function<bool()> Mapper::forgetting_looks(const std::function<bool()>& should_stop) const {
+  return [this, should_stop] {
+    stowed_->forget_looks();
+    return should_stop && should_stop();
+  };
+}
+
 std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
   // The copy of the map goes before features are made anew, which it would keep as they were.
-  const auto refined =
-      self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig), calibrator_->options(), should_stop);
+  const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
+                                      calibrator_->options(), forgetting_looks(should_stop));
   if (!refined) return std::nullopt;
   return recalibrate(*refined, rig);
 }
@@ -342,12 +370,9 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places_);
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
-  if (first_new == 0) stow_patches(online_, *stowed_);
-  const FinishHooks frugal{[&] {
-                             stowed_->forget_looks();
-                             return hooks.should_stop && hooks.should_stop();
-                           },
-                           hooks.before_step};
+  to_stow_.clear();  // no more jobs
+  if (first_new == 0) stow_features(online_, *stowed_);
+  const FinishHooks frugal{forgetting_looks(hooks.should_stop), hooks.before_step};
   FinishReport report =
       byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
   loop_closer_.follow(report.length_changes);
@@ -358,7 +383,8 @@ LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   assert(offline_);
   MapWindow whole = whole_map(map());
   const MapWindow before = outline_of(whole);
-  const MapDelta adjusted = adjust_map(std::move(whole), before, {}, {options_.mapping}, hooks.should_stop);
+  const MapDelta adjusted =
+      adjust_map(std::move(whole), before, {}, {options_.mapping}, forgetting_looks(hooks.should_stop));
   LengthChanges changes = apply_correction(adjusted, before, online_);
   loop_closer_.follow(changes);
   return changes;

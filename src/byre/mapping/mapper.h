@@ -10,7 +10,7 @@
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/registration.h"
-#include "byre/slam/stowed_patches.h"
+#include "byre/slam/stowed_features.h"
 #include "byre/slam/told_motions.h"
 #include "byre/workers/worker.h"
 
@@ -34,7 +34,7 @@ struct OnlineCorrection {
 struct KeyframeFeatures {
   KeyframeId keyframe;
   std::shared_ptr<const Features> features;          // as they were
-  std::shared_ptr<const Features> stowed = nullptr;  // with their patches in the file
+  std::shared_ptr<const Features> stowed = nullptr;  // in the file
 };
 
 // What a job in a neighbourhood comes to.
@@ -134,7 +134,10 @@ class Mapper {
   void bend();                                      // the map around what came, in the background
   void take_over(const LocalOutcome& outcome);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
-  void forget_patches();
+  void stow_old_keyframe();
+  void stow_all_anew();
+  void stow_later(KeyframeId id);
+  std::function<bool()> forgetting_looks(const std::function<bool()>& should_stop) const;
   void settle_loop(const LoopHypothesis& loop);
   void index_place(KeyframeId id);
   void forget_places(const MapDelta& delta);

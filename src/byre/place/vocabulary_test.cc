@@ -85,7 +85,7 @@ TEST_F(Trained, HasSimilarThingsBelowTheSameNode) {
 
 TEST_F(Trained, GivesAllFeaturesOfAnImageTheirWords) {
   const Features features(640, 480, std::vector<Keypoint>(centres.size(), Keypoint{{1.0f, 1.0f}}), centres, {});
-  EXPECT_EQ(vocabulary.words_of(features), words_of(vocabulary, features.descriptors()));
+  EXPECT_EQ(vocabulary.words_of(features), words_of(vocabulary, to_vector(features.descriptors())));
 }
 
 TEST_F(Trained, IsTheSameForTheSameSeedOnly) {

@@ -25,7 +25,7 @@ struct SeenError {
 };
 
 Frame seen_through(const SeenError& error, const Frame& frame, const Rig& rig) {
-  std::vector<Keypoint> keypoints = frame.features->keypoints();
+  std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
   for (Keypoint& keypoint : keypoints) {
     const double x = 2.0 * keypoint.pixel.x() / rig.width - 1.0;
     const double y = 2.0 * keypoint.pixel.y() / rig.height - 1.0;
@@ -35,7 +35,7 @@ Frame seen_through(const SeenError& error, const Frame& frame, const Rig& rig) {
     if (keypoint.has_disparity()) keypoint.disparity += static_cast<float>(error.disparity);
   }
   return {frame.time, std::make_shared<const Features>(rig.width, rig.height, std::move(keypoints),
-                                                       frame.features->descriptors(), std::vector<Patch>{})};
+                                                       to_vector(frame.features->descriptors()), std::vector<Patch>{})};
 }
 
 SimulatedMission visit(std::uint64_t noise_seed) {

@@ -52,8 +52,8 @@ Frame thinned(const Frame& frame) {
 
 // What both see, as if one place looked like two.
 Frame overlaid(const Frame& frame, const Frame& other) {
-  std::vector<Keypoint> keypoints = frame.features->keypoints();
-  std::vector<Descriptor> descriptors = frame.features->descriptors();
+  std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
+  std::vector<Descriptor> descriptors = to_vector(frame.features->descriptors());
   std::ranges::copy(other.features->keypoints(), std::back_inserter(keypoints));
   std::ranges::copy(other.features->descriptors(), std::back_inserter(descriptors));
   return frame_of(frame.time, std::move(keypoints), std::move(descriptors));

@@ -198,7 +198,7 @@ void change_foreign_views(const MapDelta& delta, Map& online) {
   }
   for (const NewForeignView& added : delta.new_foreign_views) {
     ForeignView view = added.view;
-    view.sighting.point = added.point;
+    view.sighting.point = PointId(added.point);
     online.add_foreign_view(view);
   }
 }

@@ -76,7 +76,7 @@ TEST(InputWatch, PairsThatShareNothingOrLieOnOtherRowsDisagree) {
 
 TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
   Frame frame = pair_with(0, 0.0f);
-  std::vector<Keypoint> keypoints = frame.features->keypoints();
+  std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     keypoints[i].pixel = {static_cast<float>(i % 20) * 32.0f, static_cast<float>(i / 20) * 48.0f};
     if (keypoints[i].pixel.x() > 32.0f) continue;  // one side of the image is clean
@@ -84,8 +84,8 @@ TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
     keypoints[i].disparity_sigma = 0.2f;
     keypoints[i].row_offset = 0.2f;
   }
-  frame.features =
-      std::make_shared<const Features>(640, 480, keypoints, frame.features->descriptors(), std::vector<Patch>{});
+  frame.features = std::make_shared<const Features>(640, 480, keypoints, to_vector(frame.features->descriptors()),
+                                                    std::vector<Patch>{});
   EXPECT_FALSE(disagree_after(10, frame));
 }
 

@@ -314,7 +314,7 @@ std::vector<double> flatten(const MapDelta& delta) {
   const auto append_observation = [&](const NewObservation& seen) {
     append(seen.sighting.pixel);
     numbers.insert(numbers.end(), {static_cast<double>(seen.keyframe.number), static_cast<double>(seen.feature),
-                                   static_cast<double>(seen.sighting.point.value_or(PointId{}).number)});
+                                   static_cast<double>(seen.sighting.point ? seen.sighting.point->number : 0)});
   };
   for (const MovedKeyframe& moved : delta.moved_keyframes) {
     numbers.push_back(moved.id.number);

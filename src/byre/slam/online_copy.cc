@@ -9,7 +9,7 @@ namespace {
 
 void make_online(Sighting& sighting, const Features& features, int feature) {
   if (sighting.point) {
-    sighting.point->origin = Origin::online;
+    sighting.point = PointId{Origin::online, sighting.point->number};
   } else {
     sighting = {std::nullopt, features.keypoint(feature).pixel, reference_sigma(features, feature)};
   }

@@ -15,7 +15,7 @@ namespace byre {
 inline Vocabulary vocabulary_of(const SimulatedMission& mission) {
   std::vector<std::vector<Descriptor>> images;
   for (std::size_t i = 0; i < mission.frames.size(); i += 5)
-    images.push_back(mission.frames[i].features->descriptors());
+    images.push_back(to_vector(mission.frames[i].features->descriptors()));
   return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
 }
 

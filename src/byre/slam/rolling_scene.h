@@ -36,7 +36,7 @@ inline Keypoint read_late(Keypoint keypoint, const Eigen::Vector3d& point_in_cam
 inline SimulatedMission rolling(SimulatedMission mission, double readout_time) {
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const Vector6 velocity = true_velocity(mission, i);
-    std::vector<Keypoint> keypoints = mission.frames[i].features->keypoints();
+    std::vector<Keypoint> keypoints = to_vector(mission.frames[i].features->keypoints());
     for (std::size_t k = 0; k < keypoints.size(); ++k) {
       const int landmark = mission.landmark_of_feature[i][k];
       if (landmark < 0) continue;

@@ -80,7 +80,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
 
 std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes, const Rig& rig,
                                          const CalibrationSensitivity& sensitivity) {
-  const auto keypoints_of = [&](int keyframe) -> const std::vector<Keypoint>& {
+  const auto keypoints_of = [&](int keyframe) {
     return whole.keyframes[static_cast<std::size_t>(keyframe)].keyframe.frame.features->keypoints();
   };
   std::ptrdiff_t count = 0;

@@ -201,7 +201,7 @@ TEST(SelfCalibration, LeavesTheDepthsOfAnExactCalibrationWhereTheyAre) {
 // As one camera alone would have made it.
 MapWindow without_disparities(MapWindow window) {
   for (WindowKeyframe& keyframe : window.keyframes) {
-    std::vector<Keypoint> keypoints = keyframe.keyframe.frame.features->keypoints();
+    std::vector<Keypoint> keypoints = to_vector(keyframe.keyframe.frame.features->keypoints());
     for (Keypoint& keypoint : keypoints) keypoint.disparity = keypoint.disparity_sigma = -1.0f;
     keyframe.keyframe.frame.features =
         std::make_shared<const Features>(keyframe.keyframe.frame.features->moved(std::move(keypoints)));

@@ -1,7 +1,7 @@
 #include "byre/system/refine_map.h"
 
 #include "byre/slam/online_copy.h"
-#include "byre/slam/stowed_patches.h"
+#include "byre/slam/stowed_features.h"
 #include "byre/system/resources.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -15,10 +15,14 @@ Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const Fini
   Map online = online_copy(stored.map);
   stored.map = Map(Origin::offline);  // hundreds of megabytes
   ScratchFile stowed;
-  stow_patches(online, stowed);
+  stow_features(online, stowed);
   Finishing finishing;
   // What reading left free, and each step, is of another kind than the next step needs.
-  const FinishHooks frugal{hooks.should_stop, [&hooks](const char* step) {
+  const FinishHooks frugal{[&] {
+                             stowed.forget_looks();
+                             return hooks.should_stop();
+                           },
+                           [&hooks](const char* step) {
                              release_free_memory();
                              if (hooks.before_step) hooks.before_step(step);
                            }};

@@ -1,0 +1,44 @@
+#include "byre/slam/stowed_features.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace byre {
+
+// All in one piece, which is given back to the disk at once.
+std::shared_ptr<const Features> stowed(const std::shared_ptr<const Features>& features, ScratchFile& file) {
+  constexpr std::size_t kAlignment = 64;  // bytes, of each list
+  if (!features) return features;
+  std::array<std::size_t, Features::kLists> begins{};
+  std::size_t end = 0;
+  const auto lists = features->lists();
+  const auto is_to_move = [&](std::span<const std::byte> list) { return !list.empty() && !file.holds(list.data()); };
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    begins[i] = end;
+    if (is_to_move(lists[i])) end += (lists[i].size() + kAlignment - 1) / kAlignment * kAlignment;
+  }
+  if (end == 0) return features;
+
+  std::vector<std::byte> bytes(end);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (is_to_move(lists[i])) std::ranges::copy(lists[i], bytes.begin() + static_cast<std::ptrdiff_t>(begins[i]));
+  }
+  const std::shared_ptr<const std::byte> piece = file.put(bytes);
+  if (!piece) return features;
+  std::array<std::shared_ptr<const std::byte>, Features::kLists> places;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (is_to_move(lists[i])) places[i] = {piece, piece.get() + begins[i]};
+  }
+  return std::make_shared<const Features>(features->with_lists_at(places));
+}
+
+void stow_features(Map& map, ScratchFile& file) {
+  for (const KeyframeId id : map.keyframe_ids()) {
+    map.replace_features(id, stowed(map.find_keyframe(id)->frame.features, file));
+  }
+}
+
+}  // namespace byre
