@@ -8,6 +8,8 @@ set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesy
 set(BYRE_PRECOMPILED_cold_room ${BYRE_PRECOMPILED_room})
 set(BYRE_PRECOMPILED_test ${BYRE_PRECOMPILED_room} <gmock/gmock.h> <gtest/gtest.h>)
 set(BYRE_PRECOMPILED_test_apart ${BYRE_PRECOMPILED_test})
+set(BYRE_PRECOMPILED_program ${BYRE_PRECOMPILED_room})
+set(BYRE_PRECOMPILED_program_test ${BYRE_PRECOMPILED_test})
 set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp> <CLI/CLI.hpp>)
 set(BYRE_PRECOMPILED_command_test ${BYRE_PRECOMPILED_command} <gmock/gmock.h> <gtest/gtest.h>)
 
@@ -30,4 +32,17 @@ function(byre_precompile kind target)
     target_precompile_headers(${target} PRIVATE ${BYRE_PRECOMPILED_${kind}})
     set_property(GLOBAL PROPERTY BYRE_PRECOMPILED_${kind}_BY ${target})
   endif()
+endfunction()
+
+# The same for programs, each of which defines this and that: what is precompiled for all of them belongs to none. KIND:
+# program, or program_test of those that are linked with GoogleTest.
+function(byre_precompile_program kind target)
+  set(owner byre_precompiled_${kind})
+  if(BYRE_PRECOMPILE AND NOT TARGET ${owner})
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cc CONTENT "")
+    add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cc)
+    target_link_libraries(${owner} PRIVATE byre_flags Eigen3::Eigen $<$<STREQUAL:${kind},program_test>:GTest::gmock>)
+    byre_precompile(${kind} ${owner})
+  endif()
+  byre_precompile(${kind} ${target})
 endfunction()

@@ -19,6 +19,9 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # it takes another file's constants for shadowed ones
   target_compile_options(byre_flags INTERFACE -Wno-shadow)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  target_compile_options(byre_flags INTERFACE "SHELL:-include ${CMAKE_CURRENT_SOURCE_DIR}/cmake/quick_random.h")
+endif()
 # Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.
 target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/include)

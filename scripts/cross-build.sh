@@ -2,15 +2,20 @@
 # Compiles the program, the libraries and their unit tests for 64-bit ARM, on a Debian of another kind, and with --test
 # runs the unit tests by QEMU. What they are linked with is unpacked once from Debian's packages into
 # build/sysroot-aarch64 (1.3 GB), or into the folder that the environment names as BYRE_SYSROOT.
-# Usage: cross-build.sh [--test]
+# Usage: cross-build.sh [--test | --library]
+#   --test      runs all unit tests, for a quarter of an hour on two processors
+#   --library   builds nothing but the unit tests of the library, for scripts/test.sh --arm64, which runs them
+# Exit code 77: something is to be fetched, and Debian's mirror cannot be reached.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 test=false
+preset=aarch64
 case ${1:-} in
   "") ;;
   --test) test=true ;;
-  *) echo "usage: cross-build.sh [--test]" >&2; exit 2 ;;
+  --library) preset=aarch64_tests ;;
+  *) echo "usage: cross-build.sh [--test | --library]" >&2; exit 2 ;;
 esac
 
 tools=(g++-aarch64-linux-gnu mmdebstrap qemu-user-static)
@@ -24,11 +29,24 @@ packages=(
 )
 export BYRE_SYSROOT=${BYRE_SYSROOT:-$PWD/build/sysroot-aarch64}
 
-scripts/install-dependencies.sh
+mirror=http://deb.debian.org/debian
+release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+
 missing=()
 for tool in "${tools[@]}"; do
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$tool" 2>/dev/null) == installed ]] || missing+=("$tool")
 done
+if ((${#missing[@]})) || [[ ! -e $BYRE_SYSROOT/complete ]]; then
+  reached=$(mktemp)
+  /usr/lib/apt/apt-helper -o Acquire::Retries=1 -o Acquire::http::Timeout=20 \
+    download-file "$mirror/dists/$release/Release" "$reached" >/dev/null 2>&1 || {
+    rm -f "$reached"
+    echo "cross-build.sh: $mirror cannot be reached, and packages for arm64 are to be fetched from there" >&2
+    exit 77
+  }
+  rm -f "$reached"
+fi
+scripts/install-dependencies.sh
 if ((${#missing[@]})); then
   as_root=()
   ((EUID == 0)) || as_root=(sudo)
@@ -39,9 +57,8 @@ if [[ ! -e $BYRE_SYSROOT/complete ]]; then
   echo "Unpacking Debian's packages for arm64 into $BYRE_SYSROOT"
   rm -rf "$BYRE_SYSROOT"
   mkdir -p "$(dirname "$BYRE_SYSROOT")"
-  release=$(. /etc/os-release && echo "$VERSION_CODENAME")
   mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$(IFS=,; echo "${packages[*]}")" \
-    "$release" "$BYRE_SYSROOT" http://deb.debian.org/debian
+    "$release" "$BYRE_SYSROOT" "$mirror"
   libraries=$BYRE_SYSROOT/usr/lib/aarch64-linux-gnu
   for name in blas lapack; do # links that installing the packages would have made
     ln -sf "$name/lib$name.so" "$libraries/lib$name.so"
@@ -52,6 +69,6 @@ if [[ ! -e $BYRE_SYSROOT/complete ]]; then
   touch "$BYRE_SYSROOT/complete"
 fi
 
-cmake --preset aarch64
-cmake --build --preset aarch64
+cmake --preset "$preset"
+cmake --build --preset "$preset"
 ! $test || ctest --preset aarch64 --parallel "$(nproc)"

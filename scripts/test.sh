@@ -3,15 +3,20 @@
 # benchmark runs), checks the formatting, then runs the library's unit tests under the address and undefined-behaviour
 # sanitizers and those of rooms with threads under the thread sanitizer, and fuzzes the reading of map files. Says which
 # tests were skipped for lack of their recordings, and which took longest.
-# Usage: test.sh [--quick]   --quick leaves sanitizers and fuzzing out
+# Usage: test.sh [--quick | --arm64]
+#   --quick   leaves sanitizers and fuzzing out
+#   --arm64   runs the library's unit tests for 64-bit ARM too, by QEMU; fetches 1.3 GB of Debian's packages for arm64
+#             the first time
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 quick=false
+arm64=false
 case ${1:-} in
   "") ;;
   --quick) quick=true ;;
-  *) echo "usage: test.sh [--quick]" >&2; exit 2 ;;
+  --arm64) arm64=true ;;
+  *) echo "usage: test.sh [--quick | --arm64]" >&2; exit 2 ;;
 esac
 
 passed=0
@@ -124,12 +129,35 @@ if ! $quick; then
   end_part "fuzzing"
 fi
 
+test_arm64() {
+  local status=0
+  export BYRE_SYSROOT=${BYRE_SYSROOT:-$PWD/build/sysroot-aarch64}
+  scripts/cross-build.sh --library || status=$?
+  end_part "building for 64-bit ARM"
+  if ((status == 77)); then
+    echo "SKIPPED: nothing was tested for 64-bit ARM, as Debian's mirror cannot be reached"
+    skipped=$((skipped + 1))
+  elif ((status)); then
+    failed=$((failed + 1))
+    failures+=("building for 64-bit ARM")
+  else
+    run_tests aarch64_tests
+    end_part "unit tests for 64-bit ARM by QEMU"
+  fi
+}
+
+if $arm64; then
+  headline "64-bit ARM: unit tests of the library, by QEMU"
+  test_arm64
+fi
+
 for log in "${failure_logs[@]}"; do
   headline "$log"
   tail -n 60 "$log"
 done
 echo
 printf '%s\n' "${parts[@]}"
+$arm64 || echo "Left out: the unit tests for 64-bit ARM, which scripts/test.sh --arm64 runs too"
 ((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"
 echo "$passed passed, $failed failed"
