@@ -118,6 +118,7 @@ class Features {
     Items(Items&& other) noexcept { *this = std::move(other); }
     ~Items() = default;
     Items& operator=(const Items& other) {
+      if (this == &other) return *this;
       own_ = other.own_;
       elsewhere_ = other.elsewhere_;
       view_ = elsewhere_ ? other.view_ : own_;

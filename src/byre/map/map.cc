@@ -115,19 +115,20 @@ bool Map::add_foreign_view(const ForeignView& view) {
   const PointId point = *view.sighting.point;
   const KeyframeId keyframe = view.observation.keyframe;
   if (keyframe.origin == origin_ || origin_ == Origin::offline || !find_point(point)) return false;
-  std::vector<ForeignView>& views = slot(point).foreign_views;
-  const auto place = std::ranges::lower_bound(views, keyframe, {}, keyframe_of_view);
-  if (place != views.end() && place->observation.keyframe == keyframe) return false;
+  const std::vector<ForeignView>& present = foreign_views(point);
+  if (std::ranges::binary_search(present, keyframe, {}, keyframe_of_view)) return false;
   if (!points_of_foreign_views_.emplace(view.observation, point).second) return false;
-  views.insert(place, view);
+  std::vector<ForeignView>& views = foreign_views_[point];
+  views.insert(std::ranges::lower_bound(views, keyframe, {}, keyframe_of_view), view);
   return true;
 }
 
 void Map::remove_foreign_view(const Observation& observation) {
   const auto known = points_of_foreign_views_.find(observation);
   if (known == points_of_foreign_views_.end()) return;
-  std::vector<ForeignView>& views = slot(known->second).foreign_views;
+  std::vector<ForeignView>& views = foreign_views_[known->second];
   views.erase(std::ranges::lower_bound(views, observation.keyframe, {}, keyframe_of_view));
+  if (views.empty()) foreign_views_.erase(known->second);
   points_of_foreign_views_.erase(known);
 }
 
@@ -137,6 +138,7 @@ void Map::remove_point(PointId id) {
   const std::vector<Observation> observers = observations(id);
   for (const Observation& observation : observers) unlink(observation);
   for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.erase(view.observation);
+  foreign_views_.erase(id);
   slot(id) = {};
   empty_places_.push_back(std::exchange(place_of_point_[id.number], kGone));
   --point_count_;
@@ -242,8 +244,8 @@ const std::vector<Observation>& Map::observations(PointId id) const {
 
 const std::vector<ForeignView>& Map::foreign_views(PointId id) const {
   static const std::vector<ForeignView> kNone;
-  const PointSlot* const found = find_slot(id);
-  return found ? found->foreign_views : kNone;
+  const auto found = foreign_views_.find(id);
+  return found != foreign_views_.end() ? found->second : kNone;
 }
 
 std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
@@ -305,7 +307,7 @@ const ObservedPoint* Map::find_observed(PointId id) const {
   return id.origin == origin_ && std::cmp_less(id.number, point_count_) ? &source_->point(id.number) : nullptr;
 }
 
-const Map::PointSlot* Map::find_slot(PointId id) const {
+const ObservedPoint* Map::find_slot(PointId id) const {
   if (id.origin != origin_ || id.number >= place_of_point_.size()) return nullptr;
   const std::uint32_t place = place_of_point_[id.number];
   return place == kGone ? nullptr : &points_[place];
@@ -348,7 +350,7 @@ void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
 }
 
 void Map::repair_reference(PointId id) {
-  PointSlot& point_slot = slot(id);
+  ObservedPoint& point_slot = slot(id);
   const std::vector<Observation>& observers = point_slot.observations;
   if (observers.empty() || std::ranges::binary_search(observers, point_slot.point.reference)) return;
   point_slot.point.reference = observers.front();

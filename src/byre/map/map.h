@@ -2,6 +2,7 @@
 
 #include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
+#include "byre/map/block_list.h"
 #include "byre/map/ids.h"
 #include "byre/workers/reused_memory.h"
 
@@ -240,9 +241,6 @@ class Map {
     std::vector<Covisible> covisible;  // ascending by keyframe
     std::vector<KeyframeId> children;  // ascending
   };
-  struct PointSlot : ObservedPoint {
-    std::vector<ForeignView> foreign_views;  // ascending by keyframe
-  };
 
   static constexpr std::uint32_t kGone = 0xFFFFFFFF;  // in place of a place in points_
 
@@ -253,8 +251,8 @@ class Map {
   // nullptr for a point that is gone, and for one of another origin.
   const ObservedPoint* find_observed(PointId id) const;
   // The same, and nullptr for one that a source has.
-  const PointSlot* find_slot(PointId id) const;
-  PointSlot& slot(PointId id) { return points_[place_of_point_[id.number]]; }  // precondition: it is there
+  const ObservedPoint* find_slot(PointId id) const;
+  ObservedPoint& slot(PointId id) { return points_[place_of_point_[id.number]]; }  // precondition: it is there
   // Where the observations of a point are kept, of an offline point too; nullptr for one that is gone.
   std::vector<Observation>* find_observations(PointId id);
 
@@ -277,11 +275,12 @@ class Map {
   std::vector<KeyframeSlot> keyframes_;      // bare ones with a source
   // Points that are there, in any order, and empty places: most of the points that ever were do not last, and shall
   // not take up room for good.
-  std::vector<PointSlot> points_;
+  BlockList<ObservedPoint> points_;
   std::vector<std::uint32_t> place_of_point_;  // place in points_ by the point's number, or kGone
   std::vector<std::uint32_t> empty_places_;
   std::vector<std::vector<Observation>> offline_observations_;  // observations by online keyframes, per offline point
   std::map<Observation, PointId> points_of_foreign_views_;
+  std::map<PointId, std::vector<ForeignView>> foreign_views_;  // ascending by keyframe; only points that have some
   int keyframe_count_ = 0;
   int point_count_ = 0;
 };
