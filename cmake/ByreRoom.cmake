@@ -19,7 +19,7 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # it takes another file's constants for shadowed ones
   target_compile_options(byre_flags INTERFACE -Wno-shadow)
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE "SHELL:-include ${CMAKE_CURRENT_SOURCE_DIR}/cmake/quick_random.h")
 endif()
 # Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.

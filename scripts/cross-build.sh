@@ -2,9 +2,10 @@
 # Compiles the program, the libraries and their unit tests for 64-bit ARM, on a Debian of another kind, and with --test
 # runs the unit tests by QEMU. What they are linked with is unpacked once from Debian's packages into
 # build/sysroot-aarch64 (1.3 GB), or into the folder that the environment names as BYRE_SYSROOT.
-# Usage: cross-build.sh [--test | --library]
-#   --test      runs all unit tests, for a quarter of an hour on two processors
-#   --library   builds nothing but the unit tests of the library, for scripts/test.sh --arm64, which runs them
+# Usage: cross-build.sh [--test | --processor]
+#   --test        runs all unit tests, for a quarter of an hour on two processors
+#   --processor   builds nothing but the unit tests of rooms that have code for each processor, and of what that rests
+#                 on, for scripts/test.sh --arm64, which runs them
 # Exit code 77: something is to be fetched, and Debian's mirror cannot be reached.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -14,8 +15,8 @@ preset=aarch64
 case ${1:-} in
   "") ;;
   --test) test=true ;;
-  --library) preset=aarch64_tests ;;
-  *) echo "usage: cross-build.sh [--test | --library]" >&2; exit 2 ;;
+  --processor) preset=aarch64_tests ;;
+  *) echo "usage: cross-build.sh [--test | --processor]" >&2; exit 2 ;;
 esac
 
 tools=(g++-aarch64-linux-gnu mmdebstrap qemu-user-static)

@@ -5,8 +5,8 @@
 # tests were skipped for lack of their recordings, and which took longest.
 # Usage: test.sh [--quick | --arm64]
 #   --quick   leaves sanitizers and fuzzing out
-#   --arm64   runs the library's unit tests for 64-bit ARM too, by QEMU; fetches 1.3 GB of Debian's packages for arm64
-#             the first time
+#   --arm64   runs unit tests for 64-bit ARM too, by QEMU, of rooms that have code for each processor, and of what that
+#             rests on; fetches 1.3 GB of Debian's packages for arm64 the first time
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -132,7 +132,7 @@ fi
 test_arm64() {
   local status=0
   export BYRE_SYSROOT=${BYRE_SYSROOT:-$PWD/build/sysroot-aarch64}
-  scripts/cross-build.sh --library || status=$?
+  scripts/cross-build.sh --processor || status=$?
   end_part "building for 64-bit ARM"
   if ((status == 77)); then
     echo "SKIPPED: nothing was tested for 64-bit ARM, as Debian's mirror cannot be reached"
@@ -147,7 +147,7 @@ test_arm64() {
 }
 
 if $arm64; then
-  headline "64-bit ARM: unit tests of the library, by QEMU"
+  headline "64-bit ARM: unit tests of rooms with code for each processor, by QEMU"
   test_arm64
 fi
 

@@ -19,7 +19,8 @@ def declared(folder: pathlib.Path) -> tuple[collections.Counter, set[str]]:
     """How many functions of each name there are, and the types, those within types included."""
     functions, types = collections.Counter(), set()
     for path in folder.glob("*.h"):
-        for line in path.read_text(encoding="utf-8").split("\n"):
+        text = re.sub(r"^(template <.*>)\n", r"\1 ", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        for line in text.split("\n"):
             if found := TYPE.match(line.strip()):
                 types.add(found[1])
             elif (found := FUNCTION.match(line)) and path.name not in NOT_IN_IT:

@@ -16,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Each;
+using ::testing::ElementsAreArray;
 using ::testing::Ge;
 using ::testing::IsEmpty;
 using ::testing::Le;
@@ -209,7 +210,7 @@ TEST_F(TrackingOnATrueMap, LocalPointsAreThoseOfTheKeyframeAndItsMostCovisible) 
   };
   insert_points_of(reference);
   for (const Covisible& neighbour : map_.covisible_keyframes(reference, 2)) insert_points_of(neighbour.keyframe);
-  EXPECT_EQ(local_points(view_, reference, 3), std::vector<PointId>(expected.begin(), expected.end()));
+  EXPECT_THAT(local_points(view_, reference, 3), ElementsAreArray(expected));
 }
 
 TEST_F(TrackingOnATrueMap, LocalPointsOfAnUnknownKeyframeAreNone) {
