@@ -46,9 +46,8 @@ TEST(ReusedMemory, HoldsListsThatGoFromThreadToThread) {
 }
 
 TEST(ReusedMemory, HoldsListsThatOutliveItsStore) {
-  thread_local ReusedVector<int> outlives;  // made before the store, hence destroyed after it
   std::thread([] {
-    outlives.clear();
+    thread_local ReusedVector<int> outlives;  // made before the store, hence destroyed after it
     outlives.assign(1000, 1);
     EXPECT_EQ(outlives.size(), 1000U);
   }).join();
