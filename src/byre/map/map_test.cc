@@ -78,7 +78,7 @@ class SmallMap : public ::testing::Test {
 TEST(OptionalPoint, IsWhatItStandsFor) {
   EXPECT_EQ(sizeof(OptionalPoint), 4u);
   for (const Origin origin : {Origin::offline, Origin::online}) {
-    for (const std::uint32_t number : {0u, 1u, 12345678u, 0x7FFFFFFEu}) {
+    for (const std::uint32_t number : {0u, 1u, 12345678u, 0x7FFFFFFDu}) {
       const PointId id{origin, number};
       OptionalPoint point = id;
       ASSERT_TRUE(point.has_value());
