@@ -1,6 +1,7 @@
 #include "byre/mapping/global_lane.h"
 
 #include "byre/slam/recent_map.h"
+#include "byre/slam/stowed_features.h"
 
 #include <cassert>
 #include <utility>
@@ -14,10 +15,8 @@ void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std:
   add_motions(*recent, motions);
   outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
   worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
-    return adjust_map(std::move(*recent), *outline, loops, options, [&] {
-      stowed->forget_looks();  // at features of the whole map
-      return is_hurried->load();
-    });
+    return adjust_map(std::move(*recent), *outline, loops, options,
+                      forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
   });
 }
 
@@ -26,10 +25,8 @@ void GlobalLane::calibrate(const MapView& map, const CalibrationState& state, in
   assert(idle());
   const auto snapshot = std::make_shared<const MapWindow>(whole_map(map));
   worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_, stowed = stowed_] {
-    return self_calibrate(*snapshot, state, rig, options, [&] {
-      stowed->forget_looks();
-      return is_hurried->load();
-    });
+    return self_calibrate(*snapshot, state, rig, options,
+                          forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
   });
 }
 

@@ -349,19 +349,11 @@ LengthChanges Mapper::finish() {
   }
 }
 
-// The same, asked now and then by what looks at features of the whole map.
-std::function<bool()> Mapper::forgetting_looks(const std::function<bool()>& should_stop) const {
-  return [this, should_stop] {
-    stowed_->forget_looks();
-    return should_stop && should_stop();
-  };
-}
-
 std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
   // The copy of the map goes before features are made anew, which it would keep as they were.
   const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
-                                      calibrator_->options(), forgetting_looks(should_stop));
+                                      calibrator_->options(), forgetting_looks(*stowed_, should_stop));
   if (!refined) return std::nullopt;
   return recalibrate(*refined, rig);
 }
@@ -372,7 +364,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
   to_stow_.clear();  // no more jobs
   if (first_new == 0) stow_features(online_, *stowed_);
-  const FinishHooks frugal{forgetting_looks(hooks.should_stop), hooks.before_step};
+  const FinishHooks frugal{forgetting_looks(*stowed_, hooks.should_stop), hooks.before_step};
   FinishReport report =
       byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
   loop_closer_.follow(report.length_changes);
@@ -384,7 +376,7 @@ LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
   MapWindow whole = whole_map(map());
   const MapWindow before = outline_of(whole);
   const MapDelta adjusted =
-      adjust_map(std::move(whole), before, {}, {options_.mapping}, forgetting_looks(hooks.should_stop));
+      adjust_map(std::move(whole), before, {}, {options_.mapping}, forgetting_looks(*stowed_, hooks.should_stop));
   LengthChanges changes = apply_correction(adjusted, before, online_);
   loop_closer_.follow(changes);
   return changes;

@@ -137,7 +137,6 @@ class Mapper {
   void stow_old_keyframe();
   void stow_all_anew();
   void stow_later(KeyframeId id);
-  std::function<bool()> forgetting_looks(const std::function<bool()>& should_stop) const;
   void settle_loop(const LoopHypothesis& loop);
   void index_place(KeyframeId id);
   void forget_places(const MapDelta& delta);

@@ -84,13 +84,6 @@ void project_points(const MapView& map, std::span<const PointId> points, const P
   }
 }
 
-std::vector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
-                                          const Pose& camera_from_world, const Rig& rig) {
-  std::vector<ExpectedPoint> expected;
-  project_points(map, points, camera_from_world, rig, expected);
-  return expected;
-}
-
 void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
                     const SearchOptions& options, std::vector<GuidedMatch>& matches) {
   struct Claim {
@@ -114,13 +107,6 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});
   }
-}
-
-std::vector<GuidedMatch> match_expected(const Features& features, const MapView& map,
-                                        const std::vector<ExpectedPoint>& expected, const SearchOptions& options) {
-  std::vector<GuidedMatch> matches;
-  match_expected(features, map, expected, options, matches);
-  return matches;
 }
 
 }  // namespace byre

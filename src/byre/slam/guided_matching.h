@@ -41,10 +41,7 @@ struct ExpectedPoint {
   Projection projection;
 };
 
-std::vector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
-                                          const Pose& camera_from_world, const Rig& rig);
-
-// The same; refills `expected`.
+// Refills `expected`.
 void project_points(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
                     std::vector<ExpectedPoint>& expected);
 
@@ -55,10 +52,7 @@ struct GuidedMatch {
 };
 
 // One match at most for each expected point and each feature (the more similar point keeps it). Ordered by feature.
-std::vector<GuidedMatch> match_expected(const Features& features, const MapView& map,
-                                        const std::vector<ExpectedPoint>& expected, const SearchOptions& options);
-
-// The same; refills `matches`.
+// Refills `matches`.
 void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
                     const SearchOptions& options, std::vector<GuidedMatch>& matches);
 

@@ -24,6 +24,19 @@ Descriptor differing(int bits) {
   return descriptor;
 }
 
+std::vector<ExpectedPoint> expected_points(const MapView& map, const Pose& camera_from_world, const Rig& rig) {
+  std::vector<ExpectedPoint> expected;
+  project_points(map, map.online().point_ids(), camera_from_world, rig, expected);
+  return expected;
+}
+
+std::vector<GuidedMatch> matches_of(const Features& features, const MapView& map,
+                                    const std::vector<ExpectedPoint>& expected, const SearchOptions& options) {
+  std::vector<GuidedMatch> matches;
+  match_expected(features, map, expected, options, matches);
+  return matches;
+}
+
 // A point on the optical axis of a camera at the world's origin, seen in octave 3.
 MapPoint point_ahead(double depth) {
   MapPoint point;
@@ -165,9 +178,8 @@ TEST(MatchExpected, LeavesAFeatureToTheMoreSimilarPoint) {
   const PointId less_similar = map.add_point(point);
   point.descriptor = differing(5);
   const PointId more_similar = map.add_point(point);
-  const auto matches =
-      match_expected(features, MapView(nullptr, map),
-                     {{less_similar, kAt100}, {more_similar, kAt100}, {less_similar, kAt100}}, kTenPixels);
+  const auto matches = matches_of(features, MapView(nullptr, map),
+                                  {{less_similar, kAt100}, {more_similar, kAt100}, {less_similar, kAt100}}, kTenPixels);
   EXPECT_THAT(matches, ElementsAre(Field(&GuidedMatch::point, more_similar)));
 }
 
@@ -178,7 +190,7 @@ TEST(MatchExpected, PassesOverPointsThatAreGone) {
   point.descriptor = kDescriptor;
   const PointId gone = map.add_point(point);
   map.remove_point(gone);
-  EXPECT_THAT(match_expected(features, MapView(nullptr, map), {{gone, kAt100}}, kTenPixels), IsEmpty());
+  EXPECT_THAT(matches_of(features, MapView(nullptr, map), {{gone, kAt100}}, kTenPixels), IsEmpty());
 }
 
 // A frame of a mission against the true map, from its true pose.
@@ -189,8 +201,7 @@ class MatchingASimulatedFrame : public ::testing::Test {
   SimulatedMission mission_ = quarter_circle({});
   Map map_ = true_map(mission_, 2, Origin::online);
   MapView view_{nullptr, map_};
-  std::vector<ExpectedPoint> expected_ =
-      project_points(view_, map_.point_ids(), true_camera_from_world(mission_, kFrame), mission_.rig);
+  std::vector<ExpectedPoint> expected_ = expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
 };
 
 TEST_F(MatchingASimulatedFrame, ExpectsPointsOnlyWithinTheImage) {
@@ -199,7 +210,7 @@ TEST_F(MatchingASimulatedFrame, ExpectsPointsOnlyWithinTheImage) {
 }
 
 TEST_F(MatchingASimulatedFrame, FindsNearlyAllAndNearlyAllOfThemRight) {
-  const std::vector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
+  const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   const auto right = std::ranges::count_if(matches, [&](const GuidedMatch& match) {
     const int shown = mission_.landmark_of_feature[kFrame][static_cast<std::size_t>(match.feature)];
     return shown >= 0 && shown == true_landmark(mission_, map_, match.point);
@@ -210,7 +221,7 @@ TEST_F(MatchingASimulatedFrame, FindsNearlyAllAndNearlyAllOfThemRight) {
 }
 
 TEST_F(MatchingASimulatedFrame, NamesEveryFeatureOnceInAscendingOrder) {
-  const std::vector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
+  const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &GuidedMatch::feature), matches.end());
 }
 

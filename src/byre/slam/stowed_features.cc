@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -39,6 +40,13 @@ void stow_features(Map& map, ScratchFile& file) {
   for (const KeyframeId id : map.keyframe_ids()) {
     map.replace_features(id, stowed(map.find_keyframe(id)->frame.features, file));
   }
+}
+
+std::function<bool()> forgetting_looks(const ScratchFile& file, std::function<bool()> should_stop) {
+  return [&file, should_stop = std::move(should_stop)] {
+    file.forget_looks();
+    return should_stop && should_stop();
+  };
 }
 
 }  // namespace byre

@@ -4,6 +4,7 @@
 #include "byre/input/scratch_file.h"
 #include "byre/map/map.h"
 
+#include <functional>
 #include <memory>
 
 namespace byre {
@@ -17,5 +18,9 @@ std::shared_ptr<const Features> stowed(const std::shared_ptr<const Features>& fe
 
 // Those of all keyframes that are not in the file yet.
 void stow_features(Map& map, ScratchFile& file);
+
+// The same question, for what looks at features of a whole map and asks now and then whether to stop: what it has
+// looked at in the file leaves memory each time. The file outlives the question. Empty questions are answered with no.
+std::function<bool()> forgetting_looks(const ScratchFile& file, std::function<bool()> should_stop);
 
 }  // namespace byre

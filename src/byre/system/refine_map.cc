@@ -18,11 +18,7 @@ Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const Fini
   stow_features(online, stowed);
   Finishing finishing;
   // What reading left free, and each step, is of another kind than the next step needs.
-  const FinishHooks frugal{[&] {
-                             stowed.forget_looks();
-                             return hooks.should_stop();
-                           },
-                           [&hooks](const char* step) {
+  const FinishHooks frugal{forgetting_looks(stowed, hooks.should_stop), [&hooks](const char* step) {
                              release_free_memory();
                              if (hooks.before_step) hooks.before_step(step);
                            }};
