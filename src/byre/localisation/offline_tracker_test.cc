@@ -17,7 +17,7 @@ class OnAnOfflineMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
-  Mapper mapper_{mission_.rig, {}, make_inline_executor(), make_inline_executor(), {simulated_vocabulary(), map_}};
+  Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), map_}};
   OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
   Whereabouts whereabouts_{{}, {}, {}, true};
 

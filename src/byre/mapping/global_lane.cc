@@ -8,25 +8,28 @@
 
 namespace byre {
 
-void GlobalLane::close_loops(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
-                             const std::vector<KeyframeMotion>& motions) {
-  assert(idle());
-  const auto recent = std::make_shared<MapWindow>(recent_map(map, first_new, loops));
+MapToBend copy_to_bend(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+                       const std::vector<KeyframeMotion>& motions) {
+  auto recent = std::make_shared<MapWindow>(recent_map(map, first_new, loops));
   add_motions(*recent, motions);
-  outline_ = std::make_shared<const MapWindow>(outline_of(*recent));
-  worker_.start([recent, outline = outline_, is_hurried = is_hurried_, loops, options = options_, stowed = stowed_] {
-    return adjust_map(std::move(*recent), *outline, loops, options,
+  auto outline = std::make_shared<const MapWindow>(outline_of(*recent));
+  return {std::move(recent), std::move(outline), loops};
+}
+
+void GlobalLane::close_loops(MapToBend map) {
+  assert(idle());
+  outline_ = map.outline;
+  worker_.start([map = std::move(map), is_hurried = is_hurried_, options = options_, stowed = stowed_] {
+    return adjust_map(std::move(*map.recent), *map.outline, map.loops, options,
                       forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
   });
 }
 
-void GlobalLane::calibrate(const MapView& map, const CalibrationState& state, int rig,
+void GlobalLane::calibrate(std::shared_ptr<const MapWindow> whole, const CalibrationState& state, int rig,
                            const SelfCalibrationOptions& options) {
   assert(idle());
-  const auto snapshot = std::make_shared<const MapWindow>(whole_map(map));
-  worker_.start([snapshot, state, rig, options, is_hurried = is_hurried_, stowed = stowed_] {
-    return self_calibrate(*snapshot, state, rig, options,
-                          forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
+  worker_.start([whole = std::move(whole), state, rig, options, is_hurried = is_hurried_, stowed = stowed_] {
+    return self_calibrate(*whole, state, rig, options, forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
   });
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "byre/input/scratch_file.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/slam/told_motions.h"
+#include "byre/workers/scratch_file.h"
 #include "byre/workers/worker.h"
 
 #include <atomic>
@@ -21,6 +21,16 @@ struct AppliedCorrection {
   LengthChanges length_changes;  // what lies relative to a keyframe is to follow them
 };
 
+// The part of a map that closing loops bends, copied from it; see recent_map.
+struct MapToBend {
+  std::shared_ptr<MapWindow> recent;
+  std::shared_ptr<const MapWindow> outline;  // the recent map's
+  std::vector<LoopEdge> loops;
+};
+// first_new: number of the first keyframe that is not of the map gone on with; motions: see told_motions.
+MapToBend copy_to_bend(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+                       const std::vector<KeyframeMotion>& motions);
+
 // Corrections of the whole map, and of its calibration, one at a time, beside tracking and local mapping. A finished
 // correction waits until local mapping has nothing in flight, for what that works on would be out of date.
 class GlobalLane {
@@ -33,13 +43,10 @@ class GlobalLane {
   bool idle() const { return worker_.idle() && !outcome_; }
   bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
 
-  // Bends the map to close these loops, around what came from a keyframe of this number on, see recent_map; motions:
-  // see told_motions. Precondition: idle().
-  void close_loops(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
-                   const std::vector<KeyframeMotion>& motions);
-
-  // Looks what the map says of the calibration of a rig of its. Precondition: idle().
-  void calibrate(const MapView& map, const CalibrationState& state, int rig, const SelfCalibrationOptions& options);
+  void close_loops(MapToBend map);  // precondition: idle()
+  // Looks what a map says of the calibration of a rig of its. Precondition: idle().
+  void calibrate(std::shared_ptr<const MapWindow> whole, const CalibrationState& state, int rig,
+                 const SelfCalibrationOptions& options);
   std::optional<RefinedCalibration> take_calibration();  // empty while there is none
 
   void collect();                        // once per frame

@@ -1,13 +1,12 @@
 #include "byre/mapping/loop_closer.h"
 
-#include <utility>
-
 namespace byre {
 
-std::optional<LoopHypothesis> LoopCloser::look(const Look& now, const Map& online, const PlaceIndex& places) {
+std::optional<LoopHypothesis> LoopCloser::look(const Look& now, const Map& online) {
+  asks_for_place_ = false;
   if (++frames_since_loop_ < kMinFramesBetweenLoops) return std::nullopt;
   if (!hypothesis_) {
-    if (now.is_new) hypothesis_ = find_loop(online, places, now.newest, options_);
+    asks_for_place_ = now.is_new;
     return std::nullopt;
   }
   hypothesis_ = check_loop(*hypothesis_, now.frame, now.camera_from_world, now.rig, online);

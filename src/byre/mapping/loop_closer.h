@@ -4,6 +4,7 @@
 #include "byre/slam/loop_closing.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -12,8 +13,6 @@ namespace byre {
 // the session's thread.
 class LoopCloser {
  public:
-  explicit LoopCloser(const LoopOptions& options) : options_(options) {}
-
   // Places found again so far, each with what was seen of it then.
   const std::vector<LoopEdge>& loops() const { return loops_; }
 
@@ -26,7 +25,10 @@ class LoopCloser {
     bool is_new = false;  // the newest keyframe is of this frame
   };
   // Once for each frame while no correction of the whole map is in flight. A loop that enough frames have confirmed.
-  std::optional<LoopHypothesis> look(const Look& now, const Map& online, const PlaceIndex& places);
+  std::optional<LoopHypothesis> look(const Look& now, const Map& online);
+  // Once after each look(): whether the newest keyframe is to be looked for in older parts, see find_loop.
+  bool asks_for_place() { return std::exchange(asks_for_place_, false); }
+  void suspect(const std::optional<LoopHypothesis>& found) { hypothesis_ = found; }  // what came of that
   void add(const LoopEdge& loop) { loops_.push_back(loop); }
 
   // What was measured of a place is out of date.
@@ -35,9 +37,9 @@ class LoopCloser {
   void turn(const RigTurn& turn, const Map& online);
 
  private:
-  LoopOptions options_;                       // constant after construction
   std::optional<LoopHypothesis> hypothesis_;  // not confirmed yet
-  int frames_since_loop_ = 0;                 // since one was confirmed
+  bool asks_for_place_ = false;
+  int frames_since_loop_ = 0;  // since one was confirmed
   std::vector<LoopEdge> loops_;
 };
 

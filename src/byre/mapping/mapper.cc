@@ -16,13 +16,12 @@ constexpr std::uint32_t kNewKeyframes = 32;  // as many as a window holds: all o
 
 }  // namespace
 
-Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
-               std::unique_ptr<Executor> global, MapperKnowledge knowledge)
+Mapper::Mapper(const Rig& rig, const MapperOptions& options, MapperLanes lanes, MapperKnowledge knowledge)
     : options_(options),
       offline_(std::move(knowledge.offline)),
-      local_(std::move(local)),
-      global_(std::move(global), {options.mapping}, stowed_),
-      loop_closer_(options.loops) {
+      local_(std::move(lanes.local)),
+      global_(std::move(lanes.global), {options.mapping}, stowed_),
+      reading_(std::move(lanes.reading)) {
   if (knowledge.vocabulary) places_.emplace(*std::move(knowledge.vocabulary));
   if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
 }
@@ -52,7 +51,9 @@ Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::o
                                     : begin_monocular(frame, rig, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
   newest_ = begun.keyframes.back();
-  for (const KeyframeId id : begun.keyframes) index_place(id);
+  if (places_) {
+    for (const KeyframeId id : begun.keyframes) keep(read_for(id, false));
+  }
   ++revision_;
   return begun;
 }
@@ -143,8 +144,8 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
   keyframe.parent = track.online_reference;
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
   add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
-  index_place(id);
   newest_ = id;
+  if (places_) unread_ = id;
   ++revision_;
   pending_.push_back(id);
   start_job();
@@ -185,8 +186,8 @@ void Mapper::stow_all_anew() {
 // New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
 // found there too.
 bool Mapper::look_for_loop(const LoopCloser::Look& now) {
-  if (!places_ || !global_.idle()) return false;
-  const auto loop = loop_closer_.look(now, online_, *places_);
+  if (!places_ || !is_global_free()) return false;
+  const auto loop = loop_closer_.look(now, online_);
   if (loop) settle_loop(*loop);
   return loop.has_value();
 }
@@ -201,7 +202,7 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   if (fusing_will_do) {
     pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
   } else {
-    bend();
+    to_copy_ = ToCopy::to_bend;
   }
 }
 
@@ -213,10 +214,6 @@ std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId
 
 std::vector<KeyframeMotion> Mapper::all_motions() const {
   return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
-}
-
-void Mapper::bend() {
-  global_.close_loops(online_, first_new_, loops(), all_motions());
 }
 
 std::optional<double> Mapper::collect() {
@@ -240,12 +237,12 @@ void Mapper::take_over(const LocalOutcome& outcome) {
 
 // Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
 bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
-  if (!shutter.has_change() || !local_.idle() || !global_.idle()) return false;
+  if (!shutter.has_change() || !local_.idle() || !is_global_free()) return false;
   shutter.take_over(rig, online_);
   stow_all_anew();
   ++revision_;
   loop_closer_.forget_hypothesis();
-  if (!offline_ && online_.keyframe_count() > 1) bend();
+  if (!offline_ && online_.keyframe_count() > 1) to_copy_ = ToCopy::to_bend;
   return true;
 }
 
@@ -257,12 +254,13 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
     const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
     const RigTurn turn = recalibrate(*refined, rig);
     stow_all_anew();
-    if (is_large && global_.idle()) bend();
+    if (is_large && is_global_free()) to_copy_ = ToCopy::to_bend;
     return turn;
   }
-  if (!global_.idle() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
+  if (!is_global_free() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
   calibrator_->note_attempt(online_.keyframe_count());
-  global_.calibrate(map(), calibrator_->state(), online_.add_rig(rig), calibrator_->options());
+  rig_to_calibrate_ = online_.add_rig(rig);
+  to_copy_ = ToCopy::to_calibrate;
   return std::nullopt;
 }
 
@@ -326,10 +324,48 @@ void Mapper::start_job() {
   });
 }
 
-void Mapper::index_place(KeyframeId id) {
-  if (!places_) return;
-  online_.set_words(id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features));
-  places_->add(id, online_.find_keyframe(id)->words);
+// What is asked for while the map is read waits until that is over.
+void Mapper::start_reading() {
+  if (is_read()) return;
+  const std::optional<KeyframeId> id = std::exchange(unread_, std::nullopt);
+  const bool is_there = id && online_.find_keyframe(*id) != nullptr;
+  const bool bends = to_copy_ == ToCopy::to_bend, calibrates = to_copy_ == ToCopy::to_calibrate;
+  if (!is_there && !bends && !calibrates) return;
+  reading_.start([this, id, is_there, looks_for_loop = loop_closer_.asks_for_place(), bends, calibrates,
+                  motions = bends ? all_motions() : std::vector<KeyframeMotion>()] {
+    MapReading reading;
+    if (is_there) reading.newest = read_for(*id, looks_for_loop);
+    if (bends) reading.to_bend = copy_to_bend(online_, first_new_, loops(), motions);
+    if (calibrates) reading.whole = std::make_shared<const MapWindow>(whole_map(map()));
+    return reading;
+  });
+}
+
+// Preconditions: places_, and the keyframe is there.
+KeyframeReading Mapper::read_for(KeyframeId id, bool looks_for_loop) const {
+  KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features),
+                          looks_for_loop};
+  if (looks_for_loop) reading.loop = find_loop_by_words(online_, *places_, id, reading.words, options_.loops);
+  return reading;
+}
+
+void Mapper::collect_reading() {
+  if (auto finished = reading_.collect()) keep(std::move(finished->result));
+}
+
+void Mapper::keep(MapReading reading) {
+  if (reading.newest) keep(*std::move(reading.newest));
+  if (reading.to_bend || reading.whole) to_copy_ = ToCopy::nothing;
+  if (reading.to_bend) global_.close_loops(*std::move(reading.to_bend));
+  if (reading.whole) {
+    global_.calibrate(std::move(reading.whole), calibrator_->state(), rig_to_calibrate_, calibrator_->options());
+  }
+}
+
+void Mapper::keep(KeyframeReading reading) {
+  places_->add(reading.keyframe, reading.words);
+  online_.set_words(reading.keyframe, std::move(reading.words));
+  if (reading.has_looked_for_loop) loop_closer_.suspect(reading.loop);
 }
 
 void Mapper::forget_places(const MapDelta& delta) {
@@ -338,6 +374,9 @@ void Mapper::forget_places(const MapDelta& delta) {
 }
 
 LengthChanges Mapper::finish() {
+  if (auto finished = reading_.finish()) keep(std::move(finished->result));
+  start_reading();
+  if (auto finished = reading_.finish()) keep(std::move(finished->result));
   LengthChanges lengths;  // changes by the one correction that may be in flight
   while (true) {
     if (const auto finished = local_.finish()) take_over(finished->result);

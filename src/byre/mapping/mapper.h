@@ -43,6 +43,29 @@ struct LocalOutcome {
   std::vector<KeyframeFeatures> stowed = {};
 };
 
+// What reading the map for a new keyframe comes to.
+struct KeyframeReading {
+  KeyframeId keyframe;
+  std::vector<Word> words;  // one per feature: by these it is found again
+  bool has_looked_for_loop = false;
+  std::optional<LoopHypothesis> loop = {};
+};
+
+// What a job that reads the map comes to: whatever was asked for.
+struct MapReading {
+  std::optional<KeyframeReading> newest;
+  std::optional<MapToBend> to_bend;
+  std::shared_ptr<const MapWindow> whole;
+};
+
+// Where jobs of a mapper run: those in a neighbourhood, those on a copy of the whole map, and those that read the map
+// itself.
+struct MapperLanes {
+  std::unique_ptr<Executor> local;
+  std::unique_ptr<Executor> global = make_inline_executor();
+  std::unique_ptr<Executor> reading = make_inline_executor();
+};
+
 // A vocabulary for places, and an offline map that the online one lies on; either may be missing.
 struct MapperKnowledge {
   std::optional<Vocabulary> vocabulary;
@@ -53,8 +76,7 @@ struct MapperKnowledge {
 // are done. Called from the session's thread.
 class Mapper {
  public:
-  Mapper(const Rig& rig, const MapperOptions& options, std::unique_ptr<Executor> local,
-         std::unique_ptr<Executor> global, MapperKnowledge knowledge);
+  Mapper(const Rig& rig, const MapperOptions& options, MapperLanes lanes, MapperKnowledge knowledge);
 
   MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
   const Map& online() const { return online_; }
@@ -68,6 +90,7 @@ class Mapper {
   std::optional<KeyframeId> newest_in_present_frame() const;
   int pending() const { return static_cast<int>(pending_.size()); }  // keyframes that mapping has not worked on
   int revision() const { return revision_; }                         // grows whenever points or keyframes change
+  bool is_read() const { return !reading_.idle(); }  // by a job, until which nothing is to change the map
   bool has_correction() const { return waiting_correction_.has_value(); }
 
   // Before the first frame. tell is asked by the calling thread for the ways between keyframes.
@@ -97,8 +120,15 @@ class Mapper {
   // Once for each frame, unless offline points hold it. Whether a loop was found.
   bool look_for_loop(const LoopCloser::Look& now);
   void forget_loop() { loop_closer_.forget_hypothesis(); }
+  // Once for each frame, before all else.
+  void collect_reading();
+  // Once for each frame, last of all: a job reads the map itself where there is need. It finds by which words a new
+  // keyframe is found again, and where look_for_loop() left it open, whether that shows an older part of the map; and
+  // copies the map for jobs on all of it.
+  void start_reading();
 
-  // Once for each frame, in this order: what jobs came to is taken over where nothing in flight stands against it.
+  // Once for each frame, in this order, unless the map is read: what jobs came to is taken over where nothing in flight
+  // stands against it.
   std::optional<double> collect();                               // seconds of the local job taken over
   bool take_over_readout(Shutter& shutter, const Rig& rig);      // keyframes seen by a better readout time
   std::optional<RigTurn> take_over_calibration(const Rig& rig);  // keyframes seen by a better calibration
@@ -122,6 +152,8 @@ class Mapper {
   Map take_online() { return std::exchange(online_, Map(Origin::online)); }
 
  private:
+  enum class ToCopy { nothing, to_bend, to_calibrate };  // what a job on the whole map is to get
+
   Beginning begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                          const AnchoredTrajectory& trajectory);
   Beginning begin_monocular(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
@@ -131,14 +163,17 @@ class Mapper {
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
-  void bend();                                      // the map around what came, in the background
   void take_over(const LocalOutcome& outcome);
   RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
   void stow_old_keyframe();
   void stow_all_anew();
   void stow_later(KeyframeId id);
   void settle_loop(const LoopHypothesis& loop);
-  void index_place(KeyframeId id);
+  // Whether a job on the whole map may be asked for.
+  bool is_global_free() const { return global_.idle() && to_copy_ == ToCopy::nothing; }
+  KeyframeReading read_for(KeyframeId id, bool looks_for_loop) const;
+  void keep(KeyframeReading reading);
+  void keep(MapReading reading);
   void forget_places(const MapDelta& delta);
   std::uint32_t next_keyframe_number() const { return newest_ ? newest_->number + 1 : 0; }
 
@@ -165,6 +200,10 @@ class Mapper {
   std::vector<KeyframeId> pending_;
   std::vector<KeyframeFeatures> to_stow_;               // what the next job is to put into the file
   std::optional<OnlineCorrection> waiting_correction_;  // until mapping has nothing in flight
+  std::optional<KeyframeId> unread_;                    // the newest keyframe, while nothing has been read for it
+  ToCopy to_copy_ = ToCopy::nothing;                    // until there is the copy, and the job with it
+  int rig_to_calibrate_ = 0;                            // index into the map's rigs
+  Worker<MapReading> reading_;                          // last, so that it ends before what it reads
 };
 
 }  // namespace byre

@@ -17,7 +17,7 @@ class MapperOfAMission : public ::testing::Test {
   const SimulatedMission mission_ = quarter_circle({});
 
   Mapper mapper(std::unique_ptr<Executor> local, MapperKnowledge knowledge = {}) const {
-    return {mission_.rig, {}, std::move(local), make_inline_executor(), std::move(knowledge)};
+    return {mission_.rig, {}, {.local = std::move(local)}, std::move(knowledge)};
   }
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
@@ -134,6 +134,35 @@ TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   EXPECT_EQ(mapper.pending(), 0);
 }
 
+TEST_F(MapperOfAMission, KnowsTheWordsOfAKeyframeOnceAJobHasReadIt) {
+  Mapper mapper(mission_.rig, {},
+                {make_paced_executor(1000), make_inline_executor(), /*reading=*/make_paced_executor(2)},
+                {simulated_vocabulary(), nullptr});
+  const auto words_of = [&](KeyframeId id) { return mapper.online().find_keyframe(id)->words.size(); };
+  const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
+  EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, as nothing else could be found again";
+  const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  mapper.start_reading();
+  EXPECT_TRUE(mapper.is_read());
+  mapper.collect_reading();
+  EXPECT_EQ(words_of(id), 0u);
+  mapper.collect_reading();
+  EXPECT_FALSE(mapper.is_read());
+  EXPECT_EQ(words_of(id), static_cast<std::size_t>(mission_.frames[4].features->size()));
+  EXPECT_EQ(mapper.places()->size(), 2);
+  mapper.start_reading();
+  EXPECT_FALSE(mapper.is_read()) << "there is nothing to read for";
+}
+
+TEST_F(MapperOfAMission, ReadsAtTheEndWhatWasNotReadYet) {
+  Mapper mapper = this->mapper(make_inline_executor(), {simulated_vocabulary(), nullptr});
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
+  const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  mapper.finish();
+  EXPECT_FALSE(mapper.online().find_keyframe(id)->words.empty());
+  EXPECT_EQ(mapper.places()->size(), 2);
+}
+
 TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
@@ -164,7 +193,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
 TEST(MapperOfOneCamera, BeginsOneMap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
-  Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
+  Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
   EXPECT_TRUE(mapper.can_begin(rig));
   std::size_t frame = 0;
   Mapper::Beginning begun;
@@ -182,7 +211,7 @@ TEST(MapperOfOneCamera, BeginsWhereItIsToldToBe) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
   const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};
-  Mapper mapper(rig, {}, make_inline_executor(), make_inline_executor(), {});
+  Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
   std::size_t frame = 0;
   Mapper::Beginning begun;
   Pose told;

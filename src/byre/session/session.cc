@@ -20,8 +20,10 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
                  std::shared_ptr<const OfflineMap> offline)
     : options_(options),
       rig_(rig),
-      mapper_(rig, mapper_options(options), std::move(lanes.local),
-              offline ? make_inline_executor() : std::move(lanes.global), {std::move(vocabulary), offline}),
+      mapper_(rig, mapper_options(options),
+              {std::move(lanes.local), offline ? make_inline_executor() : std::move(lanes.global),
+               std::move(lanes.reading)},
+              {std::move(vocabulary), offline}),
       tracker_(options),
       whereabouts_(options.mission.registration, options.hindsight, options.trajectory, offline != nullptr),
       input_watch_(options.image),
@@ -120,6 +122,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   whereabouts_.settle_overdue(map(), options_.track);
   seen_.clear();
   if (located.track) append_seen_points(located.track->tracked, seen_);
+  mapper_.start_reading();
   report.map_seconds = seconds_before + mapping_after.seconds();
   return report;
 }
@@ -133,6 +136,8 @@ void Session::note_quality(const FrameReport& report) {
 
 void Session::take_over_results(FrameReport& report) {
   constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
+  mapper_.collect_reading();
+  if (mapper_.is_read()) return;
   const bool was_registered = is_registered(mapper_);
   report.job_seconds = mapper_.collect();
   const bool is_shutter_better = mapper_.take_over_readout(shutter_, rig_);
@@ -244,7 +249,7 @@ Session::Located Session::locate(const InputFrame& input) {
 }
 
 bool Session::may_begin_submap(const InputFrame& input) const {
-  if (!options_.map_online || is_mapping_paused_ || !mapper_.can_begin(rig_)) return false;
+  if (!options_.map_online || is_mapping_paused_ || mapper_.is_read() || !mapper_.can_begin(rig_)) return false;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
   if (trajectory.empty()) return mapper_.online().keyframe_count() == 0 || (mission_ && rig_.is_stereo());
   if (input.fault != ImageFault::none || (!mission_ && !whereabouts_.bridge())) return false;
@@ -325,7 +330,7 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
 }
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) {
-  if (!options_.map_online || is_mapping_paused_) return false;
+  if (!options_.map_online || is_mapping_paused_ || mapper_.is_read()) return false;
   if (!whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none) return false;
   const KeyframeEvidence evidence = keyframe_watch_.evidence(track, map(), mapper_.pending());
   return keyframe_watch_.asks_for_keyframe(track, evidence, input.cuts, options_.keyframes);

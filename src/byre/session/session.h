@@ -30,12 +30,17 @@ namespace byre {
 struct Lanes {
   // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
   Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane = make_inline_executor(),
-        std::unique_ptr<Executor> calibration_lane = make_inline_executor())
-      : local(std::move(local_lane)), global(std::move(global_lane)), calibration(std::move(calibration_lane)) {}
+        std::unique_ptr<Executor> calibration_lane = make_inline_executor(),
+        std::unique_ptr<Executor> reading_lane = make_inline_executor())
+      : local(std::move(local_lane)),
+        global(std::move(global_lane)),
+        calibration(std::move(calibration_lane)),
+        reading(std::move(reading_lane)) {}
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
   std::unique_ptr<Executor> calibration;  // calibrating a mission's cameras
+  std::unique_ptr<Executor> reading;      // looking at the map itself, which does not change meanwhile
 };
 
 // The one stateful object: give it frames in order of time. It has the tracker find each frame, and the mapper make

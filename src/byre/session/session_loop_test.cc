@@ -162,6 +162,47 @@ TEST(SessionThatRecognisesPlaces, GivesTheSameMapEachTime) {
   EXPECT_EQ(bytes(), bytes());
 }
 
+// Jobs that read the map see it as it was when they were begun, wherever they run.
+TEST(SessionThatRecognisesPlaces, GivesTheSameMapWhetherItIsReadAtOnceOrBesideTracking) {
+  const SimulatedMission mission = laps(1.3);
+  const auto bytes = [&](std::unique_ptr<Executor> reading) {
+    Session session(mission.rig, {},
+                    Lanes(make_inline_executor(), make_inline_executor(), make_inline_executor(), std::move(reading)),
+                    simulated_vocabulary());
+    EXPECT_EQ(run(session, mission).loops, 1);
+    StoredMap stored;
+    stored.map = offline_copy(session.map().online());
+    return write_map(stored);
+  };
+  EXPECT_EQ(bytes(make_inline_executor()), bytes(make_paced_executor(1)));
+}
+
+TEST(SessionThatRecognisesPlaces, LeavesTheMapAsItIsWhileAJobReadsIt) {
+  constexpr int kReading = 3;  // frames
+  const SimulatedMission mission = laps(1.4);
+  Session session(
+      mission.rig, {},
+      Lanes(make_inline_executor(), make_inline_executor(), make_inline_executor(), make_paced_executor(kReading)),
+      simulated_vocabulary());
+  int frames_since_keyframe = kReading, keyframes = 0, loops = 0;
+  int points = 0;
+  for (const Frame& frame : mission.frames) {
+    const FrameReport report = session.process(frame);
+    ASSERT_EQ(report.state, State::tracking);
+    loops += report.has(SessionEvent::loop_found);
+    if (++frames_since_keyframe < kReading) {
+      EXPECT_FALSE(report.keyframe_added);
+      EXPECT_EQ(session.map().online().point_count(), points);
+    }
+    if (report.keyframe_added && ++keyframes > 1) frames_since_keyframe = 0;  // the first is not read
+    points = session.map().online().point_count();
+  }
+  EXPECT_GT(keyframes, 10);
+  EXPECT_EQ(loops, 1);
+  session.finish();
+  EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
+}
+
 TEST(SessionThatRecognisesPlaces, CarriesKeyframesAlongThatCameWhileTheMapWasCorrected) {
   const SimulatedMission mission = laps(1.6);
   SessionOptions options;

@@ -55,9 +55,10 @@ void disturb(std::vector<PlaceCandidate>& places, const PlaceNoise& noise, Keyfr
   });
 }
 
-std::vector<PlaceCandidate> find_old_places(const Map& map, const MapView& view, const PlaceIndex& index, KeyframeId id,
-                                            const LoopOptions& options, const PlaceNoise& noise) {
-  const std::vector<Word>& words = map.find_keyframe(id)->words;
+std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                            std::span<const Word> words, const LoopOptions& options,
+                                            const PlaceNoise& noise) {
+  const Map& map = view.online();
   const std::set<KeyframeId> surroundings = surroundings_of(map, id);
   const auto is_near = [&](KeyframeId other) {
     return other.number + options.min_gap > id.number || surroundings.contains(other);
@@ -133,11 +134,19 @@ const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options, const PlaceNoise& noise) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
-  if (keyframe == nullptr || keyframe->words.empty()) return std::nullopt;
+  if (keyframe == nullptr) return std::nullopt;
+  return find_loop_by_words(map, index, newest, keyframe->words, options, noise);
+}
+
+std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                                 std::span<const Word> words, const LoopOptions& options,
+                                                 const PlaceNoise& noise) {
+  const Keyframe* const keyframe = map.find_keyframe(newest);
+  if (keyframe == nullptr || words.empty()) return std::nullopt;
   const MapView view(nullptr, map);
-  const std::vector<PlaceCandidate> places = find_old_places(map, view, index, newest, options, noise);
+  const std::vector<PlaceCandidate> places = find_old_places(view, index, newest, words, options, noise);
   if (places.empty()) return std::nullopt;
-  const Localisation found = localise_at(keyframe->frame, keyframe->words, view.rig_of(*keyframe, newest), view,
+  const Localisation found = localise_at(keyframe->frame, words, view.rig_of(*keyframe, newest), view,
                                          index.vocabulary(), places, kStrictness);
   if (!found.tracked) return std::nullopt;
 

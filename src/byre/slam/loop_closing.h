@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace byre {
 
@@ -68,6 +69,11 @@ inline Similarity drift_of(const LoopHypothesis& hypothesis) {
 // too, and is told by the points that the keyframe sees in both parts.
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options, const PlaceNoise& noise = {});
+
+// The same for a keyframe whose words, one per feature, neither map nor index have yet.
+std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                                 std::span<const Word> words, const LoopOptions& options,
+                                                 const PlaceNoise& noise = {});
 
 // By which the keyframe was seen.
 const Rig& rig_of(const Map& map, const Keyframe& keyframe);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/features.h"
-#include "byre/input/scratch_file.h"
 #include "byre/map/map.h"
+#include "byre/workers/scratch_file.h"
 
 #include <functional>
 #include <memory>

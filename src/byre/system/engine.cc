@@ -10,16 +10,19 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 
-// The second lane of a mission looks for places in the offline map.
+// The second lane of a mission looks for places in the offline map. Paced reading of the map ends before the next frame
+// changes it.
 Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:
       return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
     case Pace::paced:
       return {make_logged_executor(make_paced_executor(kPacedLatency), log),
-              make_paced_executor(is_mission ? kPacedSearchLatency : kPacedCorrectionLatency)};
+              make_paced_executor(is_mission ? kPacedSearchLatency : kPacedCorrectionLatency), make_inline_executor(),
+              make_paced_executor(1)};
     case Pace::live:
-      return {make_logged_executor(make_live_executor(), log), make_live_executor()};
+      return {make_logged_executor(make_live_executor(), log), make_live_executor(), make_inline_executor(),
+              make_live_executor()};
   }
   return {nullptr, nullptr};
 }

@@ -4,6 +4,7 @@
 #include "byre/viewer/web_access.h"
 #include "byre/viewer/web_address.h"
 #include "byre/viewer/web_connection.h"
+#include "byre/workers/background_thread.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,8 +16,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <sys/resource.h>
-#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -27,7 +26,6 @@ using boost::system::error_code;
 
 constexpr auto kPauseAfterFailure = std::chrono::milliseconds(200);
 constexpr int kMaxWaiting = 512;  // connections that the kernel keeps until they are let in
-constexpr int kNiceness = 5;      // niceness of the server's thread: what else the program does comes first
 
 tcp::endpoint endpoint_of(const WebServerOptions& options) {
   error_code error;
@@ -89,8 +87,7 @@ class WebServer::Core {
         urls_(urls_of(acceptor_.local_endpoint(), service_.access.token)) {
     accept();
     thread_ = std::thread([this] {
-      const auto self = static_cast<id_t>(gettid());
-      setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNiceness);
+      give_way_to_frames();
       context_.run();
     });
   }

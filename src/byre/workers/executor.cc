@@ -1,10 +1,15 @@
 #include "byre/workers/executor.h"
 
+#include "byre/workers/background_thread.h"
 #include "byre/workers/stopwatch.h"
 
 #include <cassert>
 #include <chrono>
+#include <condition_variable>
+#include <functional>
 #include <future>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 namespace byre {
@@ -35,13 +40,68 @@ class InlineExecutor final : public Executor {
   std::future<FinishedJob> result_;
 };
 
-// Runs each job on a thread of its own; when its result is handed over is left open. What the job owns goes on that
-// thread, before the result is there.
+// A thread for jobs, one after the other; it is there from the first on. A new thread for each would be given a turn at
+// once, be it before the thread that makes it.
+class JobThread {
+ public:
+  // begin: what the thread does first of all.
+  explicit JobThread(std::function<void()> begin) : begin_(std::move(begin)) {}
+  ~JobThread() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    news_.notify_one();
+  }
+  JobThread(const JobThread&) = delete;
+  JobThread& operator=(const JobThread&) = delete;
+
+  // What the job owns goes on the thread, before the result is there.
+  std::future<FinishedJob> start(Job job) {
+    std::packaged_task<FinishedJob()> task([job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
+    std::future<FinishedJob> result = task.get_future();
+    {
+      const std::lock_guard lock(mutex_);
+      next_ = std::move(task);
+    }
+    if (thread_.joinable()) {
+      news_.notify_one();
+    } else {
+      thread_ = std::jthread([this] { work(); });
+    }
+    return result;
+  }
+
+ private:
+  void work() {
+    begin_();
+    std::unique_lock lock(mutex_);
+    while (true) {
+      news_.wait(lock, [this] { return is_over_ || next_.valid(); });
+      if (!next_.valid()) return;
+      auto task = std::move(next_);
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+
+  std::function<void()> begin_;
+  std::mutex mutex_;  // for what follows
+  std::condition_variable news_;
+  std::packaged_task<FinishedJob()> next_;
+  bool is_over_ = false;
+  std::jthread thread_;  // last, so that it ends before what it uses
+};
+
+// Runs jobs on a thread of its own; when results are handed over is left open.
 class WorkerExecutor : public Executor {
  public:
+  explicit WorkerExecutor(std::function<void()> begin = [] {}) : thread_(std::move(begin)) {}
+
   void submit(Job job) override {
     assert(idle());
-    result_ = std::async(std::launch::async, [job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
+    result_ = thread_.start(std::move(job));
   }
   std::optional<FinishedJob> finish() override {
     if (idle()) return std::nullopt;
@@ -53,6 +113,7 @@ class WorkerExecutor : public Executor {
   bool is_done() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
  private:
+  JobThread thread_;
   std::future<FinishedJob> result_;
 };
 
@@ -74,8 +135,11 @@ class PacedExecutor final : public WorkerExecutor {
   int frames_left_ = 0;
 };
 
+// No frame waits for a job, so that where processors are short, frames go first.
 class LiveExecutor final : public WorkerExecutor {
  public:
+  LiveExecutor() : WorkerExecutor(give_way_to_frames) {}
+
   std::optional<FinishedJob> collect() override {
     if (idle() || !is_done()) return std::nullopt;
     return finish();

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -146,6 +148,24 @@ TEST_P(PacedExecutor, LetsGoOfWhatAJobOwnsBeforeItsResultIsTaken) {
   while (!seen.expired()) std::this_thread::yield();
   EXPECT_FALSE(executor->idle());
   EXPECT_EQ(number_of(executor->finish()), 7);
+}
+
+int niceness() {
+  return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
+}
+
+int niceness_of_a_job(Executor& executor) {
+  executor.submit([] { return niceness(); });
+  return number_of(executor.finish());
+}
+
+// A paced one's caller waits for the job, so that what holds up the job holds up the caller.
+TEST(LiveExecutor, LetsItsCallerGoFirstAsNoOtherDoes) {
+  const int usual = niceness();
+  EXPECT_GT(niceness_of_a_job(*make_live_executor()), usual);
+  EXPECT_EQ(niceness_of_a_job(*make_paced_executor(1)), usual);
+  EXPECT_EQ(niceness_of_a_job(*make_inline_executor()), usual);
+  EXPECT_EQ(niceness(), usual);
 }
 
 TEST(LiveExecutor, DoesNotWaitForAJobThatRuns) {

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <vector>
 
 namespace byre {
 
@@ -26,11 +28,17 @@ class ScratchFile {
   void forget_looks() const;
 
  private:
-  class Mapping;
+  class File;
+  class Stretch;
 
-  std::shared_ptr<const Mapping> mapping_;  // constant after construction; empty where there is no file
-  std::size_t end_ = 0;                     // bytes in the file
+  bool make_room(std::size_t end);
+
+  std::shared_ptr<const File> file_;       // constant after construction; empty where there is none
+  std::shared_ptr<const Stretch> newest_;  // the last one; empty before the first
+  std::size_t end_ = 0;                    // bytes in the file
   bool is_full_ = false;
+  mutable std::mutex mutex_;                             // for what follows
+  std::vector<std::weak_ptr<const Stretch>> stretches_;  // some may have gone
 };
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/input/scratch_file.h"
+#include "byre/workers/scratch_file.h"
 
 #include <algorithm>
 #include <csignal>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -27,18 +28,28 @@ bool are(const std::vector<std::byte>& expected, const std::shared_ptr<const std
   return std::equal(expected.begin(), expected.end(), piece.get());
 }
 
+struct MemoryOfProcess {
+  double addresses_mb = 0.0;
+  double resident_mb = 0.0;
+};
+
+MemoryOfProcess memory_now() {
+  long addresses = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> addresses >> resident;
+  const double page_mb = 1e-6 * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return {page_mb * static_cast<double>(addresses), page_mb * static_cast<double>(resident)};
+}
+
 double resident_mb() {
-  long all = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return 1e-6 * static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return memory_now().resident_mb;
 }
 
 TEST(ScratchFile, HoldsWhatIsPutIntoIt) {
   ScratchFile file;
   std::vector<std::shared_ptr<const std::byte>> pieces;
-  for (unsigned i = 0; i < 300; ++i) pieces.push_back(file.put(pattern(200000 + i, i)));
+  for (unsigned i = 0; i < 400; ++i) pieces.push_back(file.put(pattern(200000 + i, i)));
   file.forget_looks();
-  for (unsigned i = 0; i < 300; ++i) {
+  for (unsigned i = 0; i < 400; ++i) {
     ASSERT_NE(pieces[i], nullptr);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pieces[i].get()) % alignof(std::max_align_t), 0u);
     EXPECT_TRUE(are(pattern(200000 + i, i), pieces[i])) << i;
@@ -74,6 +85,41 @@ TEST(ScratchFile, TakesNoMemoryForWhatNobodyLooksAt) {
   EXPECT_GT(resident_mb(), before + 40.0);
   file.forget_looks();
   EXPECT_LT(resident_mb(), before + 20.0);
+}
+
+// As byre node does where it is to keep its memory.
+TEST(ScratchFile, TakesNoMemoryEitherInAProgramThatLocksItsMemory) {
+  if (mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) GTEST_SKIP() << "may not lock memory here";
+  {
+    ScratchFile file;
+    const std::vector<std::byte> bytes = pattern(40000000, 5);
+    const double before = resident_mb();
+    const auto piece = file.put(bytes);
+    EXPECT_TRUE(piece && are(bytes, piece));
+    file.forget_looks();
+    EXPECT_LT(resident_mb(), before + 20.0);
+  }
+  munlockall();
+}
+
+TEST(ScratchFile, TakesAPieceOfAnySize) {
+  ScratchFile file;
+  const std::vector<std::byte> small = pattern(100, 1), large = pattern(70000000, 2);
+  const auto first = file.put(small), second = file.put(large), third = file.put(small);
+  ASSERT_TRUE(first && second && third);
+  EXPECT_TRUE(are(small, first));
+  EXPECT_TRUE(are(large, second));
+  EXPECT_TRUE(are(small, third));
+  EXPECT_TRUE(file.holds(second.get() + large.size() - 1));
+}
+
+// Processes may be given few, and an emulator keeps a record of each page.
+TEST(ScratchFile, TakesNoMoreAddressesThanWhatIsHeldNeeds) {
+  const double before = memory_now().addresses_mb;
+  ScratchFile file;
+  const std::vector<std::byte> bytes = pattern(1000000, 5);
+  for (int i = 0; i < 500; ++i) ASSERT_NE(file.put(bytes), nullptr);
+  EXPECT_LT(memory_now().addresses_mb, before + 200.0);
 }
 
 TEST(ScratchFile, GivesTheRoomOfWhatNobodyHoldsBackToTheDisk) {

@@ -1,0 +1,18 @@
+#include "byre/workers/background_thread.h"
+
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace byre {
+
+// Linux has both for each thread, POSIX for the process.
+void give_way_to_frames() {
+  constexpr int kNiceness = 5;
+  const auto self = static_cast<id_t>(gettid());
+  setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNiceness);
+  const sched_param none{};
+  if (sched_getscheduler(0) == SCHED_OTHER) sched_setscheduler(0, SCHED_BATCH, &none);
+}
+
+}  // namespace byre
