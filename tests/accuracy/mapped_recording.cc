@@ -30,6 +30,7 @@ MappedRecording map_recording(const fs::path& folder, const FrameRange& range, s
   const std::unique_ptr<Recording> recording = open_recording(folder, range, options);
   Extractor extractor(recording->calibration(), {});
   Session session(extractor.rig(), {}, std::move(executor));
+  session.refine_calibration(recording->calibration(), {});
   MappedRecording mapped;
   mapped.frame_times = recording->times();
   for (int i = 0; i < recording->size(); ++i) {

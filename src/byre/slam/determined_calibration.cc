@@ -1,5 +1,7 @@
 #include "byre/slam/determined_calibration.h"
 
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 
 namespace byre {
@@ -32,9 +34,11 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   return result;
 }
 
-void refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas) {
+void refuse_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
+                        double prior_sigmas) {
   constexpr double kImplausible = 5.0;  // sigmas of the prior
-  if (refined.change.cwiseAbs().maxCoeff() <= kImplausible * prior_sigmas) return;
+  const double largest = std::max(refined.change.cwiseAbs().maxCoeff(), expected.cwiseAbs().maxCoeff());
+  if (largest <= kImplausible * prior_sigmas) return;
   refined.change.setZero();
   refined.calibration = given;
 }

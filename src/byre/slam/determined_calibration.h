@@ -11,8 +11,10 @@ namespace byre {
 RefinedCalibration determined_calibration(const Calibration& given, const CalibrationMatrix& information,
                                           const CalibrationVector& expected, double prior_sigmas);
 
-// Takes back a change that is larger in any parameter than calibrations err, five times the prior: what was seen does
-// not fit the model, and where a prior gives way so far, the rest of the change is made up.
-void refuse_implausible(RefinedCalibration& refined, const Calibration& given, double prior_sigmas);
+// Takes back a change that is larger in any parameter than calibrations err, five times the prior, or is a part of one
+// that is: what was seen does not fit the model, and where a prior gives way so far, the rest of the change is made up.
+// expected: all of it, also along directions that are hardly known better than before.
+void refuse_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
+                        double prior_sigmas);
 
 }  // namespace byre

@@ -176,12 +176,13 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
   of_motion /= variance_factor(problem, solved.squared_errors);
   const CalibrationKnowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
-  RefinedCalibration result = determined_calibration(state.given, posterior.information,
-                                                     state.change + posterior.expected, options.prior_sigmas);
+  const CalibrationVector expected = state.change + posterior.expected;
+  RefinedCalibration result =
+      determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);
-  refuse_implausible(result, state.given, options.prior_sigmas);
+  refuse_implausible(result, expected, state.given, options.prior_sigmas);
   return result;
 }
 

@@ -1,0 +1,47 @@
+#include "byre/slam/determined_calibration.h"
+
+#include "byre/geometry/calibration_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kPriorSigmas = 2.0;
+constexpr int kKnown = kRightRotation;      // parameter that images tell
+constexpr int kHardlyKnown = kRightCamera;  // parameter of which they tell hardly more than was known before
+
+RefinedCalibration plausible_part(const CalibrationVector& expected) {
+  CalibrationMatrix information = CalibrationMatrix::Identity() / (kPriorSigmas * kPriorSigmas);
+  information(kKnown, kKnown) = 100.0;
+  const Calibration given = scene_calibration();
+  RefinedCalibration found = determined_calibration(given, information, expected, kPriorSigmas);
+  refuse_implausible(found, expected, given, kPriorSigmas);
+  return found;
+}
+
+TEST(DeterminedCalibration, KeepsWhatImagesTellAndNothingElse) {
+  CalibrationVector expected = CalibrationVector::Zero();
+  expected[kKnown] = 4.0;
+  expected[kHardlyKnown] = 3.0;
+  const RefinedCalibration found = plausible_part(expected);
+  EXPECT_NEAR(found.change[kKnown], 4.0, 1e-9);
+  EXPECT_NEAR(found.change[kHardlyKnown], 0.0, 1e-9);
+}
+
+TEST(DeterminedCalibration, IsRefusedWhereItIsLargerThanCalibrationsErr) {
+  CalibrationVector expected = CalibrationVector::Zero();
+  expected[kKnown] = 11.0;
+  EXPECT_TRUE(plausible_part(expected).change.isZero(0.0));
+}
+
+// As on KITTI's pairs, which are rectified by another model than that of what is found.
+TEST(DeterminedCalibration, IsRefusedWhereTheRestOfItIsLargerThanCalibrationsErr) {
+  CalibrationVector expected = CalibrationVector::Zero();
+  expected[kKnown] = 4.0;
+  expected[kHardlyKnown] = -11.0;
+  EXPECT_TRUE(plausible_part(expected).change.isZero(0.0));
+}
+
+}  // namespace
+}  // namespace byre
