@@ -3,7 +3,7 @@
 # runs the unit tests by QEMU. What they are linked with is unpacked once from Debian's packages into
 # build/sysroot-aarch64 (1.3 GB), or into the folder that the environment names as BYRE_SYSROOT.
 # Usage: cross-build.sh [--test | --processor]
-#   --test        runs all unit tests, for a quarter of an hour on two processors
+#   --test        runs the unit tests of all rooms, but for the slowest (see the preset aarch64)
 #   --processor   builds nothing but the unit tests of rooms that have code for each processor, and of what that rests
 #                 on, for scripts/test.sh --arm64, which runs them
 # Exit code 77: something is to be fetched, and Debian's mirror cannot be reached.
