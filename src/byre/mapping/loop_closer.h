@@ -28,7 +28,7 @@ class LoopCloser {
   std::optional<LoopHypothesis> look(const Look& now, const Map& online);
   // Once after each look(): whether the newest keyframe is to be looked for in older parts, see find_loop.
   bool asks_for_place() { return std::exchange(asks_for_place_, false); }
-  void suspect(const std::optional<LoopHypothesis>& found) { hypothesis_ = found; }  // what came of that
+  void suspect(const LoopHypothesis& found) { hypothesis_ = found; }  // where that found one
   void add(const LoopEdge& loop) { loops_.push_back(loop); }
 
   // What was measured of a place is out of date.

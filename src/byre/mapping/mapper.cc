@@ -327,14 +327,14 @@ void Mapper::start_job() {
 // What is asked for while the map is read waits until that is over.
 void Mapper::start_reading() {
   if (is_read()) return;
-  const std::optional<KeyframeId> id = std::exchange(unread_, std::nullopt);
-  const bool is_there = id && online_.find_keyframe(*id) != nullptr;
+  std::optional<KeyframeId> id = std::exchange(unread_, std::nullopt);
+  if (id && online_.find_keyframe(*id) == nullptr) id.reset();
   const bool bends = to_copy_ == ToCopy::to_bend, calibrates = to_copy_ == ToCopy::to_calibrate;
-  if (!is_there && !bends && !calibrates) return;
-  reading_.start([this, id, is_there, looks_for_loop = loop_closer_.asks_for_place(), bends, calibrates,
+  if (!id && !bends && !calibrates) return;
+  reading_.start([this, id, looks_for_loop = loop_closer_.asks_for_place(), bends, calibrates,
                   motions = bends ? all_motions() : std::vector<KeyframeMotion>()] {
     MapReading reading;
-    if (is_there) reading.newest = read_for(*id, looks_for_loop);
+    if (id) reading.newest = read_for(*id, looks_for_loop);
     if (bends) reading.to_bend = copy_to_bend(online_, first_new_, loops(), motions);
     if (calibrates) reading.whole = std::make_shared<const MapWindow>(whole_map(map()));
     return reading;
@@ -343,8 +343,7 @@ void Mapper::start_reading() {
 
 // Preconditions: places_, and the keyframe is there.
 KeyframeReading Mapper::read_for(KeyframeId id, bool looks_for_loop) const {
-  KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features),
-                          looks_for_loop};
+  KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features)};
   if (looks_for_loop) reading.loop = find_loop_by_words(online_, *places_, id, reading.words, options_.loops);
   return reading;
 }
@@ -365,7 +364,7 @@ void Mapper::keep(MapReading reading) {
 void Mapper::keep(KeyframeReading reading) {
   places_->add(reading.keyframe, reading.words);
   online_.set_words(reading.keyframe, std::move(reading.words));
-  if (reading.has_looked_for_loop) loop_closer_.suspect(reading.loop);
+  if (reading.loop) loop_closer_.suspect(*reading.loop);
 }
 
 void Mapper::forget_places(const MapDelta& delta) {

@@ -47,7 +47,6 @@ struct LocalOutcome {
 struct KeyframeReading {
   KeyframeId keyframe;
   std::vector<Word> words;  // one per feature: by these it is found again
-  bool has_looked_for_loop = false;
   std::optional<LoopHypothesis> loop = {};
 };
 
