@@ -27,7 +27,7 @@ class LoopCloser {
   // Once for each frame while no correction of the whole map is in flight. A loop that enough frames have confirmed.
   std::optional<LoopHypothesis> look(const Look& now, const Map& online);
   // Once after each look(): whether the newest keyframe is to be looked for in older parts, see find_loop.
-  bool asks_for_place() { return std::exchange(asks_for_place_, false); }
+  bool take_question() { return std::exchange(asks_for_place_, false); }
   void suspect(const LoopHypothesis& found) { hypothesis_ = found; }  // where that found one
   void add(const LoopEdge& loop) { loops_.push_back(loop); }
 

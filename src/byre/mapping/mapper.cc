@@ -47,6 +47,7 @@ void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationO
 
 Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                 const AnchoredTrajectory& trajectory) {
+  assert(!is_read());
   Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
                                     : begin_monocular(frame, rig, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
@@ -139,6 +140,7 @@ void Mapper::begin_where_found(const HybridTrack& found) {
 }
 
 KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig) {
+  assert(!is_read());
   Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig));
   keyframe.recording = options_.recording;
   keyframe.parent = track.online_reference;
@@ -217,6 +219,7 @@ std::vector<KeyframeMotion> Mapper::all_motions() const {
 }
 
 std::optional<double> Mapper::collect() {
+  assert(!is_read());
   const auto finished = local_.collect();
   if (finished) take_over(finished->result);
   global_.collect();
@@ -237,6 +240,7 @@ void Mapper::take_over(const LocalOutcome& outcome) {
 
 // Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
 bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
+  assert(!is_read());
   if (!shutter.has_change() || !local_.idle() || !is_global_free()) return false;
   shutter.take_over(rig, online_);
   stow_all_anew();
@@ -248,6 +252,7 @@ bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
 
 // What is in flight was measured by the calibration before, so that it must be over.
 std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
+  assert(!is_read());
   if (!calibrator_ || !local_.idle()) return std::nullopt;
   if (const auto refined = global_.take_calibration()) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
@@ -276,6 +281,7 @@ RigTurn Mapper::recalibrate(const RefinedCalibration& refined, const Rig& rig) {
 }
 
 std::optional<LengthChanges> Mapper::take_over_correction() {
+  assert(!is_read());
   if (!global_.is_waiting() || !local_.idle()) return std::nullopt;
   AppliedCorrection applied = global_.apply(online_);
   forget_places(applied.delta);
@@ -290,6 +296,7 @@ void Mapper::correct_later(const OnlineCorrection& correction) {
 }
 
 bool Mapper::correct_online() {
+  assert(!is_read());
   if (!waiting_correction_ || !local_.idle()) return false;
   const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   std::vector<KeyframeId> path = online_.keyframe_ids();
@@ -331,7 +338,7 @@ void Mapper::start_reading() {
   if (id && online_.find_keyframe(*id) == nullptr) id.reset();
   const bool bends = to_copy_ == ToCopy::to_bend, calibrates = to_copy_ == ToCopy::to_calibrate;
   if (!id && !bends && !calibrates) return;
-  reading_.start([this, id, looks_for_loop = loop_closer_.asks_for_place(), bends, calibrates,
+  reading_.start([this, id, looks_for_loop = loop_closer_.take_question(), bends, calibrates,
                   motions = bends ? all_motions() : std::vector<KeyframeMotion>()] {
     MapReading reading;
     if (id) reading.newest = read_for(*id, looks_for_loop);

@@ -92,6 +92,8 @@ class Mapper {
   bool is_read() const { return !reading_.idle(); }  // by a job, until which nothing is to change the map
   bool has_correction() const { return waiting_correction_.has_value(); }
 
+  // Whatever changes the map has the precondition !is_read().
+
   // Before the first frame. tell is asked by the calling thread for the ways between keyframes.
   void hear(TellMotion tell) { tell_ = std::move(tell); }
   void continue_map(Map online);

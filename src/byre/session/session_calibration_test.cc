@@ -2,17 +2,21 @@
 // the same in every frame, which no number of points averages out.
 
 #include "byre/alignment.h"
+#include "byre/features/recalibrated.h"
 #include "byre/session/session_scene.h"
 #include "byre/slam/place_scene.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include <gmock/gmock.h>
 
 namespace byre {
 namespace {
+
+using ::testing::IsEmpty;
 
 constexpr int kFrames = 90;
 
@@ -145,6 +149,45 @@ TEST(MappingWithACalibration, IsTrustedOnceThatHasBeenLookedAt) {
     EXPECT_TRUE(was_looked_at || report.health.doubt == Doubt::unconfirmed);
   }
   EXPECT_TRUE(was_looked_at);
+}
+
+// Jobs take a few frames each, while keyframes come.
+TEST(MappingWithACalibration, HasEveryKeyframeAsTheRefinedOneShowsIt) {
+  const SimulatedMission mission = visit(2);
+  const Calibration real = calibration_of(mission.rig);
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kRightRotation] = 1.5;
+  error[kRightRotation + 1] = -2.0;
+  const Calibration given = changed(real, error);
+  const RectifiedChange given_from_real(real, given);
+  Session session(given_from_real.rig(), {},
+                  {make_paced_executor(2), make_inline_executor(), make_inline_executor(), make_paced_executor(3)});
+  session.refine_calibration(given, {});
+  std::map<Timestamp, Features> frames;
+  int refined = 0;
+  for (const Frame& frame : mission.frames) {
+    const Features& shown = frames.emplace(frame.time, recalibrated(*frame.features, given_from_real)).first->second;
+    const FrameReport report = session.process({frame.time, std::make_shared<const Features>(shown)});
+    refined += report.has(SessionEvent::recalibrated) ? 1 : 0;
+  }
+  session.finish();
+  EXPECT_GE(refined, 2);
+  EXPECT_THAT(find_faults(session.map().online()), IsEmpty());
+
+  constexpr float kPrecise = 0.05f;  // pixels: what was changed in turns is rounded in turns
+  const RectifiedChange refined_from_given(given, session.self_calibration()->calibration);
+  for (const KeyframeId id : session.map().online().keyframe_ids()) {
+    const Keyframe& keyframe = *session.map().online().find_keyframe(id);
+    const Features& found = *keyframe.frame.features;
+    const Features expected = recalibrated(frames.at(keyframe.frame.time), refined_from_given);
+    ASSERT_EQ(found.size(), expected.size());
+    for (int i = 0; i < found.size(); ++i) {
+      EXPECT_LT((found.keypoint(i).pixel - expected.keypoint(i).pixel).norm(), kPrecise);
+      const Sighting& sighting = keyframe.sightings[static_cast<std::size_t>(i)];
+      const bool is_held = !sighting.point || (sighting.pixel - found.keypoint(i).pixel).norm() < kPrecise;
+      EXPECT_TRUE(is_held) << sighting.pixel.transpose() << " pixels";
+    }
+  }
 }
 
 }  // namespace
