@@ -78,6 +78,13 @@ struct Sighting {
   float pixel_sigma = 1.0f;                         // pixels
 };
 
+// What a keyframe saw, and the same as another calibration of the camera has it.
+struct RecalibratedFeatures {
+  KeyframeId keyframe;
+  std::shared_ptr<const Features> before;
+  std::shared_ptr<const Features> after;
+};
+
 // A point of the online map as a keyframe of the offline one sees it, which is never to know of it.
 struct ForeignView {
   Observation observation;  // a keyframe of the other map and its feature
@@ -191,8 +198,9 @@ class Map {
   void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // What was seen through a rig, as another calibration of the same camera has it: features, sightings and poses of its
-  // keyframes, and the rig itself. Points stay where they are.
-  void recalibrate(int rig, const RectifiedChange& change);
+  // keyframes, and the rig itself. Points stay where they are. made: features of some of these keyframes, ascending,
+  // made beforehand; they are taken where the keyframe still has those before.
+  void recalibrate(int rig, const RectifiedChange& change, std::span<const RecalibratedFeatures> made);
   // What a keyframe saw, found to lie a little elsewhere in the image; its sightings move along. Points stay where they
   // are. Precondition: the keyframe's own features, moved.
   void move_features(KeyframeId id, Features moved);

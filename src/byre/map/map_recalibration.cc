@@ -1,14 +1,19 @@
 #include "byre/features/recalibrated.h"
 #include "byre/map/map.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace byre {
 namespace {
 
-void recalibrate(Keyframe& keyframe, const RectifiedChange& change) {
-  if (keyframe.frame.features) {
-    keyframe.frame.features = std::make_shared<const Features>(recalibrated(*keyframe.frame.features, change));
+// made: of this keyframe, or nothing.
+void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const RecalibratedFeatures* made) {
+  std::shared_ptr<const Features>& features = keyframe.frame.features;
+  if (made != nullptr && made->before == features) {
+    features = made->after;
+  } else if (features) {
+    features = std::make_shared<const Features>(recalibrated(*features, change));
   }
   for (Sighting& sighting : keyframe.sightings) {
     if (sighting.point) sighting.pixel = recalibrated(sighting.pixel, change);
@@ -47,11 +52,17 @@ int Map::rig_of(KeyframeId id) const {
   return slot(id).keyframe ? slot(id).keyframe->rig : slot(id).removed->rig;
 }
 
-void Map::recalibrate(int rig, const RectifiedChange& change) {
+void Map::recalibrate(int rig, const RectifiedChange& change, std::span<const RecalibratedFeatures> made) {
   read_all();
+  const auto made_of = [&](std::size_t number) {
+    const KeyframeId id{origin_, static_cast<std::uint32_t>(number)};
+    const auto found = std::ranges::lower_bound(made, id, {}, &RecalibratedFeatures::keyframe);
+    return found != made.end() && found->keyframe == id ? &*found : nullptr;
+  };
   const auto turn_of = [&](int other) { return other == rig ? change.after_from_before() : Pose{}; };
-  for (KeyframeSlot& slot : keyframes_) {
-    if (slot.keyframe && slot.keyframe->rig == rig) byre::recalibrate(*slot.keyframe, change);
+  for (std::size_t number = 0; number < keyframes_.size(); ++number) {
+    KeyframeSlot& slot = keyframes_[number];
+    if (slot.keyframe && slot.keyframe->rig == rig) byre::recalibrate(*slot.keyframe, change, made_of(number));
     if (!slot.removed) continue;
     const Pose turned = turn_of(slot.removed->rig) * slot.removed->camera_from_parent;
     slot.removed->camera_from_parent = turned * inverse(turn_of(rig_of(slot.removed->parent)));

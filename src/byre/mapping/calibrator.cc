@@ -2,9 +2,27 @@
 
 #include "byre/features/recalibrated.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace byre {
+
+Recalibration recalibration_by(const RefinedCalibration& refined, const CalibrationState& before) {
+  return {refined, {before.given, refined.calibration}, {before.present(), refined.calibration}};
+}
+
+Recalibration recalibration_by(const RefinedCalibration& refined, const CalibrationState& before,
+                               const MapWindow& whole, int rig) {
+  Recalibration result = recalibration_by(refined, before);
+  for (const WindowKeyframe& seen : whole.keyframes) {
+    const std::shared_ptr<const Features>& features = seen.keyframe.frame.features;
+    if (seen.keyframe.rig != rig || !features) continue;
+    result.features.push_back(
+        {seen.id, features, std::make_shared<const Features>(recalibrated(*features, result.from_present))});
+  }
+  std::ranges::sort(result.features, {}, &RecalibratedFeatures::keyframe);
+  return result;
+}
 
 Frame Calibrator::corrected(const Frame& frame) {
   if (!from_given_) return frame;
@@ -19,12 +37,6 @@ void Calibrator::take_over(const RefinedCalibration& refined, RectifiedChange fr
   state_.change = refined.change;
   result_ = refined;
   from_given_.emplace(std::move(from_given));
-}
-
-RectifiedChange Calibrator::take_over(const RefinedCalibration& refined) {
-  const Calibration before = state_.present();
-  take_over(refined, {state_.given, refined.calibration});
-  return {before, refined.calibration};
 }
 
 }  // namespace byre

@@ -8,8 +8,22 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace byre {
+
+// A refined calibration, and what it makes of what was seen.
+struct Recalibration {
+  RefinedCalibration refined;
+  RectifiedChange from_given;                       // of features as the calibration given has them
+  RectifiedChange from_present;                     // as the one until now has them
+  std::vector<RecalibratedFeatures> features = {};  // of keyframes, ascending; may be made only when they are needed
+};
+// before: what was known until then.
+Recalibration recalibration_by(const RefinedCalibration& refined, const CalibrationState& before);
+// The same with features of all keyframes of a map that the rig of this index saw.
+Recalibration recalibration_by(const RefinedCalibration& refined, const CalibrationState& before,
+                               const MapWindow& whole, int rig);
 
 // Refines the calibration of a session's cameras while it runs: decides when enough new was seen, and corrects the
 // features of frames that were rectified by the calibration given. Called from the session's thread.
@@ -41,8 +55,6 @@ class Calibrator {
 
   // From now on that is the present calibration, and from_given how features of the one given change.
   void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
-  // The same. Returns how what was seen by the one before changes.
-  RectifiedChange take_over(const RefinedCalibration& refined);
 
  private:
   SelfCalibrationOptions options_;  // constant after construction

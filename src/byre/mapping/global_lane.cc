@@ -29,11 +29,16 @@ void GlobalLane::calibrate(std::shared_ptr<const MapWindow> whole, const Calibra
                            const SelfCalibrationOptions& options) {
   assert(idle());
   worker_.start([whole = std::move(whole), state, rig, options, is_hurried = is_hurried_, stowed = stowed_] {
-    return self_calibrate(*whole, state, rig, options, forgetting_looks(*stowed, [&] { return is_hurried->load(); }));
+    const auto should_stop = forgetting_looks(*stowed, [&] { return is_hurried->load(); });
+    const auto refined = self_calibrate(*whole, state, rig, options, should_stop);
+    if (!refined) return Refinement();
+    Refinement result = recalibration_by(*refined, state, *whole, rig);
+    stowed->forget_looks();
+    return result;
   });
 }
 
-std::optional<RefinedCalibration> GlobalLane::take_calibration() {
+std::optional<Recalibration> GlobalLane::take_calibration() {
   if (!outcome_ || !std::holds_alternative<Refinement>(*outcome_)) return std::nullopt;
   return std::get<Refinement>(*std::exchange(outcome_, std::nullopt));
 }

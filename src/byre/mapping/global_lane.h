@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/mapping/calibrator.h"
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/slam/told_motions.h"
@@ -47,7 +48,7 @@ class GlobalLane {
   // Looks what a map says of the calibration of a rig of its. Precondition: idle().
   void calibrate(std::shared_ptr<const MapWindow> whole, const CalibrationState& state, int rig,
                  const SelfCalibrationOptions& options);
-  std::optional<RefinedCalibration> take_calibration();  // empty while there is none
+  std::optional<Recalibration> take_calibration();  // empty while there is none
 
   void collect();                        // once per frame
   void finish();                         // waits for the job in flight
@@ -55,7 +56,7 @@ class GlobalLane {
   AppliedCorrection apply(Map& online);  // precondition: is_waiting()
 
  private:
-  using Refinement = std::optional<RefinedCalibration>;
+  using Refinement = std::optional<Recalibration>;
   using Outcome = std::variant<MapDelta, Refinement>;
 
   void keep(std::optional<Worker<Outcome>::Finished> finished);

@@ -254,10 +254,10 @@ bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
 std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
   assert(!is_read());
   if (!calibrator_ || !local_.idle()) return std::nullopt;
-  if (const auto refined = global_.take_calibration()) {
+  if (auto by = global_.take_calibration()) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
-    const bool is_large = (refined->change - calibrator_->state().change).norm() > kToAdjust;
-    const RigTurn turn = recalibrate(*refined, rig);
+    const bool is_large = (by->refined.change - calibrator_->state().change).norm() > kToAdjust;
+    const RigTurn turn = recalibrate(*std::move(by), rig);
     stow_all_anew();
     if (is_large && is_global_free()) to_copy_ = ToCopy::to_bend;
     return turn;
@@ -270,11 +270,11 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
 }
 
 // The rectified camera turns, as it is made of the real ones in another way.
-RigTurn Mapper::recalibrate(const RefinedCalibration& refined, const Rig& rig) {
+RigTurn Mapper::recalibrate(Recalibration by, const Rig& rig) {
   const int index = online_.add_rig(rig);
-  const RectifiedChange change = calibrator_->take_over(refined);
-  online_.recalibrate(index, change);
-  const RigTurn turn{change.after_from_before(), index, change.rig()};
+  online_.recalibrate(index, by.from_present, by.features);
+  calibrator_->take_over(by.refined, std::move(by.from_given));
+  RigTurn turn{by.from_present.after_from_before(), index, by.from_present.rig()};
   loop_closer_.turn(turn, online_);
   ++revision_;
   return turn;
@@ -400,7 +400,7 @@ std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::func
   const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
                                       calibrator_->options(), forgetting_looks(*stowed_, should_stop));
   if (!refined) return std::nullopt;
-  return recalibrate(*refined, rig);
+  return recalibrate(recalibration_by(*refined, calibrator_->state()), rig);
 }
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {

@@ -165,7 +165,7 @@ class Mapper {
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // what is told of the whole map
   void take_over(const LocalOutcome& outcome);
-  RigTurn recalibrate(const RefinedCalibration& refined, const Rig& rig);
+  RigTurn recalibrate(Recalibration by, const Rig& rig);
   void stow_old_keyframe();
   void stow_all_anew();
   void stow_later(KeyframeId id);
