@@ -15,9 +15,9 @@ namespace byre {
 // A refined calibration, and what it makes of what was seen.
 struct Recalibration {
   RefinedCalibration refined;
-  RectifiedChange from_given;                       // of features as the calibration given has them
-  RectifiedChange from_present;                     // as the one until now has them
-  std::vector<RecalibratedFeatures> features = {};  // of keyframes, ascending; may be made only when they are needed
+  RectifiedChange from_given;                       // what becomes of features as the calibration given has them
+  RectifiedChange from_present;                     // the same of features as the one until now has them
+  std::vector<RecalibratedFeatures> features = {};  // made already, ascending by keyframe
 };
 // before: what was known until then.
 Recalibration recalibration_by(const RefinedCalibration& refined, const CalibrationState& before);
