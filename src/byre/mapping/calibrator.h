@@ -16,7 +16,7 @@ namespace byre {
 struct Recalibration {
   RefinedCalibration refined;
   RectifiedChange from_given;                       // what becomes of features as the calibration given has them
-  RectifiedChange from_present;                     // the same of features as the one until now has them
+  RectifiedChange from_present;                     // what becomes of features as the one until now has them
   std::vector<RecalibratedFeatures> features = {};  // made already, ascending by keyframe
 };
 // before: what was known until then.
