@@ -40,10 +40,18 @@ class Calibrator {
   // The frame as the present calibration has it; itself while that is the one given.
   Frame corrected(const Frame& frame);
 
+  // Told with each frame, whether left and right images of late do not fit each other.
+  void note_images(bool are_at_odds) {
+    if (!from_given_) given_is_at_odds_ = are_at_odds;
+  }
+  // Whether it is too early to rely on what was found. Where images did not fit by the calibration given, an error of
+  // the usual size that makes a few keyframes fit is no proof: as many are asked for as close looks go on for.
+  bool is_open() const { return !result_ || (given_is_at_odds_ && last_keyframes_.value_or(0) < kCloseUntil); }
+
   // Whether a map of so many keyframes has grown enough since the last time for another look. The first ones are close
   // together, as all that was trusted before a calibration is found to be wrong was trusted wrongly.
   bool is_due(int keyframes) const {
-    constexpr int kFirst = 7, kStep = 3, kCloseUntil = 28;
+    constexpr int kFirst = 7, kStep = 3;
     if (!last_keyframes_) return keyframes >= kFirst;
     return keyframes >= (*last_keyframes_ < kCloseUntil ? *last_keyframes_ + kStep : 2 * *last_keyframes_);
   }
@@ -57,10 +65,13 @@ class Calibrator {
   void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
 
  private:
+  static constexpr int kCloseUntil = 28;  // keyframes up to which looks are close together
+
   SelfCalibrationOptions options_;  // constant after construction
   CalibrationState state_;
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the one given
+  bool given_is_at_odds_ = false;              // with the images, when they were last rectified by it
   std::optional<int> last_keyframes_;          // map's size at the last look
   SharedPool<Features> features_of_frames_;    // memory
 };

@@ -92,6 +92,10 @@ class Mapper {
   bool is_read() const { return !reading_.idle(); }  // by a job, until which nothing is to change the map
   bool has_correction() const { return waiting_correction_.has_value(); }
 
+  void note_images(bool are_at_odds) {  // see Calibrator
+    if (calibrator_) calibrator_->note_images(are_at_odds);
+  }
+
   // Whatever changes the map has the precondition !is_read().
 
   // Before the first frame. tell is asked by the calling thread for the ways between keyframes.

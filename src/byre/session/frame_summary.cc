@@ -51,7 +51,7 @@ Health measured(const HybridTrack& track, const Rig& rig) {
 HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) {
   constexpr double kFarOff = 3.0;  // pixels; the real calibrations that were refused are off by 0.6 to 2.4
   const auto& result = calibrator.result();
-  evidence.is_calibration_open = !result;
+  evidence.is_calibration_open = calibrator.is_open();
   evidence.is_calibration_doubtful = result && result->was_refused();
   if (evidence.is_calibration_doubtful && result->shift >= kFarOff) evidence.is_miscalibrated = true;
   return evidence;

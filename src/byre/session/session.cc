@@ -203,6 +203,7 @@ InputFrame Session::input_of(const Frame& rectified) {
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
   const InputEvidence evidence = input_watch_.look_at(frame, rig_);
+  mapper_.note_images(evidence.cameras_disagree);
   return {std::move(frame), fault, evidence};
 }
 
