@@ -161,7 +161,7 @@ TEST(MappingWithACalibration, HasEveryKeyframeAsTheRefinedOneShowsIt) {
   const Calibration given = changed(real, error);
   const RectifiedChange given_from_real(real, given);
   Session session(given_from_real.rig(), {},
-                  {make_paced_executor(2), make_inline_executor(), make_inline_executor(), make_paced_executor(3)});
+                  {make_paced_executor(2), make_paced_executor(4), make_inline_executor(), make_paced_executor(3)});
   session.refine_calibration(given, {});
   std::map<Timestamp, Features> frames;
   int refined = 0;
