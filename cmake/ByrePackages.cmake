@@ -89,7 +89,7 @@ byre_add_package(runtime PACKAGE libbyre${PROJECT_VERSION_MAJOR} SECTION libs NE
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=") # before 1.0 a minor version may break the interface
 byre_add_package(development PACKAGE libbyre-dev SECTION libdevel NEEDS runtime DEPENDS libeigen3-dev
-  RECOMMENDS "libceres-dev, libopencv-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, libembree-dev, libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
+  RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, libembree-dev, libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
   SUMMARY "visual SLAM for robots - development files"
   DESCRIPTION "${about}\n.\nThis package holds the headers, the package for CMake, and the static\nlibraries. Programs that are linked with those need the recommended packages.")
 if(BYRE_BUILD_PYTHON)

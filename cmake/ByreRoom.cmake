@@ -57,7 +57,7 @@ set(BYRE_ROOMS_TESTED_FIRST session slam playback simulation)
 set(BYRE_ROOMS_WITH_DATA dataset evaluation place)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
-    ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
+    ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
 # Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests. LINKS: what it needs beside what
 # all rooms are linked with.

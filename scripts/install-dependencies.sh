@@ -7,8 +7,8 @@ packages=(
   # building
   g++ cmake ninja-build ccache git
   # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
-  libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev libdeflate-dev
-  libembree-dev libboost-dev
+  libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
+  libdeflate-dev libembree-dev libboost-dev
   # bags
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # the program

@@ -8,7 +8,6 @@
 #include "byre/benchmark/peak_memory.h"
 #include "byre/evaluation/distribution.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/recording.h"
 #include "byre/slam/localisation.h"
@@ -27,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
 #include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -93,7 +93,7 @@ double heap_mb() {
 }
 
 fs::path site_file() {
-  return fs::temp_directory_path() / formatted("byre_site_%d.byre", static_cast<int>(getpid()));
+  return fs::temp_directory_path() / fmt::format("byre_site_{}.byre", static_cast<int>(getpid()));
 }
 
 // Runs it in a process of its own, so that memory that one measurement leaves is not counted to the next.
@@ -243,19 +243,19 @@ std::vector<std::string> cells_of(int keyframes, const Writing& writing, const O
                                   double mission_mb) {
   return {std::to_string(keyframes),
           std::to_string(writing.points),
-          formatted("%.1f", writing.file_mb),
-          formatted("%.2f", writing.seconds),
-          formatted("%.2f (%.2f, first %.2f)", opening.seconds, opening.cpu_seconds, opening.first_cpu_seconds),
-          formatted("%.0f", opening.resident_mb),
-          formatted("%.3f, %.1f MB", use.index_seconds, use.index_mb),
-          formatted("%.2f (%.2f)", use.query_ms.mean, use.query_ms.max),
-          formatted("%.1f (%.1f)", use.localise_ms.mean, use.localise_ms.max),
-          formatted("%d of %d", use.localised, use.localise_ms.count),
-          formatted("%.1f (%.1f)", use.frame_ms.mean, use.frame_ms.p99),
-          formatted("%.1f (%.1f)", use.frame_cpu_ms.mean, use.frame_cpu_ms.p99),
-          formatted("%.0f", mission_mb),
-          formatted("%d of %d", use.with_pose, use.frame_ms.count),
-          formatted("%.3f, %.1f us", use.ground_seconds, use.stand_us)};
+          fmt::format("{:.1f}", writing.file_mb),
+          fmt::format("{:.2f}", writing.seconds),
+          fmt::format("{:.2f} ({:.2f}, first {:.2f})", opening.seconds, opening.cpu_seconds, opening.first_cpu_seconds),
+          fmt::format("{:.0f}", opening.resident_mb),
+          fmt::format("{:.3f}, {:.1f} MB", use.index_seconds, use.index_mb),
+          fmt::format("{:.2f} ({:.2f})", use.query_ms.mean, use.query_ms.max),
+          fmt::format("{:.1f} ({:.1f})", use.localise_ms.mean, use.localise_ms.max),
+          fmt::format("{} of {}", use.localised, use.localise_ms.count),
+          fmt::format("{:.1f} ({:.1f})", use.frame_ms.mean, use.frame_ms.p99),
+          fmt::format("{:.1f} ({:.1f})", use.frame_cpu_ms.mean, use.frame_cpu_ms.p99),
+          fmt::format("{:.0f}", mission_mb),
+          fmt::format("{} of {}", use.with_pose, use.frame_ms.count),
+          fmt::format("{:.3f}, {:.1f} us", use.ground_seconds, use.stand_us)};
 }
 
 void measure(const Inputs& inputs, const std::vector<int>& sizes) {
@@ -305,9 +305,9 @@ void adjust_sites(const std::vector<int>& sizes) {
     const double seconds = watch.seconds(), cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
     table.add({std::to_string(poses), std::to_string(site.problem().points.size()),
                std::to_string(site.problem().observations.size()), std::to_string(result.iterations),
-               formatted("%.1f", seconds), formatted("%.1f", cpu_seconds),
-               formatted("%.2f", 1e3 * site.position_error(result.camera_from_world)), formatted("%.0f", before),
-               formatted("%.0f", peak_memory_mb().value_or(0.0))});
+               fmt::format("{:.1f}", seconds), fmt::format("{:.1f}", cpu_seconds),
+               fmt::format("{:.2f}", 1e3 * site.position_error(result.camera_from_world)),
+               fmt::format("{:.0f}", before), fmt::format("{:.0f}", peak_memory_mb().value_or(0.0))});
   }
   std::fputs(table.text().c_str(), stdout);
 }

@@ -1,10 +1,11 @@
 #include "mission_case.h"
 
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/system/engine.h"
 
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -88,26 +89,27 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
 std::vector<std::string> broken_demands(const MissionCase& mission_case, const MissionScore& score) {
   std::vector<std::string> broken;
   if (mission_case.map.is_of_another_place && score.trusted > 0.0) {
-    broken.push_back(formatted("%.1f %% of the frames are trusted on the map of another place", 100.0 * score.trusted));
+    broken.push_back(
+        fmt::format("{:.1f} % of the frames are trusted on the map of another place", 100.0 * score.trusted));
   }
   if (score.longest_wrong_trust > kMaxWrongTrust) {
-    broken.push_back(formatted("poses off by more than 0.2 m are trusted for %.2f s", score.longest_wrong_trust) +
-                     formatted(", the worst is off by %.2f m", score.worst_trusted_error));
+    broken.push_back(fmt::format("poses off by more than 0.2 m are trusted for {:.2f} s", score.longest_wrong_trust) +
+                     fmt::format(", the worst is off by {:.2f} m", score.worst_trusted_error));
   }
   if (mission_case.demand.is_never_wrong && score.wrongly_trusted > 0) {
-    broken.push_back(formatted("%d frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
-                     formatted(", the worst by %.2f m", score.worst_trusted_error));
+    broken.push_back(fmt::format("{} frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
+                     fmt::format(", the worst by {:.2f} m", score.worst_trusted_error));
   }
   if (mission_case.demand.doubt && score.time_to_doubt.value_or(1e9) > kMaxTimeToDoubt) {
     broken.push_back("\"" + std::string(to_string(*mission_case.demand.doubt)) + "\" is told " +
-                     (score.time_to_doubt ? formatted("only after %.2f s", *score.time_to_doubt) : "never"));
+                     (score.time_to_doubt ? fmt::format("only after {:.2f} s", *score.time_to_doubt) : "never"));
   }
   if (mission_case.demand.recovers && !score.recovery) broken.emplace_back("is never trusted again");
   if (mission_case.demand.recovers && score.recovery.value_or(0.0) > kMaxRecovery) {
-    broken.push_back(formatted("is trusted again only after %.2f s", *score.recovery));
+    broken.push_back(fmt::format("is trusted again only after {:.2f} s", *score.recovery));
   }
   if (score.trusted < mission_case.demand.min_trusted_share) {
-    broken.push_back(formatted("only %.1f %% of the frames are trusted", 100.0 * score.trusted));
+    broken.push_back(fmt::format("only {:.1f} % of the frames are trusted", 100.0 * score.trusted));
   }
   return broken;
 }

@@ -19,6 +19,7 @@
 #include <span>
 #include <string_view>
 
+#include <fmt/core.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace byre {
@@ -114,9 +115,7 @@ void write_trace(const FlownMission& flown, const fs::path& file) {
 }
 
 std::string formatted_seconds(double seconds) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f", seconds);
-  return text.data();
+  return fmt::format("{:.2f}", seconds);
 }
 
 std::string recovery_of(const MissionScore& score) {

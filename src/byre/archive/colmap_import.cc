@@ -2,7 +2,6 @@
 
 #include "byre/dataset/colmap_camera.h"
 #include "byre/dataset/image_file.h"
-#include "byre/input/formatted.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 #include "byre/trajectory_error.h"
@@ -11,6 +10,8 @@
 #include <map>
 #include <set>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -87,8 +88,8 @@ std::optional<Image> read_as_taken(const fs::path& path, const Camera& camera, s
     return std::nullopt;
   }
   if (image->width == camera.width && image->height == camera.height) return image;
-  warnings.push_back(path.string() + formatted(": is of %d x %d pixels, its camera of %d x %d, left out", image->width,
-                                               image->height, camera.width, camera.height));
+  warnings.push_back(path.string() + fmt::format(": is of {} x {} pixels, its camera of {} x {}, left out",
+                                                 image->width, image->height, camera.width, camera.height));
   return std::nullopt;
 }
 
@@ -238,12 +239,13 @@ std::string to_text(const ColmapImport& imported) {
   std::ranges::sort(attached);
   std::ranges::sort(errors);
   const Map& map = imported.stored.map;
-  std::string text = formatted("keyframes          %d\n", map.keyframe_count());
-  text += formatted("points             %zu of the model's %d, and %zu of byre's own\n", imported.colmap_ids.size(),
-                    imported.points_in_model, map.point_count() - imported.colmap_ids.size());
+  std::string text = fmt::format("keyframes          {}\n", map.keyframe_count());
+  text += fmt::format("points             {} of the model's {}, and {} of byre's own\n", imported.colmap_ids.size(),
+                      imported.points_in_model, map.point_count() - imported.colmap_ids.size());
   if (attached.empty()) return text;
-  text += formatted("points per image   median %.0f, least %.0f\n", quantile(attached, 0.5), attached.front());
-  text += formatted("error per image    median %.2f pixels, largest %.2f\n", quantile(errors, 0.5), errors.back());
+  text += fmt::format("points per image   median {:.0f}, least {:.0f}\n", quantile(attached, 0.5), attached.front());
+  text +=
+      fmt::format("error per image    median {:.2f} pixels, largest {:.2f}\n", quantile(errors, 0.5), errors.back());
   text += imported.stored.scale == MapScale::metric ? "scale              metres\n"
                                                     : "scale              the model's own (--scale makes it metres)\n";
   return text;

@@ -1,6 +1,5 @@
 #include "byre/archive/register_map.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
 
@@ -8,6 +7,8 @@
 #include <cmath>
 #include <string>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -54,11 +55,12 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
     const double factor = baseline_factor(stored, i);
     if (factor == 1.0) continue;
-    throw InputError(picks.string(),
-                     formatted("gives positions, and the map has been scaled by %.6g since it was made: they may be of "
-                               "the map before",
-                               factor),
-                     "name points, times or pixels of the map");
+    throw InputError(
+        picks.string(),
+        fmt::format("gives positions, and the map has been scaled by {:.6g} since it was made: they may be of "
+                    "the map before",
+                    factor),
+        "name points, times or pixels of the map");
   }
 }
 
@@ -109,8 +111,8 @@ MendedMap mend_scale(StoredMap stored, const std::filesystem::path& map, const F
 
 std::string describe_origin(const PlanRegistration& registration) {
   const Eigen::Vector3d& origin = registration.plan_from_map.target_from_source.translation;
-  return registration.plan + formatted(": the map's origin is at x %.3f, y %.3f, %.3f m above its floor", origin.x(),
-                                       origin.y(), origin.z());
+  return registration.plan + fmt::format(": the map's origin is at x {:.3f}, y {:.3f}, {:.3f} m above its floor",
+                                         origin.x(), origin.y(), origin.z());
 }
 
 }  // namespace byre

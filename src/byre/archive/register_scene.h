@@ -1,10 +1,11 @@
 #pragma once
 
-#include "byre/input/formatted.h"
 #include "byre/map/floor_plan_scene.h"
 #include "byre/map/map_file.h"
 
 #include <string>
+
+#include <fmt/core.h>
 
 namespace byre {
 
@@ -22,8 +23,8 @@ inline StoredMap driven_barn(FloorPlanScene& scene) {
 inline std::string picks_csv(const std::vector<PlanCorrespondence>& correspondences) {
   std::string text = "#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n";
   for (const PlanCorrespondence& each : correspondences) {
-    text += formatted("%.9f,%.9f,%.9f,", each.point_in_map.x(), each.point_in_map.y(), each.point_in_map.z());
-    text += formatted("%.9f,%.9f,", each.point_in_plan.x(), each.point_in_plan.y()) + each.name + "\n";
+    text += fmt::format("{:.9f},{:.9f},{:.9f},", each.point_in_map.x(), each.point_in_map.y(), each.point_in_map.z());
+    text += fmt::format("{:.9f},{:.9f},", each.point_in_plan.x(), each.point_in_plan.y()) + each.name + "\n";
   }
   return text;
 }
@@ -35,14 +36,14 @@ inline std::string keyframe_picks_csv(const FloorPlanScene& scene, const StoredM
     if (id.number % 10 != 5) continue;
     const Keyframe& keyframe = *stored.map.find_keyframe(id);
     const Eigen::Vector3d in_plan = scene.plan_from_map * body_at(stored.map, keyframe);
-    text += formatted("%.9f,%.9f,%.9f\n", to_seconds(keyframe.frame.time), in_plan.x(), in_plan.y());
+    text += fmt::format("{:.9f},{:.9f},{:.9f}\n", to_seconds(keyframe.frame.time), in_plan.x(), in_plan.y());
   }
   return text;
 }
 
 // A PGM image, white all over.
 inline std::string plan_image(int width, int height) {
-  return formatted("P5\n%d %d\n255\n", width, height) + std::string(static_cast<std::size_t>(width * height), '\xff');
+  return fmt::format("P5\n{} {}\n255\n", width, height) + std::string(static_cast<std::size_t>(width * height), '\xff');
 }
 
 }  // namespace byre

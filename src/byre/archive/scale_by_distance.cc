@@ -1,6 +1,5 @@
 #include "byre/archive/scale_by_distance.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
 
@@ -10,6 +9,8 @@
 #include <optional>
 #include <string_view>
 #include <vector>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -46,7 +47,7 @@ std::string time_span(const Map& map) {
     first = std::min(first, map.find_keyframe(id)->frame.time);
     last = std::max(last, map.find_keyframe(id)->frame.time);
   }
-  return formatted("which are from %.3f to %.3f s", to_seconds(first), to_seconds(last));
+  return fmt::format("which are from {:.3f} to {:.3f} s", to_seconds(first), to_seconds(last));
 }
 
 Eigen::Vector3d camera_position_at(const StoredMap& stored, const std::string& text, std::string_view seconds) {

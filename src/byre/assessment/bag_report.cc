@@ -1,11 +1,12 @@
 #include "byre/assessment/bag_report.h"
 
 #include "byre/dataset/bag_topics.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -41,14 +42,14 @@ std::string describe(const Choice& choice, const BagContent& content) {
 std::string storage_of(const BagContent& content) {
   std::string text = content.storage;
   for (const std::string& compression : content.compression) text += ", " + compression;
-  return text + formatted(", %.1f MB", 1e-6 * static_cast<double>(content.bytes));
+  return text + fmt::format(", {:.1f} MB", 1e-6 * static_cast<double>(content.bytes));
 }
 
 std::string describe(const BagTopic& topic, double seconds, std::size_t longest_name, std::size_t longest_type) {
   std::string text = topic.name + std::string(longest_name + 2 - topic.name.size(), ' ') + topic.type +
                      std::string(longest_type + 2 - topic.type.size(), ' ') + std::to_string(topic.messages);
   if (topic.messages > 1 && seconds > 0.0) {
-    text += formatted(", %.1f Hz", static_cast<double>(topic.messages - 1) / seconds);
+    text += fmt::format(", {:.1f} Hz", static_cast<double>(topic.messages - 1) / seconds);
   }
   return encoding_of(topic) ? text : text + ", encoded as " + topic.encoding + ", which byre does not read";
 }
@@ -63,8 +64,8 @@ std::string describe(const BagContent& content, const std::string& bag) {
   }
   const double seconds = duration_s(content);
   std::string text = row("bag", bag) + row("storage", storage_of(content));
-  text += row("duration", formatted("%.3f s", seconds));
-  if (content.first) text += row("from", formatted("%.3f s since 1970", to_seconds(*content.first)));
+  text += row("duration", fmt::format("{:.3f} s", seconds));
+  if (content.first) text += row("from", fmt::format("{:.3f} s since 1970", to_seconds(*content.first)));
   text += row("messages", std::to_string(content.message_count));
   for (const BagTopic& topic : content.topics) {
     text += row("topic", describe(topic, seconds, longest_name, longest_type));

@@ -1,10 +1,11 @@
 #include "byre/assessment/calibration_report.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <cmath>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -43,12 +44,13 @@ std::string left_as_given(const std::vector<Row>& rows) {
 std::string describe_optics(const RefinedCalibration& refined) {
   if (refined.keyframes == 0) return "as given, but for the length of the baseline or the shutter";
   if (refined.was_refused()) {
-    return formatted("as given, though what %d keyframes saw is off it by %.2f px on the whole", refined.keyframes,
-                     refined.shift);
+    return fmt::format("as given, though what {} keyframes saw is off it by {:.2f} px on the whole", refined.keyframes,
+                       refined.shift);
   }
-  if (refined.change.isZero(0.0)) return formatted("as given, which explains what %d keyframes saw", refined.keyframes);
+  if (refined.change.isZero(0.0))
+    return fmt::format("as given, which explains what {} keyframes saw", refined.keyframes);
   const std::string open = left_as_given(rows_of(refined));
-  return formatted("refined from %d keyframes, by %.2f px on the whole", refined.keyframes, refined.shift) +
+  return fmt::format("refined from {} keyframes, by {:.2f} px on the whole", refined.keyframes, refined.shift) +
          (open.empty() ? "" : "; left as given: " + open);
 }
 
@@ -58,7 +60,8 @@ std::string describe_calibration(const RefinedCalibration& refined) {
   constexpr double kMilliseconds = 1e3;
   const double readout_time = refined.calibration.readout_time;
   return describe_optics(refined) +
-         (readout_time == 0.0 ? "" : formatted("; rolling shutter, %.1f ms an image", kMilliseconds * readout_time));
+         (readout_time == 0.0 ? ""
+                              : fmt::format("; rolling shutter, {:.1f} ms an image", kMilliseconds * readout_time));
 }
 
 std::string calibration_row(const std::optional<RefinedCalibration>& refined) {
@@ -69,9 +72,9 @@ std::string calibration_table(const RefinedCalibration& refined) {
   std::string text;
   if (refined.keyframes == 0) return text;
   for (const Row& row : rows_of(refined)) {
-    text += formatted("  %-28s %+11.5f %-3s  known to %.5f before, %.5f now%s\n",
-                      std::string(row.parameter.name).c_str(), row.change, std::string(row.parameter.unit).c_str(),
-                      row.sigma_before, row.sigma_after, row.is_determined() ? "" : " (left as given)");
+    text += fmt::format("  {:28} {:+11.5f} {:3}  known to {:.5f} before, {:.5f} now{}\n",
+                        std::string(row.parameter.name), row.change, std::string(row.parameter.unit), row.sigma_before,
+                        row.sigma_after, row.is_determined() ? "" : " (left as given)");
   }
   return text;
 }
@@ -79,13 +82,13 @@ std::string calibration_table(const RefinedCalibration& refined) {
 std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined) {
   if (!refined || refined->shift < kFarOffPixels) return std::nullopt;
   if (refined->was_refused()) {
-    return formatted(
-        "the calibration given is off by %.2f px on the whole, too far to be mended: it is used as it is; calibrate "
+    return fmt::format(
+        "the calibration given is off by {:.2f} px on the whole, too far to be mended: it is used as it is; calibrate "
         "the cameras anew",
         refined->shift);
   }
-  return formatted(
-      "the calibration given is off by %.2f px on the whole: calibrate the cameras anew, or go on with what "
+  return fmt::format(
+      "the calibration given is off by {:.2f} px on the whole: calibrate the cameras anew, or go on with what "
       "byre calibrate writes",
       refined->shift);
 }

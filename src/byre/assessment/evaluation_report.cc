@@ -1,12 +1,12 @@
 #include "byre/assessment/evaluation_report.h"
 
 #include "byre/assessment/report_json.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <sstream>
 #include <string_view>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -38,15 +38,15 @@ std::string describe_alignment(const EvaluationReport& report) {
     return "origin: the first pose is laid on the true one, rotation too";
   if (!report.ate) return "impossible: the positions lie on a line, or there are fewer than three";
   if (report.protocol.alignment == PoseAlignment::se3) return "SE(3) over all pairs (Umeyama)";
-  return formatted("Sim(3) over all pairs (Umeyama), scale %.6f", report.ate->truth_from_estimate.scale);
+  return fmt::format("Sim(3) over all pairs (Umeyama), scale {:.6f}", report.ate->truth_from_estimate.scale);
 }
 
 // Empty where there is nothing to beware of.
 std::string caveat_row(const EvaluationReport& report) {
   const PoseAlignment alignment = report.protocol.alignment;
   if (!is_nearly_a_line(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";
-  return formatted(
-      "caveat       the path is nearly a line: it spreads %.3g m along it, %.3g m across. How the alignment "
+  return fmt::format(
+      "caveat       the path is nearly a line: it spreads {:.3g} m along it, {:.3g} m across. How the alignment "
       "turns about that line is\n             not determined, so errors across it and of rotation may be "
       "any (--alignment origin has no such freedom)\n",
       report.true_spread[0], report.true_spread[1]);
@@ -54,14 +54,14 @@ std::string caveat_row(const EvaluationReport& report) {
 
 std::string describe_association(const EvaluationReport& report) {
   const AssociationOptions& options = report.protocol.association;
-  return formatted("truth interpolated in gaps up to %g ms, else its nearest sample within %g ms: %d pairs",
-                   to_milliseconds(options.max_gap), to_milliseconds(options.max_difference), report.pairs);
+  return fmt::format("truth interpolated in gaps up to {:g} ms, else its nearest sample within {:g} ms: {} pairs",
+                     to_milliseconds(options.max_gap), to_milliseconds(options.max_difference), report.pairs);
 }
 
 std::string describe_coverage(const EvaluationReport& report) {
   if (!report.coverage) return "unknown: fewer than two poses, and no frames given";
-  return formatted("%.1f %% (%d of %d ", 100.0 * report.coverage->share(), report.coverage->with_pose,
-                   report.coverage->expected) +
+  return fmt::format("{:.1f} % ({} of {} ", 100.0 * report.coverage->share(), report.coverage->with_pose,
+                     report.coverage->expected) +
          report.coverage_source + ")";
 }
 
@@ -74,15 +74,15 @@ std::string header(const EvaluationReport& report, const std::string& estimate_f
        << "association  " << describe_association(report) << "\n"
        << "time offset  " << to_seconds(report.protocol.association.time_offset) << " s, added to the truth's time\n"
        << "coverage     " << describe_coverage(report) << "\n"
-       << "true path    " << formatted("%.2f m", report.true_path) << "\n"
+       << "true path    " << fmt::format("{:.2f} m", report.true_path) << "\n"
        << caveat_row(report);
   return text.str();
 }
 
 std::string ate_rpe_row(const char* name, const ErrorStatistics& errors) {
-  if (errors.count == 0) return formatted("%-22s no pair of poses is that far apart\n", name);
-  return formatted("%-22s %9.5f %9.5f %9.5f %9.5f %9.5f %8d\n", name, errors.rmse, errors.mean, errors.median,
-                   errors.p95, errors.max, errors.count);
+  if (errors.count == 0) return fmt::format("{:22} no pair of poses is that far apart\n", name);
+  return fmt::format("{:22} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:8}\n", name, errors.rmse, errors.mean,
+                     errors.median, errors.p95, errors.max, errors.count);
 }
 
 Json to_json(const ErrorStatistics& errors) {
@@ -96,15 +96,15 @@ Json to_json(const RelativePoseError& error) {
 }
 
 std::string segment_row(const std::string& name, const SegmentError& error) {
-  return formatted("%-22s %9.4f %% %11.6f deg/m %8d segments\n", name.c_str(), 1e2 * error.translation, error.rotation,
-                   error.count);
+  return fmt::format("{:22} {:9.4f} % {:11.6f} deg/m {:8} segments\n", name, 1e2 * error.translation, error.rotation,
+                     error.count);
 }
 
 std::string segment_rows(const SegmentErrors& segments) {
   if (segments.all.count == 0) return "segments (KITTI)       none, as the path is shorter than 100 m\n";
   std::string text = segment_row("segments (KITTI)", segments.all);
   for (const SegmentError& error : segments.by_length)
-    text += segment_row(formatted("  of %.0f m", error.length), error);
+    text += segment_row(fmt::format("  of {:.0f} m", error.length), error);
   return text;
 }
 
@@ -117,7 +117,7 @@ Json to_json(const SegmentError& error) {
 Json to_json(const SegmentErrors& segments) {
   Json json = {{"all", to_json(segments.all)}, {"by_length_m", Json::object()}};
   for (const SegmentError& error : segments.by_length) {
-    json["by_length_m"][formatted("%.0f", error.length)] = to_json(error);
+    json["by_length_m"][fmt::format("{:.0f}", error.length)] = to_json(error);
   }
   return json;
 }
@@ -158,7 +158,8 @@ Json ate_json(const std::optional<AbsoluteTrajectoryError>& ate) {
 
 std::string to_text(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
   std::string text = header(report, estimate_file, truth_file) + "\n";
-  text += formatted("%-22s %9s %9s %9s %9s %9s %8s\n", "", "rmse", "mean", "median", "p95", "max", "count");
+  text +=
+      fmt::format("{:22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "", "rmse", "mean", "median", "p95", "max", "count");
   if (report.ate) {
     text += ate_rpe_row("ATE            m", report.ate->translation) +
             ate_rpe_row("ATE            degrees", report.ate->rotation);

@@ -1,7 +1,8 @@
 #include "byre/assessment/finish_report.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -9,21 +10,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string listing(const char* format, const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + formatted(format, value);
-  return text;
-}
-
 std::string describe_loops(const FinishReport& report) {
   if (report.loops == 0) return "no more found";
-  return formatted("%d more, drifted by ", report.loops) + listing("%.1f", report.loop_drifts) + " px, now off by " +
-         listing("%.3f", report.loop_residuals) + " m";
+  return fmt::format("{} more, drifted by {:.1f} px, now off by {:.3f} m", report.loops,
+                     fmt::join(report.loop_drifts, ", "), fmt::join(report.loop_residuals, ", "));
 }
 
 std::string describe_faults(const std::vector<std::string>& faults) {
   if (faults.empty()) return "none";
-  return formatted("%zu; the first: ", faults.size()) + faults.front();
+  return fmt::format("{}; the first: ", faults.size()) + faults.front();
 }
 
 Json to_json(const MapQuality& quality) {
@@ -43,15 +38,14 @@ std::string to_text(const Finishing& finishing) {
   const MapQuality& after = report.after;
   std::string text = row("last loops", describe_loops(report));
   text += row("removed",
-              formatted("%d redundant keyframes, %d weak points", report.keyframes_removed, report.points_removed));
-  text +=
-      row("pixel error", formatted("median %.3f -> %.3f px, 95 %% within %.3f -> %.3f px", before.reprojection_median,
-                                   after.reprojection_median, before.reprojection_p95, after.reprojection_p95));
-  text += row("parts", formatted("%d -> %d that share no points", before.parts, after.parts));
+              fmt::format("{} redundant keyframes, {} weak points", report.keyframes_removed, report.points_removed));
+  text += row("pixel error",
+              fmt::format("median {:.3f} -> {:.3f} px, 95 % within {:.3f} -> {:.3f} px", before.reprojection_median,
+                          after.reprojection_median, before.reprojection_p95, after.reprojection_p95));
+  text += row("parts", fmt::format("{} -> {} that share no points", before.parts, after.parts));
   text += row("faults", describe_faults(finishing.faults));
-  text +=
-      row("finishing", formatted(finishing.cut_short ? "%.1f s, cut short; \"byre refine\" goes on with it" : "%.1f s",
-                                 finishing.seconds));
+  text += row("finishing", fmt::format("{:.1f} s{}", finishing.seconds,
+                                       finishing.cut_short ? ", cut short; \"byre refine\" goes on with it" : ""));
   return text;
 }
 

@@ -3,12 +3,12 @@
 #include "byre/archive/register_map.h"
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/report_json.h"
-#include "byre/input/formatted.h"
 #include "byre/motion/known_mounting.h"
 
 #include <algorithm>
 #include <string_view>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -26,8 +26,8 @@ std::string size_text(std::size_t bytes) {
   constexpr double kKilobyte = 1e3;
   constexpr double kMegabyte = 1e6;
   const auto size = static_cast<double>(bytes);
-  if (size < kKilobyte) return formatted("%zu B", bytes);
-  return size < kMegabyte ? formatted("%.1f kB", size / kKilobyte) : formatted("%.1f MB", size / kMegabyte);
+  if (size < kKilobyte) return fmt::format("{} B", bytes);
+  return size < kMegabyte ? fmt::format("{:.1f} kB", size / kKilobyte) : fmt::format("{:.1f} MB", size / kMegabyte);
 }
 
 // A map of unknown scale has a unit of its own.
@@ -65,28 +65,29 @@ std::string_view describe(PoseSource source) {
 
 std::string describe(const Distribution& values, const char* unit) {
   if (values.count == 0) return "none";
-  return formatted("mean %.2f%s, median %.2f, 95 %% below %.2f, 99 %% below %.2f, max %.2f", values.mean, unit,
-                   values.p50, values.p95, values.p99, values.max);
+  return fmt::format("mean {:.2f}{}, median {:.2f}, 95 % below {:.2f}, 99 % below {:.2f}, max {:.2f}", values.mean,
+                     unit, values.p50, values.p95, values.p99, values.max);
 }
 
 std::string describe_words(const StoredMap& stored, const MapCounts& counts) {
   if (counts.keyframes_with_words == 0) return "none";
-  return formatted("of %d keyframes, by the vocabulary %016llx", counts.keyframes_with_words,
-                   static_cast<unsigned long long>(stored.vocabulary_checksum));
+  return fmt::format("of {} keyframes, by the vocabulary {:016x}", counts.keyframes_with_words,
+                     static_cast<unsigned long long>(stored.vocabulary_checksum));
 }
 
 std::string describe_box(const std::optional<BoundingBox>& box, const char* unit) {
   if (!box) return "none";
   const Eigen::Vector3d size = box->max - box->min;
-  return formatted("%.1f x %.1f x %.1f %s: ", size.x(), size.y(), size.z(), unit) +
-         formatted("x %.1f to %.1f, y %.1f to %.1f, z %.1f to %.1f", box->min.x(), box->max.x(), box->min.y(),
-                   box->max.y(), box->min.z(), box->max.z());
+  return fmt::format("{:.1f} x {:.1f} x {:.1f} {}: ", size.x(), size.y(), size.z(), unit) +
+         fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}, z {:.1f} to {:.1f}", box->min.x(), box->max.x(),
+                     box->min.y(), box->max.y(), box->min.z(), box->max.z());
 }
 
 std::string describe(const SourceRecording& recording, int keyframes, const std::string& camera) {
   return recording.name +
-         formatted(", %.1f s, last frame at %.3f s, %d keyframes, ",
-                   to_seconds(recording.last_time - recording.first_time), to_seconds(recording.last_time), keyframes) +
+         fmt::format(", {:.1f} s, last frame at {:.3f} s, {} keyframes, ",
+                     to_seconds(recording.last_time - recording.first_time), to_seconds(recording.last_time),
+                     keyframes) +
          camera;
 }
 
@@ -106,7 +107,7 @@ std::size_t sum_of(const std::vector<PartSize>& parts) {
 std::string describe_file(const InspectedFile& file, int keyframes) {
   std::string text = size_text(file.bytes);
   if (keyframes > 0) {
-    text += formatted(", %.1f kB per keyframe", 1e-3 * static_cast<double>(file.bytes) / keyframes);
+    text += fmt::format(", {:.1f} kB per keyframe", 1e-3 * static_cast<double>(file.bytes) / keyframes);
   }
   return text;
 }
@@ -133,7 +134,7 @@ std::string origin_text(const StoredMap& stored, const MapInspection& inspection
 std::string error_text(const ReprojectionErrors& errors) {
   std::string text = wide_row("pixel error", describe(errors.pixel, " px"));
   text += wide_row("disparity", describe(errors.disparity, " px"));
-  if (errors.behind_camera > 0) text += wide_row("behind camera", formatted("%d observations", errors.behind_camera));
+  if (errors.behind_camera > 0) text += wide_row("behind camera", fmt::format("{} observations", errors.behind_camera));
   return text;
 }
 
@@ -206,14 +207,14 @@ std::string to_text(const StoredMap& stored, const MapInspection& inspection, co
   const MapCounts& counts = inspection.counts;
   const char* const unit = unit_of(stored);
   std::string text = wide_row("map", file.name) + origin_text(stored, inspection);
-  text += wide_row("keyframes", formatted("%d, with %d features, %d with a patch", counts.keyframes, counts.features,
-                                          counts.patches));
-  text += wide_row("points", formatted("%d, with %d observations", counts.points, counts.observations));
+  text += wide_row("keyframes", fmt::format("{}, with {} features, {} with a patch", counts.keyframes, counts.features,
+                                            counts.patches));
+  text += wide_row("points", fmt::format("{}, with {} observations", counts.points, counts.observations));
   text += wide_row("seen by", describe(inspection.observations_per_point, " keyframes"));
   text += wide_row("words", describe_words(stored, counts));
   text += error_text(inspection.errors);
   text += wide_row("extent", describe_box(inspection.points_in_world, unit));
-  text += wide_row("path", formatted("%.2f %s", inspection.path_length, unit));
+  text += wide_row("path", fmt::format("{:.2f} {}", inspection.path_length, unit));
   text += wide_row("file", describe_file(file, counts.keyframes));
   text += wide_row("", sizes_text(file.sections));
   text += wide_row("memory", "about " + size_text(sum_of(inspection.memory)));
@@ -229,7 +230,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"recordings", recordings_json(stored.recordings, inspection)},
       {"notes", stored.notes},
       {"plan", stored.plan ? registration_json(*stored.plan) : Json()},
-      {"vocabulary_checksum", formatted("%016llx", static_cast<unsigned long long>(stored.vocabulary_checksum))},
+      {"vocabulary_checksum", fmt::format("{:016x}", static_cast<unsigned long long>(stored.vocabulary_checksum))},
       {"counts", to_json(inspection.counts)},
       {"observations_per_point", to_json(inspection.observations_per_point)},
       {"reprojection_error", errors_json(inspection.errors)},

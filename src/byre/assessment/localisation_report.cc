@@ -1,12 +1,13 @@
 #include "byre/assessment/localisation_report.h"
 
 #include "byre/assessment/report_json.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/map/keyframe_path.h"
 
 #include <algorithm>
 #include <map>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -88,14 +89,14 @@ std::string error_rows(const LocalisationErrors& errors, std::size_t frames) {
   std::string text =
       row("truth", errors.alignment_keyframes == 0
                        ? std::string("taken for given in the map's frame")
-                       : formatted("the map is aligned to it by its %d keyframes", errors.alignment_keyframes));
-  text += row("position", formatted("median %.4f m, 95 %% within %.4f m, worst %.4f m", summary.position.median,
-                                    summary.position.p95, summary.position.max));
-  text += row("rotation", formatted("median %.3f deg, 95 %% within %.3f deg, worst %.3f deg", summary.rotation.median,
-                                    summary.rotation.p95, summary.rotation.max));
-  text += row("close", formatted("%d of %zu frames (%.1f %%) found within %g m and %g deg", summary.close, frames,
-                                 percent(summary.close, frames), kCloseMetres, kCloseDegrees));
-  text += row("far", formatted("%d frames accepted but off by more than %g m", summary.far, kFarFoundMetres));
+                       : fmt::format("the map is aligned to it by its {} keyframes", errors.alignment_keyframes));
+  text += row("position", fmt::format("median {:.4f} m, 95 % within {:.4f} m, worst {:.4f} m", summary.position.median,
+                                      summary.position.p95, summary.position.max));
+  text += row("rotation", fmt::format("median {:.3f} deg, 95 % within {:.3f} deg, worst {:.3f} deg",
+                                      summary.rotation.median, summary.rotation.p95, summary.rotation.max));
+  text += row("close", fmt::format("{} of {} frames ({:.1f} %) found within {:g} m and {:g} deg", summary.close, frames,
+                                   percent(summary.close, frames), kCloseMetres, kCloseDegrees));
+  text += row("far", fmt::format("{} frames accepted but off by more than {:g} m", summary.far, kFarFoundMetres));
   return text;
 }
 
@@ -151,19 +152,19 @@ std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
   const int found = count_found(run);
   std::string text = row("map", protocol.map);
   if (protocol.plan) text += row("plan", protocol.plan->plan);
-  text += row("frames", formatted("%s, %d frames", protocol.input.c_str(), protocol.frames));
-  text += row("found", formatted("%d of %zu frames (%.1f %%), each without a guess", found, run.frames.size(),
-                                 percent(found, run.frames.size())));
+  text += row("frames", fmt::format("{}, {} frames", protocol.input, protocol.frames));
+  text += row("found", fmt::format("{} of {} frames ({:.1f} %), each without a guess", found, run.frames.size(),
+                                   percent(found, run.frames.size())));
   for (const auto& [failure, count] : count_failures(run)) {
-    text += row("not found", formatted("%d: ", count) + std::string(to_string(failure)));
+    text += row("not found", fmt::format("{}: ", count) + std::string(to_string(failure)));
   }
   const ErrorStatistics inliers = inlier_statistics(run);
-  if (found > 0) text += row("inliers", formatted("median %.0f", inliers.median));
-  text += row("time", formatted("median %.1f ms to localise, 95 %% within %.1f ms, after %.1f ms to extract",
-                                localise_times(run).median, localise_times(run).p95, extract_times(run).median));
+  if (found > 0) text += row("inliers", fmt::format("median {:.0f}", inliers.median));
+  text += row("time", fmt::format("median {:.1f} ms to localise, 95 % within {:.1f} ms, after {:.1f} ms to extract",
+                                  localise_times(run).median, localise_times(run).p95, extract_times(run).median));
   if (errors) text += error_rows(*errors, run.frames.size());
   if (!run.warnings.empty()) {
-    text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
+    text += row("warnings", fmt::format("{}; the first: ", run.warnings.size()) + run.warnings.front());
   }
   return text;
 }

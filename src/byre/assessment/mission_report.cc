@@ -1,9 +1,10 @@
 #include "byre/assessment/mission_report.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <algorithm>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -19,14 +20,14 @@ double share(int part, int whole) {
 
 std::string describe_verdicts(const MissionStatistics& statistics) {
   const auto percent = [&statistics](int frames) { return 100.0 * share(frames, statistics.frames); };
-  std::string text = formatted("trusted %.1f %%, degraded %.1f %%, untrusted %.1f %%", percent(statistics.trusted),
-                               percent(statistics.degraded), percent(statistics.untrusted));
-  if (statistics.missing > 0) text += formatted(", missing %.1f %%", percent(statistics.missing));
-  return text + formatted(" of %d frames", statistics.frames);
+  std::string text = fmt::format("trusted {:.1f} %, degraded {:.1f} %, untrusted {:.1f} %", percent(statistics.trusted),
+                                 percent(statistics.degraded), percent(statistics.untrusted));
+  if (statistics.missing > 0) text += fmt::format(", missing {:.1f} %", percent(statistics.missing));
+  return text + fmt::format(" of {} frames", statistics.frames);
 }
 
 std::string describe_missing(const MissionStatistics& statistics) {
-  return formatted("%d of %d frames could not be read", statistics.missing, statistics.frames) +
+  return fmt::format("{} of {} frames could not be read", statistics.missing, statistics.frames) +
          (is_full_of_gaps(statistics) ? ": too many for the verdicts of the others to stand for the mission" : "");
 }
 
@@ -34,14 +35,14 @@ std::string describe_doubts(const MissionStatistics& statistics) {
   std::string text;
   for (std::size_t i = 0; i < std::min(kListedDoubts, statistics.doubts.size()); ++i) {
     const auto& [doubt, frames] = statistics.doubts[i];
-    text += (text.empty() ? "" : ", ") + std::string(to_string(doubt)) + formatted(" %d", frames);
+    text += (text.empty() ? "" : ", ") + std::string(to_string(doubt)) + fmt::format(" {}", frames);
   }
   return text + " frames";
 }
 
 std::string describe_losses(const MissionStatistics& statistics) {
-  return formatted("%d times, found again %d times; %d navigation errors", statistics.losses,
-                   statistics.relocalisations, statistics.navigation_errors);
+  return fmt::format("{} times, found again {} times; {} navigation errors", statistics.losses,
+                     statistics.relocalisations, statistics.navigation_errors);
 }
 
 // What it was at most.
@@ -49,46 +50,46 @@ std::string describe_dirt(const MissionStatistics& statistics) {
   Health health;
   health.hidden_share = statistics.most_hidden;
   health.hidden_share_right = statistics.most_hidden_right;
-  return note_on_dirt(health) + formatted(" (at most; %d frames)", statistics.frames_with_dirt);
+  return note_on_dirt(health) + fmt::format(" (at most; {} frames)", statistics.frames_with_dirt);
 }
 
 // Empty where the mission did not come to such places.
 std::string keyframe_row(const char* places, const KeyframeRate& rate) {
   if (rate.minutes <= 0.0) return "";
-  return row("keyframes", formatted("%.1f a minute in %s places (%d in %.0f s)", rate.per_minute(), places,
-                                    rate.keyframes, 60.0 * rate.minutes));
+  return row("keyframes", fmt::format("{:.1f} a minute in {} places ({} in {:.0f} s)", rate.per_minute(), places,
+                                      rate.keyframes, 60.0 * rate.minutes));
 }
 
 std::string describe_inliers(const MissionStatistics& statistics) {
-  std::string text = formatted("offline median %.0f, online %.0f", statistics.offline_inliers.median,
-                               statistics.online_inliers.median);
+  std::string text = fmt::format("offline median {:.0f}, online {:.0f}", statistics.offline_inliers.median,
+                                 statistics.online_inliers.median);
   if (statistics.most_suspended > 0)
-    text += formatted("; up to %d offline points suspended", statistics.most_suspended);
+    text += fmt::format("; up to {} offline points suspended", statistics.most_suspended);
   return text;
 }
 
 std::string describe_alignment(const MissionErrors& errors) {
   if (!errors.in_map_frame) return "causal and final poses are each aligned to it";
   if (errors.alignment_poses == 0) return "taken for given in the map's frame";
-  return formatted("the map alone is aligned to it, by %d poses of the run that made it", errors.alignment_poses);
+  return fmt::format("the map alone is aligned to it, by {} poses of the run that made it", errors.alignment_poses);
 }
 
 std::string error_row(const char* name, const std::vector<PoseError>& errors) {
   const ErrorStatistics position = position_statistics(errors);
   if (position.count == 0) return row(name, "no pose with truth");
   return row(name,
-             formatted("RMSE %.4f m and %.3f deg, median %.4f m, 95 %% within %.4f m, worst %.4f m", position.rmse,
-                       rotation_statistics(errors).rmse, position.median, position.p95, position.max));
+             fmt::format("RMSE {:.4f} m and {:.3f} deg, median {:.4f} m, 95 % within {:.4f} m, worst {:.4f} m",
+                         position.rmse, rotation_statistics(errors).rmse, position.median, position.p95, position.max));
 }
 
 std::string trust_rows(const MissionErrors& errors) {
   std::string text = error_row("trusted", errors.trusted);
-  text += row("wrong trust", formatted("%d frames trusted but off by more than %g m, %.2f s at a time",
-                                       errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
+  text += row("wrong trust", fmt::format("{} frames trusted but off by more than {:g} m, {:.2f} s at a time",
+                                         errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
   if (!errors.within_bound) return text;
-  std::string within = formatted("%.1f %% of causal positions within its 95 %% bound", 100.0 * *errors.within_bound);
+  std::string within = fmt::format("{:.1f} % of causal positions within its 95 % bound", 100.0 * *errors.within_bound);
   if (errors.within_bound_beside_map) {
-    within += formatted(", %.1f %% beside the map's own error", 100.0 * *errors.within_bound_beside_map);
+    within += fmt::format(", {:.1f} % beside the map's own error", 100.0 * *errors.within_bound_beside_map);
   }
   text += row("covariance", within);
   return text;

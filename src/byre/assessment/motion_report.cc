@@ -1,9 +1,11 @@
 #include "byre/assessment/motion_report.h"
 
 #include "byre/geometry/degrees.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <algorithm>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -12,27 +14,27 @@ namespace {
 std::string describe_lengths(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
   const double share = 100.0 * wheels.scale_sigma;
   if (sees_metres) {
-    return formatted("%.2f %% longer than seen (sigma %.2f %%); ", 100.0 * (wheels.metres_per_unit - 1.0), share);
+    return fmt::format("{:.2f} % longer than seen (sigma {:.2f} %); ", 100.0 * (wheels.metres_per_unit - 1.0), share);
   }
   if (run.is_metric) return "";
-  return formatted("a unit of the map is %.3f m (sigma %.2f %%); ", wheels.metres_per_unit, share);
+  return fmt::format("a unit of the map is {:.3f} m (sigma {:.2f} %); ", wheels.metres_per_unit, share);
 }
 
 std::string describe(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
   const ToldMotion& told = run.told;
   const Eigen::Vector3d& arm = wheels.base_from_body.translation;
   std::string text =
-      formatted("body %.2f m ahead and %.2f m to the left of the base; stamped %.0f ms after the images; ", arm.x(),
-                arm.y(), 1e3 * told.time_offset);
+      fmt::format("body {:.2f} m ahead and {:.2f} m to the left of the base; stamped {:.0f} ms after the images; ",
+                  arm.x(), arm.y(), 1e3 * told.time_offset);
   text += describe_lengths(wheels, run, sees_metres);
-  text += formatted("left out for slip %d times", told.slips);
+  text += fmt::format("left out for slip {} times", told.slips);
   return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
 }
 
 std::string describe_stops(const ToldMotion& told) {
-  std::string text = formatted("stood still %d times, %.1f s", told.stops, told.stood_s);
-  if (told.to_keep.up) text += formatted("; up is known to %.1f deg in the map", told.to_keep.up->sigma / kDegree);
-  return text + formatted("; held roll and pitch of %d bridged frames", told.tilts_held);
+  std::string text = fmt::format("stood still {} times, {:.1f} s", told.stops, told.stood_s);
+  if (told.to_keep.up) text += fmt::format("; up is known to {:.1f} deg in the map", told.to_keep.up->sigma / kDegree);
+  return text + fmt::format("; held roll and pitch of {} bridged frames", told.tilts_held);
 }
 
 bool is_bridged(const MappedFrame& frame) {
@@ -47,8 +49,8 @@ std::string motion_rows(const MapRun& run, bool sees_metres) {
   std::string text;
   if (told.wheels) text += row("wheels", describe(*told.wheels, run, sees_metres));
   if (told.gyroscope) {
-    text += row("gyroscope", formatted("bias %.3f, %.3f, %.3f deg/s", told.gyroscope->bias.x() / kDegree,
-                                       told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
+    text += row("gyroscope", fmt::format("bias {:.3f}, {:.3f}, {:.3f} deg/s", told.gyroscope->bias.x() / kDegree,
+                                         told.gyroscope->bias.y() / kDegree, told.gyroscope->bias.z() / kDegree));
   }
   if (told.stops > 0) text += row("gravity", describe_stops(told));
   if (!told.wheels && told.is_mounted_otherwise) {
@@ -57,8 +59,8 @@ std::string motion_rows(const MapRun& run, bool sees_metres) {
     return text + row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);
-  return text + row("bridged", formatted("%d frames that show nothing known; %d more have a final pose by wheels",
-                                         static_cast<int>(bridged), told.led_afterwards));
+  return text + row("bridged", fmt::format("{} frames that show nothing known; {} more have a final pose by wheels",
+                                           static_cast<int>(bridged), told.led_afterwards));
 }
 
 }  // namespace byre

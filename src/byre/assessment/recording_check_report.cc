@@ -1,7 +1,8 @@
 #include "byre/assessment/recording_check_report.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -10,13 +11,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string describe(const CameraCheck& camera) {
-  return formatted("brightness %.0f and contrast %.0f grey values, sharpness %.2f; %d of %d images of no use",
-                   camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
+  return fmt::format("brightness {:.0f} and contrast {:.0f} grey values, sharpness {:.2f}; {} of {} images of no use",
+                     camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
 }
 
 std::string describe(const PairCheck& pair) {
-  return formatted("%.0f %% of the features found in the right image, %.2f px off their row", 100.0 * pair.matched,
-                   pair.row_error);
+  return fmt::format("{:.0f} % of the features found in the right image, {:.2f} px off their row", 100.0 * pair.matched,
+                     pair.row_error);
 }
 
 Json to_json(const CameraCheck& camera) {
@@ -34,27 +35,27 @@ Json to_json(const CameraCheck& camera) {
 }  // namespace
 
 std::string summary_of(const RecordingCheck& check) {
-  std::string text = formatted("%.1f Hz, %d gaps; %.0f features", check.rate_hz, check.gaps, check.features);
+  std::string text = fmt::format("{:.1f} Hz, {} gaps; {:.0f} features", check.rate_hz, check.gaps, check.features);
   if (!check.pair) return text;
-  return text + formatted(", %.0f %% of them in both images, %.2f px off their row", 100.0 * check.pair->matched,
-                          check.pair->row_error);
+  return text + fmt::format(", {:.0f} % of them in both images, {:.2f} px off their row", 100.0 * check.pair->matched,
+                            check.pair->row_error);
 }
 
 std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings) {
-  std::string text = row("frames", formatted("%d at %.1f Hz, %d gaps, the longest %.2f s", check.frames, check.rate_hz,
-                                             check.gaps, check.longest_gap_s));
-  text += row("looked at", formatted("%d; %d unreadable, %d without a right image, %d the same as the one before",
-                                     check.looked_at, check.unreadable, check.without_right, check.repeated));
+  std::string text = row("frames", fmt::format("{} at {:.1f} Hz, {} gaps, the longest {:.2f} s", check.frames,
+                                               check.rate_hz, check.gaps, check.longest_gap_s));
+  text += row("looked at", fmt::format("{}; {} unreadable, {} without a right image, {} the same as the one before",
+                                       check.looked_at, check.unreadable, check.without_right, check.repeated));
   text += row("left", describe(check.left));
   if (check.right) text += row("right", describe(*check.right));
   if (check.pair) text += row("pair", describe(*check.pair));
   if (check.pair) {
-    text +=
-        row("calibration", formatted("off by about %.2f px, by the rows of the pair", check.pair->calibration_error));
+    text += row("calibration",
+                fmt::format("off by about {:.2f} px, by the rows of the pair", check.pair->calibration_error));
   }
-  text += row("features", formatted("%.0f in an image", check.features));
-  text += row("view", formatted("%.0f degrees wide", check.field_of_view_deg));
-  if (check.baseline_m > 0.0) text += row("baseline", formatted("%.4f m", check.baseline_m));
+  text += row("features", fmt::format("{:.0f} in an image", check.features));
+  text += row("view", fmt::format("{:.0f} degrees wide", check.field_of_view_deg));
+  if (check.baseline_m > 0.0) text += row("baseline", fmt::format("{:.4f} m", check.baseline_m));
   for (const Finding& finding : findings) {
     text += row(finding.is_grave ? "TO MEND" : "to see to", finding.what) + row("", finding.remedy);
   }

@@ -1,12 +1,13 @@
 #include "byre/assessment/registration_report.h"
 
 #include "byre/assessment/report_json.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -22,27 +23,29 @@ Eigen::Matrix3d rotation_of(const PlanRegistration& registration) {
 
 std::string describe_plan(const FloorPlan& plan) {
   const double pixel = 1e3 * plan.metres_per_pixel.col(0).norm();
-  return plan.name + formatted(", %d x %d pixels of %.1f mm", plan.width, plan.height, pixel);
+  return plan.name + fmt::format(", {} x {} pixels of {:.1f} mm", plan.width, plan.height, pixel);
 }
 
 std::string describe_agreement(const Registering& registering) {
   const auto outliers = std::ranges::count(registering.fit.residuals, true, &PlanResidual::is_outlier);
   const auto count = static_cast<std::ptrdiff_t>(registering.correspondences.size());
-  return formatted("%td, of which %td agree to %.3f m (root mean square)", count, count - outliers,
-                   registering.fit.rms);
+  return fmt::format("{}, of which {} agree to {:.3f} m (root mean square)", count, count - outliers,
+                     registering.fit.rms);
 }
 
 std::string residual_row(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
   const Eigen::Vector2d& error = residual.error_in_plan;
   return row(residual.is_outlier ? "outlier" : "fits",
-             correspondence.name + formatted(": off by %.3f m (x %+.3f, y %+.3f)", error.norm(), error.x(), error.y()));
+             correspondence.name +
+                 fmt::format(": off by {:.3f} m (x {:+.3f}, y {:+.3f})", error.norm(), error.x(), error.y()));
 }
 
 std::string describe_turn(const PlanRegistration& registration) {
   const Eigen::Matrix3d rotation = rotation_of(registration);
   const double heading = kDegreesPerRadian * std::atan2(rotation(1, 0), rotation(0, 0));
-  return formatted("the map's x points to %.3f deg on the plan, anticlockwise; up is (%.4f, %.4f, %.4f) in the map",
-                   heading, rotation(2, 0), rotation(2, 1), rotation(2, 2));
+  return fmt::format(
+      "the map's x points to {:.3f} deg on the plan, anticlockwise; up is ({:.4f}, {:.4f}, {:.4f}) in the map", heading,
+      rotation(2, 0), rotation(2, 1), rotation(2, 2));
 }
 
 double yaw_sigma(const PlanRegistration& registration) {
@@ -52,8 +55,8 @@ double yaw_sigma(const PlanRegistration& registration) {
 
 // "1.60 % +- 0.10 % too large"
 std::string describe_excess(const PlanScale& scale) {
-  return formatted("%.2f %% +- %.2f %% too %s", 1e2 * std::abs(scale.excess()), 1e2 * scale.sigma,
-                   scale.excess() > 0.0 ? "large" : "small");
+  return fmt::format("{:.2f} % +- {:.2f} % too {}", 1e2 * std::abs(scale.excess()), 1e2 * scale.sigma,
+                     scale.excess() > 0.0 ? "large" : "small");
 }
 
 std::string describe_measured_scale(const PlanScale& scale, bool has_baseline) {
@@ -65,7 +68,7 @@ std::string describe_measured_scale(const PlanScale& scale, bool has_baseline) {
 std::string describe_mended_scale(const PlanScale& scale, double factor) {
   if (factor == 1.0) return "nothing to mend: " + describe_excess(scale);
   return "the map was " + describe_excess(scale) +
-         formatted(": its lengths and baseline are now %.6g of those", factor);
+         fmt::format(": its lengths and baseline are now {:.6g} of those", factor);
 }
 
 Json measured_scale_json(const PlanScale& scale) {
@@ -98,15 +101,15 @@ std::string to_text(const Registering& registering, const RegisterProtocol& prot
   }
   text += row("origin", describe_origin(registration)) + row("turn", describe_turn(registration));
   if (registration.covariance(6, 6) > 0.0) {
-    text += row("scale", formatted("%.6g m per unit of the map, known to %.2f %%", registration.plan_from_map.scale,
-                                   1e2 * std::sqrt(registration.covariance(6, 6))));
+    text += row("scale", fmt::format("{:.6g} m per unit of the map, known to {:.2f} %",
+                                     registration.plan_from_map.scale, 1e2 * std::sqrt(registration.covariance(6, 6))));
   }
   if (const std::optional<PlanScale>& measured = registering.measured_scale) {
     text += row("scale", protocol.scaled_by ? describe_mended_scale(*measured, *protocol.scaled_by)
                                             : describe_measured_scale(*measured, registering.has_baseline));
   }
-  text += row("known to", formatted("%.3f m on all of the path, %.3f deg in yaw (one sigma)",
-                                    registering.largest_path_sigma, yaw_sigma(registration)));
+  text += row("known to", fmt::format("{:.3f} m on all of the path, {:.3f} deg in yaw (one sigma)",
+                                      registering.largest_path_sigma, yaw_sigma(registration)));
   for (const PlanDoubt doubt : registering.fit.doubts) text += row("doubt", std::string(to_string(doubt)));
   if (!protocol.written.empty()) text += row("written", protocol.written);
   return text;

@@ -1,10 +1,11 @@
 #include "byre/assessment/ros_report.h"
 
 #include "byre/assessment/pose_messages.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <cstring>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -18,7 +19,7 @@ bool is_believed(const FrameReport& report) {
 }
 
 ros::KeyValue number(const char* name, double value) {
-  return {name, formatted("%.6g", value)};
+  return {name, fmt::format("{:.6g}", value)};
 }
 
 std::vector<ros::KeyValue> values_of(const FrameReport& report) {

@@ -4,7 +4,7 @@
 #include "byre/assessment/finish_report.h"
 #include "byre/assessment/map_statistics.h"
 #include "byre/assessment/motion_report.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/system/stored_map.h"
 #include "byre/trajectory_error.h"
 
@@ -12,21 +12,23 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace byre {
 namespace {
 
 std::string describe_poses(const FrameCounts& counts) {
-  std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
-  if (counts.lost_episodes > 0) text += formatted(", lost %d times for %d frames", counts.lost_episodes, counts.lost);
-  if (counts.resets > 0) text += formatted(", begun anew %d times", counts.resets);
-  if (counts.unreadable > 0) text += formatted("; %d could not be read", counts.unreadable);
+  std::string text =
+      fmt::format("{} of {} frames ({:.1f} %)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
+  if (counts.lost_episodes > 0) text += fmt::format(", lost {} times for {} frames", counts.lost_episodes, counts.lost);
+  if (counts.resets > 0) text += fmt::format(", begun anew {} times", counts.resets);
+  if (counts.unreadable > 0) text += fmt::format("; {} could not be read", counts.unreadable);
   return text;
 }
 
 std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  return formatted(protocol.extended.empty() ? "%d keyframes, of %d made; %d points"
-                                             : "%d keyframes, of those before and %d made; %d points",
-                   run.map.keyframe_count(), counts.keyframes, run.map.point_count());
+  return fmt::format("{} keyframes, of {}{} made; {} points", run.map.keyframe_count(),
+                     protocol.extended.empty() ? "" : "those before and ", counts.keyframes, run.map.point_count());
 }
 
 // The most frequent reason first; empty where there is none.
@@ -36,7 +38,7 @@ std::string describe_refusals(const FrameCounts& counts) {
   std::ranges::sort(ranked);
   std::string text;
   for (const auto& [frames, failure] : ranked) {
-    text += (text.empty() ? "" : ", ") + std::string(to_string(failure)) + formatted(" %d", -frames);
+    text += (text.empty() ? "" : ", ") + std::string(to_string(failure)) + fmt::format(" {}", -frames);
   }
   return text.empty() ? text : text + " frames";
 }
@@ -50,51 +52,52 @@ std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const Fra
   });
   if (first != run.frames.end()) {
     const double seconds = to_seconds(first->time - run.frames.front().time);
-    begun =
-        formatted("%.2f s after the first frame, at frame %d", seconds, static_cast<int>(first - run.frames.begin()));
+    begun = fmt::format("{:.2f} s after the first frame, at frame {}", seconds,
+                        static_cast<int>(first - run.frames.begin()));
   }
   const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) begun += "; refused before: " + refusals;
-  const std::string scale =
-      run.is_metric ? formatted("metres, as the wheels tell them (sigma %.2f %%)", 100.0 * run.told.wheels->scale_sigma)
-                    : "of the map's own; \"byre scale\" makes it metres";
+  const std::string scale = run.is_metric ? fmt::format("metres, as the wheels tell them (sigma {:.2f} %)",
+                                                        100.0 * run.told.wheels->scale_sigma)
+                                          : "of the map's own; \"byre scale\" makes it metres";
   return row("begun", begun) + row("scale", scale);
 }
 
 std::string describe_loops(const FrameCounts& counts) {
   std::string text =
-      formatted("%d found on the way, %d corrections of the whole map", counts.loops, counts.corrections);
-  if (counts.relocalisations > 0) text += formatted("; found again %d times", counts.relocalisations);
+      fmt::format("{} found on the way, {} corrections of the whole map", counts.loops, counts.corrections);
+  if (counts.relocalisations > 0) text += fmt::format("; found again {} times", counts.relocalisations);
   return text;
 }
 
 // Empty for a map that goes on with no other.
 std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
   if (protocol.extended.empty()) return "";
-  const std::string found = counts.frames_to_first ? formatted(", found in it after %d frames", *counts.frames_to_first)
-                                                   : std::string(", never found in it");
+  const std::string found = counts.frames_to_first
+                                ? fmt::format(", found in it after {} frames", *counts.frames_to_first)
+                                : std::string(", never found in it");
   std::string text = row("extended", protocol.extended + found);
   const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    text += row("of", protocol.recordings[i] + formatted(", %d keyframes", keyframes[i]));
+    text += row("of", protocol.recordings[i] + fmt::format(", {} keyframes", keyframes[i]));
   }
   return text;
 }
 
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
-  std::string text = protocol.recording + formatted(", %d frames", protocol.frames_in_range);
+  std::string text = protocol.recording + fmt::format(", {} frames", protocol.frames_in_range);
   if (protocol.camera == CameraChoice::rgbd) {
-    text += formatted(", %d of them with depth", count_frames(run.frames).with_depth_image);
+    text += fmt::format(", {} of them with depth", count_frames(run.frames).with_depth_image);
   } else if (protocol.camera != CameraChoice::stereo) {
-    text += formatted(" of the %s camera", to_string(protocol.camera).data());
+    text += fmt::format(" of the {} camera", to_string(protocol.camera));
   }
   const auto frames = static_cast<int>(run.frames.size());
-  if (frames < protocol.frames_in_range) text += formatted(", stopped after %d", frames);
+  if (frames < protocol.frames_in_range) text += fmt::format(", stopped after {}", frames);
   return text;
 }
 
 std::string describe(const TimeSummary& times) {
-  return formatted("mean %.1f ms, p99 %.1f ms", times.mean_ms, times.p99_ms);
+  return fmt::format("mean {:.1f} ms, p99 {:.1f} ms", times.mean_ms, times.p99_ms);
 }
 
 std::string describe_frame_time(const MapRun& run, Pace pace) {
@@ -105,32 +108,33 @@ std::string describe_frame_time(const MapRun& run, Pace pace) {
 
 std::string describe_mapping(const MapRun& run) {
   const TimeSummary jobs = summarise_times(run.job_seconds);
-  return formatted("%d jobs, mean %.1f ms, max %.1f ms", jobs.count, jobs.mean_ms, jobs.max_ms);
+  return fmt::format("{} jobs, mean {:.1f} ms, max {:.1f} ms", jobs.count, jobs.mean_ms, jobs.max_ms);
 }
 
 std::string describe_late(const MapRun& run) {
   const TimeSummary late = summarise_times(run.lateness);
   if (late.count == 0) return "no frame";
-  return formatted("%d frames, by up to %.1f ms", late.count, late.max_ms);
+  return fmt::format("{} frames, by up to {:.1f} ms", late.count, late.max_ms);
 }
 
 std::string describe_deadline(const MapRun& run, double deadline_ms) {
   const FrameCounts counts = count_frames(run.frames);
-  return formatted("%g ms: %d frames late; %d without most online points, %d without their right image", deadline_ms,
-                   counts.late, counts.without_online_points, counts.with_left_alone);
+  return fmt::format("{:g} ms: {} frames late; {} without most online points, {} without their right image",
+                     deadline_ms, counts.late, counts.without_online_points, counts.with_left_alone);
 }
 
 std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
   const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
   const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
-  return formatted("%.1f s, in %.1f s of wall time: %.1f frames/s", resources.cpu_seconds, run.wall_seconds, rate);
+  return fmt::format("{:.1f} s, in {:.1f} s of wall time: {:.1f} frames/s", resources.cpu_seconds, run.wall_seconds,
+                     rate);
 }
 
 std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
-  std::string text = formatted("%.0f MB at most", resources.peak_memory_mb);
+  std::string text = fmt::format("{:.0f} MB at most", resources.peak_memory_mb);
   if (run.frames.empty()) return text;
-  return text + formatted("; %.0f MB after the first frame, %.0f MB after the last", run.frames.front().memory_mb,
-                          run.frames.back().memory_mb);
+  return text + fmt::format("; {:.0f} MB after the first frame, {:.0f} MB after the last", run.frames.front().memory_mb,
+                            run.frames.back().memory_mb);
 }
 
 std::string comma_separated(const std::vector<std::string>& files) {
@@ -164,7 +168,7 @@ std::string cost_rows(const MapRun& run, const EngineOptions& options, const Res
 std::string closing_rows(const MapRun& run, const std::vector<std::string>& files) {
   std::string text;
   if (!run.warnings.empty()) {
-    text += row("warnings", formatted("%zu; the first: ", run.warnings.size()) + run.warnings.front());
+    text += row("warnings", fmt::format("{}; the first: ", run.warnings.size()) + run.warnings.front());
   }
   if (!files.empty()) text += row("written", comma_separated(files));
   return text;
@@ -172,7 +176,7 @@ std::string closing_rows(const MapRun& run, const std::vector<std::string>& file
 
 std::string describe_offline(const MapProtocol& protocol) {
   const Map& map = protocol.options.offline->map();
-  return protocol.offline + formatted(", %d keyframes, %d points", map.keyframe_count(), map.point_count()) +
+  return protocol.offline + fmt::format(", {} keyframes, {} points", map.keyframe_count(), map.point_count()) +
          (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)") +
          (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
 }
@@ -191,22 +195,23 @@ std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
 
 std::string describe_coverage(const MapRun& run, const MissionStatistics& statistics) {
   const FrameCounts counts = count_frames(run.frames);
-  std::string text = formatted("%d of %d frames (%.1f %%)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
+  std::string text =
+      fmt::format("{} of {} frames ({:.1f} %)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
   if (!statistics.seconds_to_first_pose) return text;
-  return text + formatted(", the first after %.2f s", *statistics.seconds_to_first_pose);
+  return text + fmt::format(", the first after {:.2f} s", *statistics.seconds_to_first_pose);
 }
 
 // Without the offline points that its keyframes see.
 std::string describe_online(const MapRun& run, const FrameCounts& counts) {
   if (run.frames.empty()) return "none";
-  return formatted("%d keyframes, of %d made; %d points", run.frames.back().keyframes, counts.keyframes,
-                   run.frames.back().points);
+  return fmt::format("{} keyframes, of {} made; {} points", run.frames.back().keyframes, counts.keyframes,
+                     run.frames.back().points);
 }
 
 std::string describe_mission_finishing(const MapRun& run) {
   if (!run.mission_finishing_seconds) return "left out";
-  return formatted("%.1f s: the online map adjusted as a whole, around the offline one",
-                   *run.mission_finishing_seconds);
+  return fmt::format("{:.1f} s: the online map adjusted as a whole, around the offline one",
+                     *run.mission_finishing_seconds);
 }
 
 // What "byre run" is about, with an offline map or without.
@@ -235,8 +240,8 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
   text += motion_rows(run, protocol.is_metric);
-  text += row("path", formatted("%.2f %s, through %zu final poses", path_length(run.final),
-                                run.is_metric ? "m" : "units", run.final.size()));
+  text += row("path", fmt::format("{:.2f} {}, through {} final poses", path_length(run.final),
+                                  run.is_metric ? "m" : "units", run.final.size()));
   text += cost_rows(run, protocol.options, resources);
   text += closing_rows(run, files);
   return text;
@@ -246,8 +251,8 @@ void require_poses(const MapRun& run, const MapProtocol& protocol) {
   if (!run.final.empty()) return;
   const FrameCounts counts = count_frames(run.frames);
   if (2 * counts.unreadable > counts.frames) {
-    throw std::runtime_error(formatted("no frame got a pose: %d of %d could not be read; the warnings say why",
-                                       counts.unreadable, counts.frames));
+    throw std::runtime_error(fmt::format("no frame got a pose: {} of {} could not be read; the warnings say why",
+                                         counts.unreadable, counts.frames));
   }
   const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;
   if (!before.empty()) {

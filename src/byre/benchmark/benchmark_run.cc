@@ -3,7 +3,6 @@
 #include "byre/benchmark/peak_memory.h"
 #include "byre/dataset/trajectory_input.h"
 #include "byre/evaluation/trajectory_output.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/playback/source_recording.h"
@@ -15,6 +14,8 @@
 #include <map>
 #include <set>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -176,7 +177,7 @@ class BenchmarkRunner {
     for (int i = 0; i < protocol_.runs; ++i) {
       EngineOptions run_options = options_for(arm, i);
       if (map != nullptr) run_options.offline = load_offline_map(map->file, vocabulary_);
-      hooks_.before_run(what + formatted(", run %d of %d", i + 1, protocol_.runs), recording.size());
+      hooks_.before_run(what + fmt::format(", run {} of {}", i + 1, protocol_.runs), recording.size());
       const TimedRun timed = run_and_time(recording, run_options, run_hooks());
       if (hooks_.should_stop()) return;
       write_trajectories(timed.run, file_name_of(benchmark_case.name) + "." + std::string(name_of(arm)), i);
@@ -251,7 +252,7 @@ class BenchmarkRunner {
   void write_trajectories(const MapRun& run, const std::string& name, int index) const {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
-    const std::string run_name = name + formatted(".%d", index + 1);
+    const std::string run_name = name + fmt::format(".{}", index + 1);
     write_whole(folder / (run_name + ".final.txt"), run.final);
     write_whole(folder / (run_name + ".causal.txt"), run.causal);
   }

@@ -1,6 +1,5 @@
 #include "byre/benchmark/chart.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input/markup.h"
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -92,13 +93,13 @@ ChartFrame frame_of(const Chart& chart) {
 }
 
 std::string text_at(double x, double y, const std::string& text, const std::string& attributes = "") {
-  const std::string place = formatted("<text x=\"%.1f\" y=\"%.1f\"", x, y);
+  const std::string place = fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"", x, y);
   return place + (attributes.empty() ? "" : " " + attributes) + ">" + markup_escaped(text) + "</text>\n";
 }
 
 std::string line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const char* colour) {
-  return formatted("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>\n", from.x(), from.y(),
-                   to.x(), to.y(), colour);
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", from.x(),
+                     from.y(), to.x(), to.y(), colour);
 }
 
 struct Tick {
@@ -112,7 +113,7 @@ std::vector<Tick> linear_ticks(const Range& range) {
   const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
   std::vector<Tick> ticks;
-  for (const double value : values) ticks.push_back({value, formatted("%.*f", digits, value)});
+  for (const double value : values) ticks.push_back({value, fmt::format("{:.{}f}", value, digits)});
   return ticks;
 }
 
@@ -126,7 +127,7 @@ std::vector<Tick> logarithmic_ticks(const Range& range) {
     for (const double factor : factors) {
       const double value = factor * std::pow(10.0, power);
       if (std::log10(value) >= range.least && std::log10(value) <= range.most) {
-        ticks.push_back({std::log10(value), formatted("%g", value)});
+        ticks.push_back({std::log10(value), fmt::format("{:g}", value)});
       }
     }
   }
@@ -145,12 +146,13 @@ std::string axes(const Chart& chart, const ChartFrame& frame) {
     svg += line(foot, {kLeft + kPlotWidth, foot.y()}, kGrid);
     svg += text_at(foot.x() - 8.0, foot.y() + 4.0, tick.label, "text-anchor=\"end\"");
   }
-  svg += formatted("<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" stroke=\"%s\"/>\n", kLeft,
-                   kTop, kPlotWidth, frame.height, kFaint);
+  svg +=
+      fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n",
+                  kLeft, kTop, kPlotWidth, frame.height, kFaint);
   svg += text_at(kLeft + 0.5 * kPlotWidth, kTop + frame.height + 42.0, chart.x_label, "text-anchor=\"middle\"");
   const double middle = kTop + 0.5 * frame.height;
   svg += text_at(20.0, middle, chart.y_label,
-                 formatted("text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"", middle));
+                 fmt::format("text-anchor=\"middle\" transform=\"rotate(-90 20 {:.1f})\"", middle));
   return svg;
 }
 
@@ -165,11 +167,11 @@ std::string polyline(const std::vector<Eigen::Vector2d>& piece, const ChartSerie
     const Eigen::Vector2d pixel = frame.pixel(point.x(), drawn_y(chart, point.y()));
     if ((pixel - last).norm() < kVisible) continue;
     last = pixel;
-    points += formatted(points.empty() ? "%.1f,%.1f" : " %.1f,%.1f", pixel.x(), pixel.y());
+    points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", pixel.x(), pixel.y());
   }
   if (points.empty()) return "";
   return "<polyline fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke=\"" + series.colour +
-         formatted("\" stroke-width=\"%.1f\" points=\"", series.width) + points + "\"/>\n";
+         fmt::format("\" stroke-width=\"{:.1f}\" points=\"", series.width) + points + "\"/>\n";
 }
 
 std::string curves(const Chart& chart, const ChartFrame& frame) {
@@ -185,8 +187,9 @@ std::string legend(const Chart& chart) {
   std::string svg;
   double x = kLeft;
   for (const ChartSeries& series : chart.series) {
-    svg += formatted("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" stroke-width=\"3\"/>\n", x,
-                     kY, x + kSample, kY, series.colour.c_str());
+    svg += fmt::format(
+        "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" stroke-width=\"3\"/>\n", x, kY,
+        x + kSample, kY, series.colour);
     svg += text_at(x + kSample + kGap, kY + 4.0, series.name);
     x += kSample + kGap + kCharacter * static_cast<double>(series.name.size()) + kBetween;
   }
@@ -199,15 +202,15 @@ double height_of(const ChartFrame& frame) {
 
 std::string begin_of_svg(double height) {
   std::string svg =
-      formatted("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" ", kWidth, height);
-  svg += formatted("viewBox=\"0 0 %.0f %.0f\" font-family=\"Helvetica, Arial, sans-serif\" ", kWidth, height);
-  return svg + formatted("font-size=\"13\" fill=\"%s\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"%s\"/>\n", kInk,
-                         kPaper);
+      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" ", kWidth, height);
+  svg += fmt::format("viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"Helvetica, Arial, sans-serif\" ", kWidth, height);
+  return svg + fmt::format("font-size=\"13\" fill=\"{}\">\n<rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n", kInk,
+                           kPaper);
 }
 
 std::string content(const Chart& chart, const ChartFrame& frame) {
   return text_at(kLeft, 30.0, chart.title, "font-size=\"18\" font-weight=\"bold\"") +
-         text_at(kLeft, 52.0, chart.subtitle, formatted("fill=\"%s\"", kFaint)) + axes(chart, frame) +
+         text_at(kLeft, 52.0, chart.subtitle, fmt::format("fill=\"{}\"", kFaint)) + axes(chart, frame) +
          curves(chart, frame) + legend(chart);
 }
 
@@ -238,7 +241,7 @@ std::string to_svg(const std::vector<Chart>& charts) {
   std::string svg;
   for (const Chart& chart : charts) {
     const ChartFrame frame = frame_of(chart);
-    svg += formatted("<g transform=\"translate(0 %.0f)\">\n", height) + content(chart, frame) + "</g>\n";
+    svg += fmt::format("<g transform=\"translate(0 {:.0f})\">\n", height) + content(chart, frame) + "</g>\n";
     height += height_of(frame);
   }
   return begin_of_svg(height) + svg + "</svg>\n";

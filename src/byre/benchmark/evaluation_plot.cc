@@ -2,11 +2,12 @@
 
 #include "byre/benchmark/chart.h"
 #include "byre/benchmark/judge.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <chrono>
 #include <vector>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -39,7 +40,7 @@ Chart path_chart(const EvaluationReport& report, const std::vector<PosePair>& pa
   const Timestamp longest = longest_step(pairs);
   Chart chart;
   chart.title = "Path from above";
-  chart.subtitle = formatted("%d poses with truth, %.2f m of true path", report.pairs, report.true_path);
+  chart.subtitle = fmt::format("{} poses with truth, {:.2f} m of true path", report.pairs, report.true_path);
   chart.x_label = "x [m]";
   chart.y_label = y_points_down ? "z [m]" : "y [m]";
   chart.equal_scales = true;
@@ -54,8 +55,8 @@ Chart error_chart(const EvaluationReport& report, const std::vector<PosePair>& p
   };
   Chart chart;
   chart.title = "Error of the position over time";
-  chart.subtitle =
-      formatted("root mean square %.4f m, largest %.4f m", report.ate->translation.rmse, report.ate->translation.max);
+  chart.subtitle = fmt::format("root mean square {:.4f} m, largest {:.4f} m", report.ate->translation.rmse,
+                               report.ate->translation.max);
   chart.x_label = "time [s]";
   chart.y_label = "error [m]";
   chart.series = {

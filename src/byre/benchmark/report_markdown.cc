@@ -1,16 +1,17 @@
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/report.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <sstream>
 #include <string_view>
 
+#include <fmt/core.h>
+
 namespace byre {
 namespace {
 
 std::string number(double value, double scale, int digits) {
-  return formatted("%.*f", digits, scale * value);
+  return fmt::format("{:.{}f}", scale * value, digits);
 }
 
 // Mean, median and worst, or one figure where they agree; and of how many runs, where not all have it.
@@ -22,7 +23,7 @@ std::string cell(const std::vector<Measures>& runs, const Measure<Measures>& mea
   const std::string mean = shown(summary->mean), median = shown(summary->median), worst = shown(summary->worst);
   std::string text = mean;
   if (median != mean || worst != mean) text += " / " + median + " / " + worst;
-  if (summary->runs < static_cast<int>(runs.size())) text += formatted(" (%d of %zu)", summary->runs, runs.size());
+  if (summary->runs < static_cast<int>(runs.size())) text += fmt::format(" ({} of {})", summary->runs, runs.size());
   return text;
 }
 
@@ -86,14 +87,14 @@ std::string final_table(const BenchmarkResult& result, const BenchmarkProtocol& 
 
 std::string alignment_text(const MapAlignment& alignment) {
   if (alignment.poses == 0) return "none: too few poses with truth";
-  return formatted("%d poses", alignment.poses);
+  return fmt::format("{} poses", alignment.poses);
 }
 
 std::string maps_table(const BenchmarkResult& result) {
   MarkdownTable table({"map of", "keyframes", "points", "aligned to the truth by", "made in s"});
   for (const MadeMap& map : result.maps) {
     table.add({map.recording, std::to_string(map.keyframes), std::to_string(map.points), alignment_text(map.alignment),
-               formatted("%.1f", map.wall_seconds)});
+               fmt::format("{:.1f}", map.wall_seconds)});
   }
   return table.text();
 }

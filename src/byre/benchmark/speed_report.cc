@@ -1,10 +1,10 @@
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/speed.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <functional>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -20,7 +20,7 @@ double mean_frame_ms(const SpeedMeasures& run) {
 // The figure of the median run, and where runs differ the range of all.
 std::string cell_with_range(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median,
                             const SpeedFigure& figure, int digits) {
-  const auto shown = [digits](double value) { return formatted("%.*f", digits, value); };
+  const auto shown = [digits](double value) { return fmt::format("{:.{}f}", value, digits); };
   std::optional<double> least, most;
   for (const SpeedMeasures& run : runs) {
     const std::optional<double> value = figure(run);
@@ -121,11 +121,11 @@ std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> run
   if (runs.empty()) return text + "Nothing was measured.\n";
   std::ranges::sort(runs, {}, mean_frame_ms);
   const SpeedMeasures& median = runs[(runs.size() - 1) / 2];
-  text += formatted("%d frames, %d with a pose; %s; pace %s; %d cores", median.frames, median.with_pose,
-                    what.map ? ("on the map " + what.map->string()).c_str() : "without a map",
-                    std::string(name_of(what.engine.pace)).c_str(), what.cores);
+  text += fmt::format("{} frames, {} with a pose; {}; pace {}; {} cores", median.frames, median.with_pose,
+                      what.map ? ("on the map " + what.map->string()).c_str() : "without a map",
+                      std::string(name_of(what.engine.pace)), what.cores);
   if (runs.size() > 1) {
-    text += formatted(". Of %zu runs, the one whose frames took the median time, with the range of all", runs.size());
+    text += fmt::format(". Of {} runs, the one whose frames took the median time, with the range of all", runs.size());
   }
   text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(what, runs, median);
   if (!median.instructions) text += "\nThis machine does not let programs count instructions.\n";

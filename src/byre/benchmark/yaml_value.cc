@@ -1,6 +1,5 @@
 #include "byre/benchmark/yaml_value.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
@@ -9,6 +8,8 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+
+#include <fmt/core.h>
 
 namespace byre {
 
@@ -37,7 +38,7 @@ std::string YamlValue::text() const {
 double YamlValue::number(double least, double most) const {
   const std::optional<double> value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
   if (value && *value >= least && *value <= most) return *value;
-  fail(formatted("is no number from %g to %g", least, most), "write such a number");
+  fail(fmt::format("is no number from {:g} to {:g}", least, most), "write such a number");
 }
 
 int YamlValue::whole_number(int least, int most) const {

@@ -1,7 +1,8 @@
 #include "byre/camera/camera_fit.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -9,8 +10,8 @@ namespace {
 void require_size(const Camera& camera, const CaptureThread& capture, const std::string& place) {
   if (camera.width == capture.width() && camera.height == capture.height()) return;
   throw InputError(place,
-                   formatted("is of images of %d x %d pixels, but the camera gives %d x %d", camera.width,
-                             camera.height, capture.width(), capture.height()),
+                   fmt::format("is of images of {} x {} pixels, but the camera gives {} x {}", camera.width,
+                               camera.height, capture.width(), capture.height()),
                    "ask the camera for that size (--size), or calibrate it with this one");
 }
 

@@ -1,6 +1,6 @@
 #include "byre/camera/live_cameras.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -26,14 +28,15 @@ void require_sense(const LiveCameraOptions& options) {
 
 std::string describe(const DeviceReport& device) {
   const CaptureCounts& counts = device.counts;
-  std::string text = device.path + ", " + describe(device.mode) + formatted(": %d images", counts.images);
-  if (counts.lost > 0) text += formatted(", %d lost", counts.lost);
-  if (counts.damaged > 0) text += formatted(", %d damaged", counts.damaged);
-  if (counts.out_of_order > 0) text += formatted(", %d out of order", counts.out_of_order);
-  if (device.times_away > 0) text += formatted("; away %d times for %.1f s", device.times_away, device.seconds_away);
+  std::string text = device.path + ", " + describe(device.mode) + fmt::format(": {} images", counts.images);
+  if (counts.lost > 0) text += fmt::format(", {} lost", counts.lost);
+  if (counts.damaged > 0) text += fmt::format(", {} damaged", counts.damaged);
+  if (counts.out_of_order > 0) text += fmt::format(", {} out of order", counts.out_of_order);
+  if (device.times_away > 0)
+    text += fmt::format("; away {} times for {:.1f} s", device.times_away, device.seconds_away);
   if (device.is_away) text += ", and still";
   if (device.exposure) {
-    text += formatted("; exposure %.1f ms, gain %.1f", 1e3 * device.exposure->seconds, device.exposure->gain);
+    text += fmt::format("; exposure {:.1f} ms, gain {:.1f}", 1e3 * device.exposure->seconds, device.exposure->gain);
   }
   return text;
 }
@@ -64,7 +67,7 @@ LiveCameras::LiveCameras(const LiveCameraOptions& options) : options_(options), 
   const PixelLayout& right = devices_.back()->report().mode.layout;
   if (options.side_by_side && left.width % 2 != 0) {
     throw InputError(options.devices.front().string(),
-                     formatted("has images %d pixels wide, which are no two halves", left.width));
+                     fmt::format("has images {} pixels wide, which are no two halves", left.width));
   }
   if (left.width != right.width || left.height != right.height) {
     throw InputError(options.devices.back().string(), "has images of another size than the left camera's",
@@ -104,9 +107,9 @@ void LiveCameras::note_difference() {
   if (!is_apart) return;  // right images stay away
   has_told_difference_ = true;
   notes_.push_back(
-      formatted("left and right images are %.1f ms apart, which is no pair; have both cameras triggered "
-                "together, or raise --pair-limit and accept worse poses",
-                1e3 * std::abs(to_seconds(*difference))));
+      fmt::format("left and right images are {:.1f} ms apart, which is no pair; have both cameras triggered "
+                  "together, or raise --pair-limit and accept worse poses",
+                  1e3 * std::abs(to_seconds(*difference))));
 }
 
 void LiveCameras::control_exposure(const Image& left) {
@@ -180,10 +183,10 @@ std::string to_text(const LiveCameraReport& report) {
   for (const DeviceReport& device : report.devices) text += row("camera", describe(device));
   text += row("stamps", describe_stamps(report));
   if (report.pairs) {
-    text += row("pairs", formatted("%d; %d left images and %d right ones alone", report.pairs->pairs,
-                                   report.pairs->left_alone, report.pairs->right_alone) +
+    text += row("pairs", fmt::format("{}; {} left images and {} right ones alone", report.pairs->pairs,
+                                     report.pairs->left_alone, report.pairs->right_alone) +
                              (report.last_difference
-                                  ? formatted("; the last %.2f ms apart", 1e3 * to_seconds(*report.last_difference))
+                                  ? fmt::format("; the last {:.2f} ms apart", 1e3 * to_seconds(*report.last_difference))
                                   : std::string()));
   }
   return text;

@@ -1,11 +1,13 @@
 #include "byre/camera/video_devices.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <string_view>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -22,9 +24,9 @@ std::string other_names(const fs::path& device) {
 }
 
 std::string describe_size(const VideoFormats::Size& size) {
-  std::string text = formatted(size.is_range ? "up to %d x %d" : "%d x %d", size.width, size.height);
+  std::string text = fmt::format("{}{} x {}", size.is_range ? "up to " : "", size.width, size.height);
   for (std::size_t i = 0; i < size.rates_hz.size(); ++i) {
-    text += (i == 0 ? " at " : ", ") + formatted("%g", size.rates_hz[i]);
+    text += (i == 0 ? " at " : ", ") + fmt::format("{:g}", size.rates_hz[i]);
   }
   return size.rates_hz.empty() ? text : text + " Hz";
 }

@@ -1,6 +1,5 @@
 #include "byre/camera/video_modes.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 #include <cstring>
 
 #include <linux/videodev2.h>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -166,8 +167,8 @@ StampMoment moment_of(std::uint32_t flags) {
 
 std::string describe(const VideoMode& mode) {
   const PixelLayout& layout = mode.layout;
-  const std::string text = formatted("%d x %d ", layout.width, layout.height) + four_characters(layout.code);
-  return mode.rate_hz > 0.0 ? text + formatted(" at %g Hz", mode.rate_hz) : text;
+  const std::string text = fmt::format("{} x {} ", layout.width, layout.height) + four_characters(layout.code);
+  return mode.rate_hz > 0.0 ? text + fmt::format(" at {:g} Hz", mode.rate_hz) : text;
 }
 
 VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& place) {
@@ -200,8 +201,8 @@ VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& reques
     tried += (tried.empty() ? "" : ", ") + (mode ? describe(*mode) : four_characters(code) + " not at all");
   }
   std::string asked;
-  if (request.width && request.height) asked += formatted(" of %d x %d pixels", *request.width, *request.height);
-  if (request.rate_hz) asked += formatted(" at %g Hz", *request.rate_hz);
+  if (request.width && request.height) asked += fmt::format(" of {} x {} pixels", *request.width, *request.height);
+  if (request.rate_hz) asked += fmt::format(" at {:g} Hz", *request.rate_hz);
   throw InputError(place, "gives no images" + asked + ", but " + tried, kSeeList);
 }
 

@@ -1,10 +1,11 @@
 #include "byre/camera/watched_device.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -75,14 +76,14 @@ void WatchedDevice::note_image(Timestamp now) {
   report_.seconds_away += seconds;
   away_since_.reset();
   report_.is_away = false;
-  notes_.push_back(path_.string() + formatted(": is back after %.1f s", seconds));
+  notes_.push_back(path_.string() + fmt::format(": is back after {:.1f} s", seconds));
 }
 
 std::string WatchedDevice::why_silent() const {
   const char* const what = watch_.counts().out_of_order > out_of_order_at_last_image_
                                ? "the time stamps of its images do not go on"
                                : "no image came";
-  return what + formatted(" for %.0f s", to_seconds(patience_));
+  return what + fmt::format(" for {:.0f} s", to_seconds(patience_));
 }
 
 std::vector<StampedImage> WatchedDevice::take(Timestamp now) {

@@ -3,11 +3,10 @@
 #include "byre/input_error.h"
 #include "byre/trajectory_file.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Core>
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -74,9 +73,7 @@ StereoPartner read_partner(const fs::path& calibration, const Projection& left, 
 }
 
 fs::path image_path(const fs::path& folder, std::size_t number) {
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%06zu.png", number);
-  return folder / name.data();
+  return folder / fmt::format("{:06}.png", number);
 }
 
 std::vector<fs::path> image_paths(const fs::path& folder, std::size_t count) {

@@ -4,13 +4,14 @@
 #include "byre/features/stereo_fit.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -153,22 +154,21 @@ class FrameSum {
 
 void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
   if (check.rate_hz > 0.0 && check.rate_hz < 5.0) {
-    findings.push_back({false, formatted("only %.1f frames a second", check.rate_hz),
+    findings.push_back({false, fmt::format("only {:.1f} frames a second", check.rate_hz),
                         "drive slowly: what turns out of view between two frames cannot be followed"});
   }
   if (check.gaps > check.frames / 50) {
-    findings.push_back(
-        {false,
-         formatted("%.0f gaps between frames", check.gaps) + formatted(", the longest %.2f s", check.longest_gap_s),
-         "look for what is too slow while recording: the disk, the cable, the encoder"});
+    findings.push_back({false,
+                        fmt::format("{} gaps between frames, the longest {:.2f} s", check.gaps, check.longest_gap_s),
+                        "look for what is too slow while recording: the disk, the cable, the encoder"});
   }
   if (check.unreadable > 0) {
     findings.push_back({check.unreadable > check.looked_at / 10,
-                        formatted("%.0f of the images looked at cannot be read", check.unreadable),
+                        fmt::format("{} of the images looked at cannot be read", check.unreadable),
                         "record again, or leave them out with --frames"});
   }
   if (check.repeated > check.looked_at / 20) {
-    findings.push_back({true, formatted("%.0f images are the same as the one before, bit by bit", check.repeated),
+    findings.push_back({true, fmt::format("{} images are the same as the one before, bit by bit", check.repeated),
                         "the camera or its driver stands still; a robot steered by it would not know that it moves"});
   }
 }
@@ -180,8 +180,8 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
   for (std::size_t i = 1; i < camera.by_fault.size(); ++i) {
     if (camera.by_fault[i] <= camera.images / 20) continue;
     findings.push_back({camera.by_fault[i] > camera.images / 2,
-                        formatted("%.0f", camera.by_fault[i]) + formatted(" of %.0f ", camera.images) + name +
-                            " images are " + std::string(to_string(static_cast<ImageFault>(i))),
+                        fmt::format("{} of {} {}images are {}", camera.by_fault[i], camera.images, name,
+                                    to_string(static_cast<ImageFault>(i))),
                         std::string(kRemedies[i])});
   }
 }
@@ -189,41 +189,42 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
 void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
   constexpr double kFarOffCalibration = 0.5;  // pixels
   if (check.without_right > check.looked_at / 20) {
-    findings.push_back({false, formatted("%.0f frames have no right image", check.without_right),
+    findings.push_back({false, fmt::format("{} frames have no right image", check.without_right),
                         "look for what drops them, or use one camera with --camera left"});
   }
   if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
   if (is_partly_hidden({check.pair->matched, check.pair->matched_at_best, check.pair->row_error})) {
     findings.push_back(
         {false,
-         formatted("only %.1f %% of the features are found in the right image, but %.0f %% in parts of it",
-                   100.0 * check.pair->matched, 100.0 * check.pair->matched_at_best),
+         fmt::format("only {:.1f} % of the features are found in the right image, but {:.0f} % in parts of it",
+                     100.0 * check.pair->matched, 100.0 * check.pair->matched_at_best),
          "something hides parts of what the cameras see: see that the lenses are clean"});
   } else if (check.pair->matched < kLeastStereoShare) {
     findings.push_back(
-        {true, formatted("only %.1f %% of the features are found in the right image", 100.0 * check.pair->matched),
+        {true, fmt::format("only {:.1f} % of the features are found in the right image", 100.0 * check.pair->matched),
          "left and right may be swapped, upside down or out of step, or the calibration another one's"});
   } else if (check.pair->row_error > kMostRowOffset) {
-    findings.push_back({true, formatted("features of the right image lie %.2f px off their row", check.pair->row_error),
+    findings.push_back({true,
+                        fmt::format("features of the right image lie {:.2f} px off their row", check.pair->row_error),
                         "the cameras are out of step, or one was moved since they were calibrated: see to the trigger, "
                         "then \"byre calibrate\""});
   } else if (check.pair->calibration_error > kFarOffCalibration) {
-    findings.push_back({false, formatted("the calibration is off by about %.2f px", check.pair->calibration_error),
+    findings.push_back({false, fmt::format("the calibration is off by about {:.2f} px", check.pair->calibration_error),
                         "\"byre calibrate\" finds a better one from a minute of motion"});
   }
 }
 
 void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
   if (check.field_of_view_deg < 30.0 || check.field_of_view_deg > 170.0) {
-    findings.push_back({false, formatted("a field of view of %.0f degrees", check.field_of_view_deg),
+    findings.push_back({false, fmt::format("a field of view of {:.0f} degrees", check.field_of_view_deg),
                         "see that the calibration is of this camera at this resolution"});
   }
   if (check.baseline_m > 0.0 && (check.baseline_m < 0.01 || check.baseline_m > 2.0)) {
-    findings.push_back({false, formatted("a baseline of %.4f m", check.baseline_m),
+    findings.push_back({false, fmt::format("a baseline of {:.4f} m", check.baseline_m),
                         "see that the extrinsic calibration is in metres"});
   }
   if (check.features < 200.0 && check.left.of_no_use() <= check.left.images / 2) {
-    findings.push_back({false, formatted("only %.0f features in an image", check.features),
+    findings.push_back({false, fmt::format("only {:.0f} features in an image", check.features),
                         "look at things with texture; clean the lens; see to light and focus"});
   }
 }
@@ -250,8 +251,8 @@ RecordingCheck check_recording(Recording& recording, int samples, const std::fun
 std::vector<Finding> findings_of(const RecordingCheck& check) {
   std::vector<Finding> findings;
   add_times(check, findings);
-  add_camera(check.left, check.right ? "left" : "camera's", findings);
-  if (check.right) add_camera(*check.right, "right", findings);
+  add_camera(check.left, check.right ? "left " : "", findings);
+  if (check.right) add_camera(*check.right, "right ", findings);
   add_pair(check, findings);
   add_rig(check, findings);
   std::ranges::stable_sort(findings, std::ranges::greater{}, &Finding::is_grave);

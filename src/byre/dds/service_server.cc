@@ -1,7 +1,8 @@
 #include "byre/dds/service_server.h"
 
-#include <cstdio>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -12,13 +13,7 @@ std::string service_note(EntityId id, const std::string& service) {
   std::uint32_t hash = 2166136261U;  // FNV-1a
   for (const char letter : service) hash = (hash ^ static_cast<std::uint8_t>(letter)) * 16777619U;
   for (std::size_t i = 0; i < sizeof hash; ++i) id[id.size() - 1 - i] = static_cast<std::uint8_t>(hash >> (8 * i));
-  std::string note = "serviceid=";
-  for (std::size_t i = 0; i < id.size(); ++i) {
-    char digits[4];
-    std::snprintf(digits, sizeof digits, "%s%x", i == 0 ? "" : ".", id[i]);
-    note += digits;
-  }
-  return note + ";";
+  return fmt::format("serviceid={:x};", fmt::join(id, "."));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include "byre/demo/table.h"
 #include "byre/evaluation/trajectory_output.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/playback/source_recording.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -17,6 +16,8 @@
 #include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -116,7 +117,7 @@ class DemoRunner {
  private:
   fs::path visit(int mission) const { return options_.output / (mission == 1 ? "first_visit" : "second_visit"); }
 
-  void tell(const std::string& what) { hooks_.before_stage(formatted("%d of %d: ", ++stage_, kStages) + what); }
+  void tell(const std::string& what) { hooks_.before_stage(fmt::format("{} of {}: ", ++stage_, kStages) + what); }
 
   void render(int mission) {
     tell(mission == 1 ? "rendering the first visit, by day" : "rendering the second visit, at dusk");

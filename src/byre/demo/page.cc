@@ -2,11 +2,13 @@
 
 #include "byre/demo/table.h"
 #include "byre/demo/timeline.h"
-#include "byre/input/formatted.h"
 #include "byre/input/markup.h"
+#include "byre/input/report_row.h"
 
 #include <algorithm>
 #include <cctype>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -98,11 +100,11 @@ const DemoArm* find_hybrid(const DemoFindings& findings) {
 }
 
 std::string percent(const Figure& share) {
-  return share ? formatted("%.1f %%", 1e2 * *share) : "-";
+  return share ? fmt::format("{:.1f} %", 1e2 * *share) : "-";
 }
 
 std::string centimetres(const Figure& metres) {
-  return metres ? formatted("%.1f cm", 1e2 * *metres) : "-";
+  return metres ? fmt::format("{:.1f} cm", 1e2 * *metres) : "-";
 }
 
 double off_the_map_share(const DemoFindings& findings, const DemoArm& arm) {
@@ -133,12 +135,12 @@ std::string header(const DemoFindings& findings) {
   html += key_figure(percent(hybrid->close_share), "of all frames within 10 cm of the truth, as published");
   html += key_figure(percent(measures.behaviour.trusted_share), "reported as fit to steer by");
   if (measures.behaviour.trusted_wrong) {
-    html += key_figure(formatted("%.0f", *measures.behaviour.trusted_wrong),
+    html += key_figure(fmt::format("{:.0f}", *measures.behaviour.trusted_wrong),
                        "frames trusted and yet off by more than 20 cm");
   }
   if (measures.cost.frame_ms_mean) {
-    html +=
-        key_figure(formatted("%.0f ms", *measures.cost.frame_ms_mean), "per stereo pair of the run, on this machine");
+    html += key_figure(fmt::format("{:.0f} ms", *measures.cost.frame_ms_mean),
+                       "per stereo pair of the run, on this machine");
   }
   return html + "</dl>\n";
 }
@@ -188,10 +190,10 @@ std::string plan_section(const DemoFindings& findings) {
              "plan", findings.plan_picture, "Floor plan with map points and paths",
              "Map points of the first visit are green, those of the second purple. The hybrid&rsquo;s way is drawn by "
              "its verdicts. " +
-                 formatted("The map has %d keyframes and %d points; ", findings.map_keyframes, findings.map_points) +
-                 formatted("%d signs, picked exactly, lay it on the plan. ", findings.picks) +
-                 formatted("The path it was made on is off by %.1f cm (ATE, %d frames).", 1e2 * findings.map_ate,
-                           findings.map_frames));
+                 fmt::format("The map has {} keyframes and {} points; ", findings.map_keyframes, findings.map_points) +
+                 fmt::format("{} signs, picked exactly, lay it on the plan. ", findings.picks) +
+                 fmt::format("The path it was made on is off by {:.1f} cm (ATE, {} frames).", 1e2 * findings.map_ate,
+                             findings.map_frames));
 }
 
 std::string camera_section(const DemoFindings& findings) {
@@ -199,7 +201,7 @@ std::string camera_section(const DemoFindings& findings) {
   return "<h2>What the camera saw</h2>\n" +
          figure(
              "camera", findings.camera_picture, "Camera image with matched map points",
-             formatted("After %.1f s. ", *findings.camera_s) +
+             fmt::format("After {:.1f} s. ", *findings.camera_s) +
                  "Green: points of the old map that are still there. Purple: points mapped in this visit. Crosses are "
                  "matches that are not where the pose has them. The blue wedge on the plan shows where this was.");
 }
@@ -237,7 +239,7 @@ std::string data_address(const std::string& svg) {
     if (stays_in_address(character)) {
       address += character;
     } else {
-      address += formatted("%%%02X", static_cast<unsigned>(static_cast<unsigned char>(character)));
+      address += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(character)));
     }
   }
   return address;

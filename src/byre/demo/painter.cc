@@ -1,10 +1,11 @@
 #include "byre/demo/painter.h"
 
-#include "byre/input/formatted.h"
 #include "byre/viewer/camera_picture.h"
 
 #include <algorithm>
 #include <iterator>
+
+#include <fmt/core.h>
 
 namespace byre {
 
@@ -37,7 +38,7 @@ std::string DemoPainter::plan_picture(PlanScene background) const {
 
 std::string DemoPainter::camera_picture() const {
   CameraPictureOptions options;
-  options.title = formatted("%.1f s", *camera_s());
+  options.title = fmt::format("{:.1f} s", *camera_s());
   return to_svg(byre::camera_picture(*best_, options));
 }
 

@@ -1,9 +1,9 @@
 #include "byre/demo/table.h"
 
-#include "byre/input/formatted.h"
-
 #include <algorithm>
 #include <functional>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -17,12 +17,12 @@ struct RowKind {
 };
 
 std::string percent(double share) {
-  return formatted("%.1f", 1e2 * share);
+  return fmt::format("{:.1f}", 1e2 * share);
 }
 
 // Below a metre with a decimal, above without.
 std::string centimetres(double metres) {
-  return formatted(metres < 1.0 ? "%.1f" : "%.0f", 1e2 * metres);
+  return fmt::format("{:.{}f}", 1e2 * metres, metres < 1.0 ? 1 : 0);
 }
 
 RowKind share_row(const char* measure, const std::function<Figure(const DemoArm&)>& share) {
@@ -50,7 +50,7 @@ RowKind time_row() {
   return {"Time per frame, ms: mean, 99 % within", [](const DemoArm& arm) { return arm.measures.cost.frame_ms_mean; },
           [](const DemoArm& arm) {
             const CostMeasures& cost = arm.measures.cost;
-            return formatted("%.0f, %.0f", *cost.frame_ms_mean, *cost.frame_ms_p99);
+            return fmt::format("{:.0f}, {:.0f}", *cost.frame_ms_mean, *cost.frame_ms_p99);
           }};
 }
 
@@ -70,7 +70,7 @@ std::vector<RowKind> row_kinds() {
           shape_row(),
           share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
           {"Trusted and yet off by more than 20 cm, frames", wrong,
-           [wrong](const DemoArm& arm) { return formatted("%.0f", *wrong(arm)); }},
+           [wrong](const DemoArm& arm) { return fmt::format("{:.0f}", *wrong(arm)); }},
           time_row()};
 }
 
@@ -113,14 +113,14 @@ std::string shown_name(Arm arm) {
 }
 
 std::string to_text(const std::vector<DemoRow>& rows, const std::vector<DemoArm>& arms) {
-  constexpr const char* kCell = "  %18s";
-  constexpr const char* kMeasure = "%-60s";
-  std::string text = formatted(kMeasure, "");
-  for (const DemoArm& arm : arms) text += formatted(kCell, shown_name(arm.arm).c_str());
+  constexpr const char* kCell = "  {:>18}";
+  constexpr const char* kMeasure = "{:60}";
+  std::string text = fmt::format(kMeasure, "");
+  for (const DemoArm& arm : arms) text += fmt::format(kCell, shown_name(arm.arm));
   text += "\n";
   for (const DemoRow& row : rows) {
-    text += formatted(kMeasure, row.measure.c_str());
-    for (const DemoCell& cell : row.cells) text += formatted(kCell, cell.text.c_str());
+    text += fmt::format(kMeasure, row.measure);
+    for (const DemoCell& cell : row.cells) text += fmt::format(kCell, cell.text);
     text += "\n";
   }
   return text;

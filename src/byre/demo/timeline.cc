@@ -2,13 +2,14 @@
 
 #include "byre/benchmark/chart.h"
 #include "byre/demo/table.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string_view>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -39,16 +40,17 @@ TimeAxis time_axis(const DemoFindings& findings) {
 }
 
 std::string text_at(double x, double y, const std::string& text, const char* classes) {
-  return formatted("<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, classes) + text + "</text>\n";
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\">", x, y, classes) + text + "</text>\n";
 }
 
 std::string rectangle(double x, double y, double width, double height, const char* classes) {
-  return formatted("<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" class=\"%s\"/>\n", x, y, width, height,
-                   classes);
+  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>\n", x, y, width,
+                     height, classes);
 }
 
 std::string grid_line(double x1, double y1, double x2, double y2) {
-  return formatted("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" class=\"grid\"/>\n", x1, y1, x2, y2);
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/>\n", x1, y1, x2,
+                     y2);
 }
 
 std::string class_of(const DemoMoment& moment) {
@@ -100,7 +102,7 @@ std::string line_of(const std::vector<DemoMoment>& moments, const std::function<
     const Figure drawn = value(moment);
     if (!drawn) continue;
     const char command = moment.time_s - last_s > kLongestGap_s ? 'M' : 'L';
-    path += formatted("%c%.1f %.1f", command, axis.x(moment.time_s), values.y(*drawn));
+    path += fmt::format("{:c}{:.1f} {:.1f}", command, axis.x(moment.time_s), values.y(*drawn));
     last_s = moment.time_s;
   }
   if (path.empty()) return "";
@@ -126,7 +128,7 @@ std::string points_panel(const DemoFindings& findings, const TimeAxis& axis) {
   }
   std::string svg = text_at(kLeft, kPointsTop - 12.0, "Points that hold the hybrid's pose", "title");
   for (const double tick : round_ticks(0.0, 2.0 * values.most)) {
-    if (tick <= values.most) svg += value_grid(values, tick, formatted("%.0f", tick));
+    if (tick <= values.most) svg += value_grid(values, tick, fmt::format("{:.0f}", tick));
   }
   const auto offline = [](const DemoMoment& moment) { return Figure(moment.offline_inliers); };
   const auto online = [](const DemoMoment& moment) { return Figure(moment.online_inliers); };
@@ -167,7 +169,7 @@ std::string background(const DemoFindings& findings, const TimeAxis& axis) {
     for (const auto& [top, height] : {std::pair(kPointsTop, kPointsHeight), {kErrorsTop, kErrorsHeight}}) {
       svg += grid_line(x, top, x, top + height);
     }
-    svg += text_at(x, kBottom + 18.0, formatted("%g", tick), "middle");
+    svg += text_at(x, kBottom + 18.0, fmt::format("{:g}", tick), "middle");
   }
   return svg + text_at(0.5 * (kLeft + kWidth - kRight), kBottom + 38.0, "seconds", "middle");
 }
@@ -176,7 +178,7 @@ std::string background(const DemoFindings& findings, const TimeAxis& axis) {
 
 std::string demo_timeline(const DemoFindings& findings) {
   const TimeAxis axis = time_axis(findings);
-  return formatted("<svg class=\"timeline\" viewBox=\"0 0 %.0f %.0f\" role=\"img\" ", kWidth, kHeight) +
+  return fmt::format("<svg class=\"timeline\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" ", kWidth, kHeight) +
          "aria-label=\"Verdicts, points and errors over time\">\n" + background(findings, axis) +
          verdicts_panel(findings, axis) + points_panel(findings, axis) + errors_panel(findings, axis) + "</svg>\n";
 }

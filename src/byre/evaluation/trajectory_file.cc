@@ -4,12 +4,11 @@
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 
-#include <array>
-#include <cinttypes>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <span>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -92,31 +91,21 @@ std::string tum_line(const StampedPose& sample) {
   const auto [seconds, nanoseconds] = std::lldiv(std::llabs(count), 1'000'000'000);
   const Eigen::Vector3d& t = sample.world_from_body.translation;
   const Eigen::Quaterniond& q = sample.world_from_body.rotation;
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), "%s%lld.%09lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", count < 0 ? "-" : "",
-                seconds, nanoseconds, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-  return text.data();
+  return fmt::format("{}{}.{:09} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", count < 0 ? "-" : "", seconds,
+                     nanoseconds, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
 }
 
 std::string euroc_line(const StampedPose& sample) {
   const Eigen::Vector3d& t = sample.world_from_body.translation;
   const Eigen::Quaterniond& q = sample.world_from_body.rotation;
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), "%lld,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n",
-                static_cast<long long>(sample.time.count()), t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
-  return text.data();
+  return fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", sample.time.count(), t.x(), t.y(), t.z(),
+                     q.w(), q.x(), q.y(), q.z());
 }
 
 std::string kitti_line(const StampedPose& sample) {
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> world_from_body;
   world_from_body << sample.world_from_body.rotation.toRotationMatrix(), sample.world_from_body.translation;
-  std::string line;
-  for (const double value : world_from_body.reshaped<Eigen::RowMajor>()) {
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), line.empty() ? "%.9f" : " %.9f", value);
-    line += text.data();
-  }
-  return line + "\n";
+  return fmt::format("{:.9f}\n", fmt::join(world_from_body.reshaped<Eigen::RowMajor>(), " "));
 }
 
 std::string line_of(const StampedPose& sample, TrajectoryFormat format) {

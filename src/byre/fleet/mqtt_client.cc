@@ -1,11 +1,10 @@
 #include "byre/fleet/mqtt_client.h"
 
-#include "byre/input/formatted.h"
-
 #include <chrono>
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/core.h>
 #include <mosquitto.h>
 
 namespace byre {
@@ -124,7 +123,7 @@ void MqttClient::note_published(mosquitto* /*client*/, void* self, int /*id*/) {
 }
 
 std::string MqttClient::state() const {
-  const std::string broker = formatted("%s:%d", options_.host.c_str(), options_.port);
+  const std::string broker = fmt::format("{}:{}", options_.host, options_.port);
   if (is_connected_) return "connected to " + broker;
   if (refusal_ != 0) return broker + " refuses the connection: " + mosquitto_connack_string(refusal_);
   if (fault_ != 0) return broker + " cannot be reached: " + mosquitto_strerror(fault_);

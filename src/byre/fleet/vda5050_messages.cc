@@ -1,12 +1,11 @@
 #include "byre/fleet/vda5050_messages.h"
 
-#include "byre/input/formatted.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <ctime>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -29,8 +28,8 @@ std::string utc(std::chrono::system_clock::time_point time) {
   const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
   std::tm parts{};
   gmtime_r(&seconds, &parts);
-  return formatted("%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
-                   parts.tm_hour, parts.tm_min, parts.tm_sec, static_cast<int>(milliseconds % 1000));
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec, static_cast<int>(milliseconds % 1000));
 }
 
 Json header_fields(const FleetIdentity& identity, const FleetHeader& header) {

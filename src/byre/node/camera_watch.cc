@@ -1,9 +1,9 @@
 #include "byre/node/camera_watch.h"
 
-#include "byre/input/formatted.h"
-
 #include <algorithm>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -37,8 +37,8 @@ void CameraWatch::note_frame(const CameraFrame& frame, Timestamp now) {
   frames_.push_back({now, frame.wants_right && !frame.has_right, frame.seconds, frame.nearest_right});
   if (frame.is_frozen) frozen_ = Note{now, "the camera repeats its image; restart its driver"};
   if (frame.jump) {
-    jump_ = Note{now, formatted("stamps jumped by %.3f s; keep the clocks of camera and computer together (chrony)",
-                                to_seconds(*frame.jump))};
+    jump_ = Note{now, fmt::format("stamps jumped by {:.3f} s; keep the clocks of camera and computer together (chrony)",
+                                  to_seconds(*frame.jump))};
   }
   if (is_dropped(frame.fault) || frame.fault == InputFault::late_right) {
     dropped_ = Note{now, "an image was not used: " + std::string(to_string(frame.fault))};
@@ -68,18 +68,18 @@ std::optional<CameraWatch::Finding> CameraWatch::silence(Timestamp now) const {
     return Finding{kStale, "no images on " + topic_ + "; look at the camera's driver, the topic and ROS_DOMAIN_ID"};
   }
   if (silent < to_seconds(longest_silence())) return std::nullopt;
-  return Finding{kStale, formatted("no image for %.1f s on ", silent) + topic_};
+  return Finding{kStale, fmt::format("no image for {:.1f} s on ", silent) + topic_};
 }
 
 std::optional<CameraWatch::Finding> CameraWatch::lost_right_images() const {
   const auto lacking = std::ranges::count_if(frames_, &Recent::lacks_right);
   if (lacking == 0) return std::nullopt;
-  std::string text = formatted("right images are missing: %d of the last %d", static_cast<int>(lacking),
-                               static_cast<int>(frames_.size()));
+  std::string text = fmt::format("right images are missing: {} of the last {}", static_cast<int>(lacking),
+                                 static_cast<int>(frames_.size()));
   // Cameras that are not triggered together have stamps of their own.
   constexpr Timestamp kLikelyItsOwn = 50ms;
   if (const auto nearest = frames_.back().nearest_right; nearest && *nearest < kLikelyItsOwn) {
-    text += formatted(", the nearest stamp is %.1f ms off, see images.pair_tolerance", 1e3 * to_seconds(*nearest));
+    text += fmt::format(", the nearest stamp is {:.1f} ms off, see images.pair_tolerance", 1e3 * to_seconds(*nearest));
   }
   return Finding{lacking == std::ssize(frames_) ? kError : kWarn, text};
 }
@@ -96,8 +96,8 @@ std::vector<CameraWatch::Finding> CameraWatch::findings(Timestamp now) const {
   add(kWarn, jump_, kRemembered);
   add(kWarn, dropped_, kRecently);
   if (!passed_over_at_.empty()) {
-    found.push_back({kWarn, formatted("%d images of the last second were left out, as newer ones were there",
-                                      static_cast<int>(passed_over_at_.size()))});
+    found.push_back({kWarn, fmt::format("{} images of the last second were left out, as newer ones were there",
+                                        static_cast<int>(passed_over_at_.size()))});
   }
   return found;
 }
@@ -110,7 +110,7 @@ ros::DiagnosticStatus CameraWatch::status(Timestamp now) const {
     status.message += (status.message.empty() ? "" : "; ") + finding.text;
   }
   if (status.message.empty()) {
-    status.message = formatted("%d frames a second", static_cast<int>(frames_.size()));
+    status.message = fmt::format("{} frames a second", static_cast<int>(frames_.size()));
   }
   status.hardware_id = topic_;
   double slowest = 0.0;
@@ -118,7 +118,7 @@ ros::DiagnosticStatus CameraWatch::status(Timestamp now) const {
   status.values = {{"images", std::to_string(arrived_)},
                    {"images left out", std::to_string(passed_over_)},
                    {"frames in the last second", std::to_string(frames_.size())},
-                   {"slowest of these, ms", formatted("%.1f", 1e3 * slowest)}};
+                   {"slowest of these, ms", fmt::format("{:.1f}", 1e3 * slowest)}};
   return status;
 }
 

@@ -2,10 +2,10 @@
 
 #include "byre/assessment/report_json.h"
 #include "byre/assessment/ros_report.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -53,9 +53,9 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
                    {"offline inliers", std::to_string(health.offline_inliers)},
                    {"offline points expected", std::to_string(health.offline_expected)},
                    {"online inliers", std::to_string(health.online_inliers)},
-                   {"position sigma, m", formatted("%.4f", health.position_sigma)},
-                   {"rotation sigma, rad", formatted("%.5f", health.rotation_sigma)},
-                   {"distance since offline points, m", formatted("%.2f", health.distance_since_offline)}};
+                   {"position sigma, m", fmt::format("{:.4f}", health.position_sigma)},
+                   {"rotation sigma, rad", fmt::format("{:.5f}", health.rotation_sigma)},
+                   {"distance since offline points, m", fmt::format("{:.2f}", health.distance_since_offline)}};
   return status;
 }
 

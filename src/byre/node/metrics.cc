@@ -1,12 +1,12 @@
 #include "byre/node/metrics.h"
 
-#include "byre/input/formatted.h"
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
 
 std::string metric(const char* name, const char* type, const char* help, double value) {
-  return formatted("# HELP %s %s\n# TYPE %s %s\n%s %.9g\n", name, help, name, type, name, value);
+  return fmt::format("# HELP {} {}\n# TYPE {} {}\n{} {:.9g}\n", name, help, name, type, name, value);
 }
 
 }  // namespace

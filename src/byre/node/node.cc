@@ -1,7 +1,6 @@
 #include "byre/node/node.h"
 
 #include "byre/dds/type_hashes.h"
-#include "byre/input/formatted.h"
 #include "byre/node/health_messages.h"
 #include "byre/node/hint_message.h"
 #include "byre/node/message_parsing.h"
@@ -10,6 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -162,14 +163,14 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
   std::string answer;
   if (map_from_body_) {
     const double distance = (map_from_body_->translation - hint->map_from_body.translation).head<2>().norm();
-    if (distance <= kNear) return formatted("agrees with the present pose within %.1f m", distance);
-    answer = formatted("%.1f m from the present pose; ", distance) + runner_.relocalise() + "; ";
+    if (distance <= kNear) return fmt::format("agrees with the present pose within {:.1f} m", distance);
+    answer = fmt::format("{:.1f} m from the present pose; ", distance) + runner_.relocalise() + "; ";
     hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has none
     begin_anew();
   }
   if (!runner_.look_near(*hint)) return "the robot is being looked for in the whole map anyway";
   return answer +
-         formatted("looking within %.1f m of it for %.0f s, then in the whole map", hint->radius, hint->seconds);
+         fmt::format("looking within {:.1f} m of it for {:.0f} s, then in the whole map", hint->radius, hint->seconds);
 }
 
 void Node::take_requests(Timestamp now) {

@@ -1,11 +1,12 @@
 #include "byre/dds/ros_names.h"
-#include "byre/input/formatted.h"
 #include "byre/input/text_file.h"
 #include "byre/node/node_config.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -65,8 +66,8 @@ NodeSetting flag(const char* name, Place place, const char* meaning) {
 
 template <typename Place>
 NodeSetting seconds(const char* name, double most, Place place, const char* meaning) {
-  return {name, formatted("from 0 to %g seconds", most), meaning,
-          [=](const NodeConfig& config) { return formatted("%g", place(config)); },
+  return {name, fmt::format("from 0 to {:g} seconds", most), meaning,
+          [=](const NodeConfig& config) { return fmt::format("{:g}", place(config)); },
           [=](NodeConfig& config, std::string_view value) {
             const auto number = parse_number(value);
             if (!number || !(*number >= 0.0 && *number <= most)) return false;
@@ -270,7 +271,7 @@ void add_fleet(Table& table) {
     return true;
   };
   table.push_back({"mqtt.rate", "0.1 to 20", "most messages a second on a topic",
-                   [](const NodeConfig& config) { return formatted("%g", config.fleet.rate); }, set_rate});
+                   [](const NodeConfig& config) { return fmt::format("{:g}", config.fleet.rate); }, set_rate});
 }
 
 void add_process(Table& table) {

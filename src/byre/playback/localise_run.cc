@@ -3,11 +3,12 @@
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_fit.h"
 #include "byre/dataset/image_names.h"
-#include "byre/input/formatted.h"
 #include "byre/playback/decode_ahead.h"
 #include "byre/workers/stopwatch.h"
 
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -61,8 +62,8 @@ std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std
   if (image->width == camera.width && image->height == camera.height) return std::move(image);
   warnings.push_back(
       path.string() +
-      formatted(": is of %d x %d pixels, the camera of %d x %d: scaled and cut, as if it were the camera's",
-                image->width, image->height, camera.width, camera.height));
+      fmt::format(": is of {} x {} pixels, the camera of {} x {}: scaled and cut, as if it were the camera's",
+                  image->width, image->height, camera.width, camera.height));
   return fit(*image, camera.width, camera.height);
 }
 
@@ -89,7 +90,7 @@ LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, c
     run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
     ++done;
     if (!decoded->images) continue;
-    run.frames.push_back(finder.find(std::move(*decoded->images), formatted("%.9f", to_seconds(decoded->time))));
+    run.frames.push_back(finder.find(std::move(*decoded->images), fmt::format("{:.9f}", to_seconds(decoded->time))));
     hooks.after_frame(done, run.frames.back());
   }
   return run;

@@ -1,13 +1,14 @@
 #include "byre/viewer/mission_painter.h"
 
 #include "byre/geometry/median.h"
-#include "byre/input/formatted.h"
 #include "byre/viewer/camera_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -65,7 +66,7 @@ void MissionPainter::film(const FrameScene& frame, const Session& session) {
   scene_.camera.reset();
   if (frame.report.map_from_body) scene_.camera = plan_camera(*frame.report.map_from_body, view_.rig());
   CameraPictureOptions camera;
-  camera.title = formatted("%.2f s", to_seconds(frame.report.time - first_));
+  camera.title = fmt::format("{:.2f} s", to_seconds(frame.report.time - first_));
   const Picture picture = frame_and_plan(frame, camera, scene_, plan_options_);
   if (!video_) video_.emplace(*painting_.video, video_rate_, picture.width, picture.height);
   video_->add(picture);

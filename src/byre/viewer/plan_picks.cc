@@ -1,11 +1,11 @@
 #include "byre/viewer/plan_picks.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/map/plan_places.h"
 
 #include <algorithm>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -64,7 +64,7 @@ std::string picks_csv(const std::vector<PlanPick>& picks) {
   std::string text = "name,point,plan_x_m,plan_y_m\n";
   for (const PlanPick& pick : picks) {
     text += pick.name;
-    text += formatted(",%u,%.4f,%.4f\n", pick.point, pick.point_in_plan.x(), pick.point_in_plan.y());
+    text += fmt::format(",{},{:.4f},{:.4f}\n", pick.point, pick.point_in_plan.x(), pick.point_in_plan.y());
   }
   return text;
 }

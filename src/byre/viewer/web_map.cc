@@ -2,7 +2,6 @@
 
 #include "byre/dataset/files_read.h"
 #include "byre/input/binary_file.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/viewer/plan_image.h"
 #include "byre/viewer/plan_picks.h"
@@ -12,6 +11,8 @@
 
 #include <span>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -96,7 +97,7 @@ class MapSite : public WebSite {
     if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
     const PlanFit found = fit(picks);
     if (const double residual = residual_of(found); residual > accepted_residual(request.body)) {
-      throw InputError("picks", formatted("fit the map only to %.2f m", residual),
+      throw InputError("picks", fmt::format("fit the map only to {:.2f} m", residual),
                        "correct them, or confirm the figure");
     }
     map_.stored.plan = found.registration;

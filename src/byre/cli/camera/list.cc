@@ -2,7 +2,7 @@
 #include "byre/cli/camera/commands.h"
 #include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/file_arguments.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <memory>

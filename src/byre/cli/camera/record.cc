@@ -7,7 +7,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 #include "byre/workers/stopwatch.h"
 
@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -53,14 +54,14 @@ std::unique_ptr<CaptureThread> open_cameras(const RecordOptions& options,
 }
 
 std::string describe_frames(const RecordedFrames& recorded, bool has_right) {
-  std::string text = formatted("%d", recorded.frames);
-  if (has_right) text += formatted(", %d of them pairs", recorded.with_right);
+  std::string text = fmt::format("{}", recorded.frames);
+  if (has_right) text += fmt::format(", {} of them pairs", recorded.with_right);
   if (recorded.first) {
     const double seconds = to_seconds(*recorded.last - *recorded.first);
-    text += formatted(", %.1f s", seconds);
-    if (seconds > 0.0) text += formatted(", %.2f Hz", (recorded.frames - 1) / seconds);
+    text += fmt::format(", {:.1f} s", seconds);
+    if (seconds > 0.0) text += fmt::format(", {:.2f} Hz", (recorded.frames - 1) / seconds);
   }
-  if (recorded.passed_over > 0) text += formatted("; %d could not be written in time", recorded.passed_over);
+  if (recorded.passed_over > 0) text += fmt::format("; {} could not be written in time", recorded.passed_over);
   return text;
 }
 
@@ -80,7 +81,7 @@ ExitCode run_record(const RecordOptions& options, std::ostream& result) {
     constexpr double kInterval_s = 5.0;
     if (options.quiet || (frames > 1 && watch.seconds() - shown_s < kInterval_s)) return;
     shown_s = watch.seconds();
-    std::cerr << formatted("%d frames after %.0f s", frames, shown_s) << std::endl;
+    std::cerr << fmt::format("{} frames after {:.0f} s", frames, shown_s) << std::endl;
   };
   const RecordedFrames recorded = record_frames(*capture, *sink, options.limits, hooks);
   result << row("recorded", options.output.string()) << row("frames", describe_frames(recorded, cameras.has_right))

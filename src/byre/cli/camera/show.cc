@@ -9,7 +9,7 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/image_condition.h"
 #include "byre/input/binary_file.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/workers/stopwatch.h"
 
 #include <iostream>
@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -47,25 +48,25 @@ Exit codes: 0 done, 1 no image came, 3 the camera cannot be had.)";
 
 std::string describe_intervals(const std::vector<Timestamp>& stamps) {
   const auto intervals = measure_intervals(stamps);
-  if (!intervals) return formatted("%zu frames: too few to tell a rate", stamps.size());
-  return formatted("%.2f Hz over %zu frames; intervals deviate by %.2f ms, the longest is %.1f ms", intervals->rate_hz,
-                   stamps.size(), 1e3 * intervals->deviation_s, 1e3 * intervals->longest_s);
+  if (!intervals) return fmt::format("{} frames: too few to tell a rate", stamps.size());
+  return fmt::format("{:.2f} Hz over {} frames; intervals deviate by {:.2f} ms, the longest is {:.1f} ms",
+                     intervals->rate_hz, stamps.size(), 1e3 * intervals->deviation_s, 1e3 * intervals->longest_s);
 }
 
 std::string describe_image(const char* name, const Image& image) {
   const ImageCondition condition = measure_condition(image);
   const ImageFault fault = fault_of(condition, {});
-  std::string text =
-      row(name, formatted("brightness %.0f and contrast %.0f grey values, sharpness %.2f, %.0f %% black or white",
-                          condition.brightness, condition.contrast, condition.sharpness, 100.0 * condition.clipped) +
-                    (fault == ImageFault::none ? "" : "; " + std::string(to_string(fault))));
+  std::string text = row(
+      name, fmt::format("brightness {:.0f} and contrast {:.0f} grey values, sharpness {:.2f}, {:.0f} % black or white",
+                        condition.brightness, condition.contrast, condition.sharpness, 100.0 * condition.clipped) +
+                (fault == ImageFault::none ? "" : "; " + std::string(to_string(fault))));
   const CornerGrid grid = count_corners(image);
-  text += row("corners", formatted("%d; %d of %d parts without any:", grid.total(), grid.cells_without(),
-                                   static_cast<int>(grid.corners.size())));
+  text += row("corners", fmt::format("{}; {} of {} parts without any:", grid.total(), grid.cells_without(),
+                                     static_cast<int>(grid.corners.size())));
   for (int y = 0; y < CornerGrid::kRows; ++y) {
     std::string line;
     for (int x = 0; x < CornerGrid::kColumns; ++x) {
-      line += formatted("%6d", grid.corners[static_cast<std::size_t>(y * CornerGrid::kColumns + x)]);
+      line += fmt::format("{:6}", grid.corners[static_cast<std::size_t>(y * CornerGrid::kColumns + x)]);
     }
     text += row("", line);
   }

@@ -8,8 +8,8 @@
 #include "byre/demo/demo_run.h"
 #include "byre/demo/page.h"
 #include "byre/demo/table.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <iostream>

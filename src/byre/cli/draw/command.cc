@@ -3,8 +3,8 @@
 #include "byre/cli/draw/options.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/trajectory_input.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 #include "byre/system/stored_map.h"
 #include "byre/viewer/camera_picture.h"
@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -72,11 +74,11 @@ void add_mission(const DrawnMission& mission, PlanScene& scene) {
 }
 
 std::string story_of(const DrawnMission& mission, const DrawOptions& options) {
-  std::string text = row("mission", formatted("%zu poses", mission.way.map_from_body.size()));
-  if (mission.frame_s && options.camera_picture) text += row("camera at", formatted("%.2f s", *mission.frame_s));
+  std::string text = row("mission", fmt::format("{} poses", mission.way.map_from_body.size()));
+  if (mission.frame_s && options.camera_picture) text += row("camera at", fmt::format("{:.2f} s", *mission.frame_s));
   if (!options.video) return text;
   const char* const codec = mission.plays_in_browsers ? "H.264" : "MPEG-4, which browsers do not play";
-  return text + row("video", formatted("%d frames, %s", mission.video_frames, codec));
+  return text + row("video", fmt::format("{} frames, {}", mission.video_frames, codec));
 }
 
 void require_frames(const DrawnMission& mission, const DrawOptions& options) {
@@ -87,7 +89,7 @@ void require_frames(const DrawnMission& mission, const DrawOptions& options) {
 
 void write_camera_picture(const DrawnMission& mission, const fs::path& file) {
   CameraPictureOptions picture;
-  picture.title = formatted("%.2f s", *mission.frame_s);
+  picture.title = fmt::format("{:.2f} s", *mission.frame_s);
   write_picture(camera_picture(*mission.frame, picture), file);
 }
 
@@ -106,8 +108,9 @@ ExitCode draw(const DrawOptions& options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   StoredMap stored = load_map_to_draw(options);
   PlanScene scene = scene_without_mission(options, stored);
-  result << row("map", options.map_file().string() + formatted(", %d keyframes, %d points", stored.map.keyframe_count(),
-                                                               stored.map.point_count()));
+  result << row("map",
+                options.map_file().string() +
+                    fmt::format(", {} keyframes, {} points", stored.map.keyframe_count(), stored.map.point_count()));
   ExitCode code = done;
   if (options.map) {
     code = run_and_draw(options, std::move(stored), std::move(scene), result);

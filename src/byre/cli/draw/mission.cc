@@ -3,7 +3,6 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 #include "byre/place/map_words.h"
 #include "byre/system/stored_map.h"
@@ -11,6 +10,8 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -45,7 +46,8 @@ DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const Pl
   const Timestamp first = open_recording(options.input, {}, options.open)->times().front();
   const std::unique_ptr<Recording> recording = open_recording(options.input, needed_range(options), options.open);
   if (options.at_s && first + from_seconds(*options.at_s) < recording->times().front()) {
-    throw InputError(options.input.string(), formatted("has no frame up to %g s in the range to run", *options.at_s),
+    throw InputError(options.input.string(),
+                     fmt::format("has no frame up to {:g} s in the range to run", *options.at_s),
                      "start earlier, or have --at later");
   }
   const MissionPainting painting{options.camera_picture.has_value(), options.at_s, options.video, options.speed,

@@ -2,7 +2,6 @@
 
 #include "byre/archive/register_scene.h"
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/input/formatted.h"
 #include "byre/simulation/rendered_fixture.h"
 
 #include <string>

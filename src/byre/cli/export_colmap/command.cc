@@ -3,7 +3,6 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/recording_options.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 
 #include <memory>
@@ -11,6 +10,7 @@
 #include <ostream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -41,11 +41,11 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   const ColmapModel model = colmap_model_of(stored, names);
   make_folder(options.model);
   write_colmap_model(model, options.model, options.text ? ColmapFormat::text : ColmapFormat::binary);
-  result << formatted("written      %zu cameras, %zu images, %zu points to ", model.cameras.size(), model.images.size(),
-                      model.points.size())
+  result << fmt::format("written      {} cameras, {} images, {} points to ", model.cameras.size(), model.images.size(),
+                        model.points.size())
          << options.model.string() << "\n"
-         << formatted("left out     %zu points that one image alone sees\n",
-                      stored.map.point_count() - model.points.size());
+         << fmt::format("left out     {} points that one image alone sees\n",
+                        stored.map.point_count() - model.points.size());
   return ExitCode::done;
 }
 

@@ -3,8 +3,8 @@
 #include "byre/archive/colmap_scene.h"
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/dataset/colmap_model.h"
-#include "byre/input/formatted.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 namespace byre::cli {
@@ -18,7 +18,7 @@ class ColmapCommands : public ProgramTest {
  protected:
   ColmapCommands() { save_map(rendered_map(), folder_ / "room.byre"); }
 
-  static std::string recording() { return formatted("'%s'", RenderedFixture::shared().folder().c_str()); }
+  static std::string recording() { return fmt::format("'{}'", RenderedFixture::shared().folder().string()); }
   static std::string images() { return recording() + "/mav0/cam0/data"; }
 };
 

@@ -2,13 +2,13 @@
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/formatted.h"
 #include "byre/map/map_file.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/trajectory_file.h"
 
 #include <cmath>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -77,7 +77,7 @@ TEST_F(LocaliseProgram, WarnsOfAnAssumedFrameRate) {
   const std::filesystem::path folder = folder_ / "frames";
   std::filesystem::create_directory(folder);
   for (const std::size_t i : {0, 1}) {
-    std::filesystem::copy(RenderedFixture::shared().image("cam0", i), folder / formatted("frame%zu.png", i));
+    std::filesystem::copy(RenderedFixture::shared().image("cam0", i), folder / fmt::format("frame{}.png", i));
   }
   const std::string sensor = quoted(RenderedFixture::shared().folder() / "mav0/cam0/sensor.yaml");
   EXPECT_THAT(localise("frames --calibration " + sensor).errors, HasSubstr("30 frames a second are assumed"));

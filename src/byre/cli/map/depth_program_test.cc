@@ -6,10 +6,10 @@
 #include "byre/trajectory_file.h"
 
 #include <cmath>
-#include <iomanip>
 #include <sstream>
 #include <string>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -98,15 +98,14 @@ class DepthFixture {
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const auto& [time, world_from_body] = truth[i];
       const std::string name = std::to_string(i) + ".pgm";
-      std::ostringstream seconds;
-      seconds << std::fixed << std::setprecision(6) << to_seconds(time);
+      const std::string seconds = fmt::format("{:.6f}", to_seconds(time));
       const Image image = room.render(cameras, world_from_body, time).left;
       write_pgm(folder_ / "rgb" / name, image.width, image.height, 255, {image.pixels.begin(), image.pixels.end()});
-      colours << seconds.str() << " rgb/" << name << "\n";
+      colours << seconds << " rgb/" << name << "\n";
       if (i % kFramesPerDepth != 0) continue;
       write_pgm(folder_ / "depth" / name, image.width, image.height, 65535,
                 depth_bytes(room, left.left, world_from_body * left.body_from_left));
-      depths << seconds.str() << " depth/" << name << "\n";
+      depths << seconds << " depth/" << name << "\n";
     }
   }
   ~DepthFixture() { fs::remove_all(folder_); }

@@ -5,7 +5,6 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/playback/map_from_poses_run.h"
 #include "byre/playback/source_recording.h"
 #include "byre/system/stored_map.h"
@@ -13,6 +12,8 @@
 
 #include <iostream>
 #include <memory>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -31,10 +32,10 @@ PosedRun run_with_progress(Recording& recording, const MapOptions& options, cons
 }
 
 std::string to_text(const PosedRun& run, const MapOptions& options) {
-  std::string text = "recording    " + options.recording.string() + formatted(", %d frames\n", run.frames);
+  std::string text = "recording    " + options.recording.string() + fmt::format(", {} frames\n", run.frames);
   text += "poses        given by " + options.given_poses->string() + ", not estimated";
-  if (run.without_pose > 0) text += formatted("; %d frames have none and are left out", run.without_pose);
-  text += formatted("\nmap          %d keyframes, %d points\n", run.map.keyframe_count(), run.map.point_count());
+  if (run.without_pose > 0) text += fmt::format("; {} frames have none and are left out", run.without_pose);
+  text += fmt::format("\nmap          {} keyframes, {} points\n", run.map.keyframe_count(), run.map.point_count());
   return text + "written      " + options.map->string() + "\n";
 }
 

@@ -1,7 +1,6 @@
 // "byre map" as a user runs it: exit codes, what it says on which stream, and the files it leaves.
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/input/formatted.h"
 #include "byre/map/map_file.h"
 #include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_fixture.h"

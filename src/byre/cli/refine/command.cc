@@ -4,7 +4,6 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/run_with_progress.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/system/refine_map.h"
 #include "byre/system/stored_map.h"
@@ -13,6 +12,7 @@
 #include <ostream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre::cli {
@@ -41,7 +41,8 @@ imported are adjusted too. Ctrl-C keeps what was reached by then, then the exit 
 std::string to_text(const RefineOptions& options, const Finishing& finishing) {
   const MapQuality& after = finishing.report.after;
   std::string text = "map          " + options.map.string() +
-                     formatted(": %d keyframes, %d points\n", after.keyframes, after.points) + byre::to_text(finishing);
+                     fmt::format(": {} keyframes, {} points\n", after.keyframes, after.points) +
+                     byre::to_text(finishing);
   return text + "written      " + options.written().string() + "\n";
 }
 

@@ -1,7 +1,6 @@
 // "byre refine" and "byre map --extend" as a user runs them.
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/input/formatted.h"
 #include "byre/map/map_file.h"
 #include "byre/map/stored_map_scene.h"
 #include "byre/simulation/rendered_fixture.h"

@@ -3,7 +3,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
 
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -59,13 +59,14 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
 
 [[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
   const double residual = residual_of(fit);
-  throw InputError(options.picks.string(),
-                   formatted("fits the map only to %.2f m, so the map is not written: poses on the plan would be wrong "
-                             "by as much",
-                             residual),
-                   formatted("correct the picks that are off, the plan's resolution or its origin; --accept-residual "
-                             "%.2f writes it all the same",
-                             std::ceil(1e2 * residual) / 1e2));
+  throw InputError(
+      options.picks.string(),
+      fmt::format("fits the map only to {:.2f} m, so the map is not written: poses on the plan would be wrong "
+                  "by as much",
+                  residual),
+      fmt::format("correct the picks that are off, the plan's resolution or its origin; --accept-residual "
+                  "{:.2f} writes it all the same",
+                  std::ceil(1e2 * residual) / 1e2));
 }
 
 ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {

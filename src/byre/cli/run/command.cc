@@ -12,7 +12,6 @@
 #include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
 #include "byre/floor_plan.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
 #include "byre/playback/run_on_plan.h"
@@ -25,6 +24,8 @@
 #include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -146,9 +147,9 @@ void write_results(const RunOptions& options, const MapRun& run, const MapProtoc
 void require_frames(const MissionStatistics& statistics) {
   if (!is_full_of_gaps(statistics)) return;
   throw std::runtime_error(
-      formatted("%d of %d frames could not be read, so this was not the whole mission; the warnings "
-                "say why",
-                statistics.missing, statistics.frames));
+      fmt::format("{} of {} frames could not be read, so this was not the whole mission; the warnings "
+                  "say why",
+                  statistics.missing, statistics.frames));
 }
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {

@@ -7,11 +7,11 @@
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/record_options.h"
 #include "byre/cli/shared/recording_options.h"
-#include "byre/input/formatted.h"
 
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -120,8 +120,8 @@ void require_consistent(const RunOptions& options) {
 void declare_tracking(CLI::App& command, RunOptions& options) {
   command
       .add_option("--offline-weight", options.offline_weight,
-                  formatted("Weight of a measured offline point, against 1 of an online one (%g)",
-                            TrackOptions{}.offline_weight))
+                  fmt::format("Weight of a measured offline point, against 1 of an online one ({:g})",
+                              TrackOptions{}.offline_weight))
       ->type_name("FACTOR")
       ->check(between(1e-3, 1e3));
   add_choice(command, "--offline-policy", options.offline_policy, {OfflinePolicy::first, OfflinePolicy::together},

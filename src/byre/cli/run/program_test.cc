@@ -3,7 +3,6 @@
 #include "byre/alignment.h"
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/input/formatted.h"
 #include "byre/map/scaled_copy.h"
 #include "byre/motion/known_mounting.h"
 #include "byre/simulation/rendered_fixture.h"

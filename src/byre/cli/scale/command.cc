@@ -2,8 +2,8 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
+#include "byre/input/report_row.h"
 
 #include <filesystem>
 #include <memory>
@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -37,8 +38,8 @@ ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
   const ScaledMap scaled =
       scale_by_distance(load_map(options.map), options.between.first, options.between.second, options.metres);
   save_map(scaled.stored, options.output);
-  result << row("before", formatted("%g units apart", scaled.distance))
-         << row("now", formatted("%g m apart: a unit is %g m", options.metres, scaled.factor))
+  result << row("before", fmt::format("{:g} units apart", scaled.distance))
+         << row("now", fmt::format("{:g} m apart: a unit is {:g} m", options.metres, scaled.factor))
          << row("written", options.output.string());
   return ExitCode::done;
 }

@@ -1,6 +1,5 @@
 #include "byre/cli/shared/number_check.h"
 
-#include "byre/input/formatted.h"
 #include "byre/input/text_file.h"
 
 #include <functional>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -25,11 +25,11 @@ CLI::Validator number_that(std::function<bool(double)> fits, std::string what) {
 
 CLI::Validator between(double low, double high) {
   return number_that([=](double number) { return low <= number && number <= high; },
-                     formatted("from %.12g to %.12g", low, high));
+                     fmt::format("from {:.12g} to {:.12g}", low, high));
 }
 
 CLI::Validator from(double low) {
-  return number_that([=](double number) { return low <= number; }, formatted("from %.12g on", low));
+  return number_that([=](double number) { return low <= number; }, fmt::format("from {:.12g} on", low));
 }
 
 CLI::Validator above_zero() {

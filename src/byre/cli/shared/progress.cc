@@ -1,12 +1,14 @@
 #include "byre/cli/shared/progress.h"
 
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <cmath>
 #include <cstdlib>
 #include <ostream>
 
 #include <unistd.h>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -48,12 +50,11 @@ bool has_colours() {
 }
 
 std::string describe_progress(int done, int total, const std::string& unit, double elapsed_s, std::string_view state) {
-  std::string text =
-      total == 0 ? formatted("%d %s", done, unit.c_str()) : formatted("%d of %d %s", done, total, unit.c_str());
+  std::string text = total == 0 ? fmt::format("{} {}", done, unit) : fmt::format("{} of {} {}", done, total, unit);
   if (elapsed_s > 0.0) {
     const double rate = done / elapsed_s;
-    text += formatted(", %.1f %s/s", rate, unit.c_str());
-    if (total > 0) text += formatted(", %s left", format_duration((total - done) / rate).c_str());
+    text += fmt::format(", {:.1f} {}/s", rate, unit);
+    if (total > 0) text += fmt::format(", {} left", format_duration((total - done) / rate));
   }
   return text + ", " + std::string(state);
 }

@@ -6,13 +6,14 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 #include "byre/playback/source_recording.h"
 
 #include <iostream>
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -132,7 +133,8 @@ MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, con
 std::string RunInput::report() {
   if (!live_) return "";
   const LiveCameraReport cameras = live_->finish();
-  return to_text(cameras) + row("passed over", formatted("%d frames, as newer ones were there", live_->passed_over()));
+  return to_text(cameras) +
+         row("passed over", fmt::format("{} frames, as newer ones were there", live_->passed_over()));
 }
 
 }  // namespace byre::cli

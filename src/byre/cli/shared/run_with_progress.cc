@@ -1,11 +1,12 @@
 #include "byre/cli/shared/run_with_progress.h"
 
 #include "byre/cli/shared/progress.h"
-#include "byre/input/formatted.h"
 #include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -14,7 +15,7 @@ std::string state_after(const MappedFrame& frame, bool is_mission) {
   if (!frame.report) return "unreadable frame";
   std::string state(to_string(frame.report->state));
   if (is_mission) state += ", " + std::string(to_string(frame.report->health.verdict));
-  return state + formatted(", %d keyframes, %d points, %.0f MB", frame.keyframes, frame.points, frame.memory_mb);
+  return state + fmt::format(", {} keyframes, {} points, {:.0f} MB", frame.keyframes, frame.points, frame.memory_mb);
 }
 
 Tone tone_after(const MappedFrame& frame, bool is_mission) {

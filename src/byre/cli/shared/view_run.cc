@@ -1,7 +1,6 @@
 #include "byre/cli/shared/view_run.h"
 
 #include "byre/cli/shared/pose_options.h"
-#include "byre/input/formatted.h"
 #include "byre/map/driving_plane.h"
 #include "byre/system/resources.h"
 #include "byre/workers/stopwatch.h"
@@ -14,6 +13,8 @@
 #include <utility>
 
 #include <unistd.h>
+
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -50,7 +51,7 @@ RunViewer start_viewer(const ViewOptions& options, const WatchedRun& run) {
 
 std::string describe_stay(double stay_s, bool is_asked_for) {
   if (stay_s == std::numeric_limits<double>::infinity()) return "goes on until Ctrl-C";
-  if (stay_s > 0.0) return formatted("goes on for %g s, or until Ctrl-C", stay_s);
+  if (stay_s > 0.0) return fmt::format("goes on for {:g} s, or until Ctrl-C", stay_s);
   return is_asked_for ? "ends with the run" : "ends with the run, as there is no terminal (--view-for SECONDS: stays)";
 }
 

@@ -5,7 +5,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/simulate/imperfection_options.h"
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <filesystem>
 #include <map>
@@ -14,6 +14,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre::cli {
@@ -50,8 +51,8 @@ errors. The same options give the same bytes, whatever the number of threads. Ct
 docs/simulation.md describes both.)";
 
 std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
-  return formatted("rendered     %d stereo pairs in %.1f s (%.1f a second), after %.1f s to build the barn\n",
-                   rendering.frames, rendering.rendering_s, rendering.frames_per_second(), rendering.preparing_s) +
+  return fmt::format("rendered     {} stereo pairs in {:.1f} s ({:.1f} a second), after {:.1f} s to build the barn\n",
+                     rendering.frames, rendering.rendering_s, rendering.frames_per_second(), rendering.preparing_s) +
          row("recording", options.output.string()) + row("floor plan", (options.output / "plan").string());
 }
 

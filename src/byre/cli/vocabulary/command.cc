@@ -7,7 +7,6 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/image_descriptors.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/formatted.h"
 #include "byre/input/output_file.h"
 #include "byre/workers/stopwatch.h"
 
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -84,8 +84,9 @@ Vocabulary train_with_progress(const TrainOptions& options, const std::vector<st
 
 std::string to_text(const Vocabulary& vocabulary, const fs::path& path) {
   return "vocabulary   " + path.string() + "\n" +
-         formatted("words        %d\nbranching    %d\ndepth        %d\nchecksum     %016llx\n", vocabulary.word_count(),
-                   vocabulary.branching(), vocabulary.depth(), static_cast<unsigned long long>(vocabulary.checksum()));
+         fmt::format("words        {}\nbranching    {}\ndepth        {}\nchecksum     {:016x}\n",
+                     vocabulary.word_count(), vocabulary.branching(), vocabulary.depth(),
+                     static_cast<unsigned long long>(vocabulary.checksum()));
 }
 
 void run_train(const TrainOptions& options, std::ostream& result) {
@@ -97,7 +98,7 @@ void run_train(const TrainOptions& options, std::ostream& result) {
   std::size_t descriptor_count = 0;
   for (const auto& image : descriptors) descriptor_count += image.size();
   result << to_text(vocabulary, options.output)
-         << formatted("learnt from  %zu descriptors of %zu images\n", descriptor_count, descriptors.size());
+         << fmt::format("learnt from  {} descriptors of {} images\n", descriptor_count, descriptors.size());
 }
 
 void run_import(const ImportOptions& options, std::ostream& result) {

@@ -1,4 +1,4 @@
-#include "byre/input/formatted.h"
+#include "byre/input/report_row.h"
 
 #include <gtest/gtest.h>
 
