@@ -10,7 +10,7 @@ namespace byre {
 // what to do about it; what() reads "place: reason (remedy)".
 class InputError : public std::runtime_error {
  public:
-  // place: "file", "file:line" or "file: field"; reason: what is wrong; remedy: what the user can do, may be empty.
+  // place: "file", "file:line" or "file: field"; remedy: may be empty. Text from outside is made printable: \n, \xNN.
   InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
 
   const std::string& place() const { return place_; }

@@ -84,6 +84,18 @@ TEST_F(FleetTest, ComesBackWithTheBrokerAndNeverHoldsAFrameUp) {
   EXPECT_TRUE(fleet.find(kConnection, connection_is("CONNECTIONBROKEN"))) << "the broker tells of who is gone";
 }
 
+TEST_F(FleetTest, SaysThatThereIsNoBroker) {
+  std::optional<MqttBroker> broker(std::in_place, folder_, "byre", "secret");
+  const std::string given = settings(*broker);
+  const std::string place = "127.0.0.1:" + std::to_string(broker->port());
+  broker.reset();
+  NodeProcess node(folder_, given, domain_);
+  EXPECT_TRUE(eventually([&] {
+    return node.said().find("mqtt: " + place + " cannot be reached: Connection refused (start the broker, ") !=
+           std::string::npos;
+  })) << node.said();
+}
+
 TEST_F(FleetTest, SaysThatTheBrokerRefusesIt) {
   const MqttBroker broker(folder_, "byre", "another");
   NodeProcess node(folder_, settings(broker), domain_);

@@ -157,7 +157,14 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
   EXPECT_EQ(answer("load absent.byre").at("done"), false);
   EXPECT_EQ(answer("save").at("done"), false);
   EXPECT_EQ(answer("dance").at("done"), false);
+  command("save\n<3>fake");
+  EXPECT_TRUE(events_.find([](const auto& event) {
+    return event.data().find(R"("command":"save\\n<3>fake")") != std::string::npos;
+  })) << node.said();
+  EXPECT_EQ(node.said().find("\n<3>fake"), std::string::npos) << node.said();
+  command(std::string(1 << 20, 'a'));  // longer than commands may be
   EXPECT_EQ(answer("load room.byre").at("done"), true);
+  EXPECT_EQ(node.said().find("aaa"), std::string::npos);
   EXPECT_EQ(answer("relocalise").at("done"), true);
   for (std::size_t i = 1; i < 6; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << i;
   EXPECT_EQ(node.stop(), 0);

@@ -1,9 +1,9 @@
 #include "byre/assessment/evaluation_report.h"
 
 #include "byre/assessment/report_json.h"
+#include "byre/input/report_row.h"
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/core.h>
@@ -66,17 +66,14 @@ std::string describe_coverage(const EvaluationReport& report) {
 }
 
 std::string header(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
-  std::ostringstream text;
-  text << "estimate     " << estimate_file << ", " << report.estimated_poses << " poses\n"
-       << "truth        " << truth_file << ", " << report.true_poses << " poses\n"
-       << "poses        " << report.protocol.label << "\n"
-       << "alignment    " << describe_alignment(report) << "\n"
-       << "association  " << describe_association(report) << "\n"
-       << "time offset  " << to_seconds(report.protocol.association.time_offset) << " s, added to the truth's time\n"
-       << "coverage     " << describe_coverage(report) << "\n"
-       << "true path    " << fmt::format("{:.2f} m", report.true_path) << "\n"
-       << caveat_row(report);
-  return text.str();
+  return row("estimate", fmt::format("{}, {} poses", estimate_file, report.estimated_poses)) +
+         row("truth", fmt::format("{}, {} poses", truth_file, report.true_poses)) +
+         row("poses", report.protocol.label) + row("alignment", describe_alignment(report)) +
+         row("association", describe_association(report)) +
+         row("time offset",
+             fmt::format("{:g} s, added to the truth's time", to_seconds(report.protocol.association.time_offset))) +
+         row("coverage", describe_coverage(report)) + row("true path", fmt::format("{:.2f} m", report.true_path)) +
+         caveat_row(report);
 }
 
 std::string ate_rpe_row(const char* name, const ErrorStatistics& errors) {

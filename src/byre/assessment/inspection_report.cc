@@ -3,6 +3,7 @@
 #include "byre/archive/register_map.h"
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/report_json.h"
+#include "byre/input/printable.h"
 #include "byre/motion/known_mounting.h"
 
 #include <algorithm>
@@ -17,9 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string wide_row(std::string_view name, const std::string& content) {
-  std::string padded(name);
-  padded.resize(std::max<std::size_t>(padded.size() + 1, 15), ' ');
-  return padded + content + "\n";
+  return fmt::format("{:14} {}\n", printable(name), printable(content));
 }
 
 std::string size_text(std::size_t bytes) {

@@ -35,6 +35,10 @@ std::string to_json(const MapRun& run, const MapProtocol& protocol, const Resour
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
 
+// Throws std::runtime_error when so many frames could not be read that the result does not stand for the recording
+// (is_full_of_gaps), unless no frame got a pose.
+void require_frames(const MapRun& run, const MapProtocol& protocol);
+
 // Throws std::runtime_error, which says why, when no frame got a pose.
 void require_poses(const MapRun& run, const MapProtocol& protocol);
 

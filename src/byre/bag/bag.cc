@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // bytes that any message may be decompressed to
 constexpr std::string_view kRos1Begin = "#ROSBAG V";
 constexpr std::string_view kSqliteBegin = "SQLite format 3";
 
@@ -45,7 +46,13 @@ bool is_rosbag2_metadata(const fs::path& file) {
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& ending) {
-    std::string name = (fs::temp_directory_path() / "byre-XXXXXX").string() + ending;
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (error) {
+      throw InputError("TMPDIR", "names '" + folder.string() + "', which is no folder",
+                       "set it to a folder that may be written to, or unset it");
+    }
+    std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
     if (descriptor < 0) throw InputError(name, "cannot be made", "set TMPDIR to a folder that may be written to");
     close(descriptor);
@@ -67,7 +74,7 @@ class TemporaryFile {
 // looks like, and files that are compressed as a whole.
 class BagFile final : public Bag {
  public:
-  BagFile(const fs::path& path, const TypeFilter& wanted);
+  BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits);
   const BagContent& content() const override { return content_; }
   BagContent take_content() override { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) override;
@@ -77,31 +84,36 @@ class BagFile final : public Bag {
   bool unpack_head(BagMessage& message);
 
   std::string place_;                            // constant after construction
+  BagLimits limits_;                             // constant after construction
   std::unique_ptr<TemporaryFile> decompressed_;  // outlives the bag that reads it
   std::unique_ptr<Bag> bag_;
   BagContent content_;
 };
 
-std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, const TypeFilter& wanted) {
+std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, const TypeFilter& wanted,
+                               const BagLimits& limits) {
   auto source = std::make_unique<FileSource>(path);
   const std::vector<std::byte> head = read_piece(*source, 0, 16);
   if (begins_with(head, kSqliteBegin)) return std::make_unique<SqliteBag>(path, place, wanted);
-  if (begins_with(head, kRos1Begin)) return std::make_unique<Ros1Bag>(std::move(source), place, wanted);
+  if (begins_with(head, kRos1Begin)) return std::make_unique<Ros1Bag>(std::move(source), place, wanted, limits);
   if (std::ranges::equal(head.size() < kMcapMagic.size() ? head : std::vector(head.begin(), head.begin() + 8),
                          kMcapMagic)) {
-    return std::make_unique<McapBag>(std::move(source), place, wanted);
+    return std::make_unique<McapBag>(std::move(source), place, wanted, limits);
   }
   throw InputError(place, head.empty() ? "is empty" : "is no bag: neither MCAP nor sqlite3 nor a bag of ROS 1",
                    "name a .mcap, .db3 or .bag file, or the folder of a rosbag2");
 }
 
-BagFile::BagFile(const fs::path& path, const TypeFilter& wanted) : place_(path.string()) {
+BagFile::BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits)
+    : place_(path.string()), limits_(limits) {
   bool is_cut = false;
   if (path.extension() == ".zstd") {
     decompressed_ = std::make_unique<TemporaryFile>(path.stem().extension().string());
-    is_cut = !decompress_zstd_file(path, decompressed_->path());
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    is_cut = !decompress_zstd_file(path, decompressed_->path(), limits.most(error ? 0 : size));
   }
-  bag_ = open_file(decompressed_ ? decompressed_->path() : path, path.string(), wanted);
+  bag_ = open_file(decompressed_ ? decompressed_->path() : path, path.string(), wanted, limits);
   content_ = bag_->take_content();
   if (is_cut) content_.damage.push_back(place_ + ": is cut or damaged: what comes before was read");
   std::size_t packed = 0;
@@ -128,7 +140,8 @@ bool BagFile::unpack_head(BagMessage& message) {
 std::vector<std::byte> BagFile::read(const BagMessage& message) {
   std::vector<std::byte> bytes = bag_->read(message);
   if (!is_zstd(bytes)) return bytes;
-  Decompressed whole = decompress(Compression::zstd, bytes, kMostChunkBytes);
+  Decompressed whole = decompress(Compression::zstd, bytes,
+                                  std::min(kMostChunkBytes, kMostOfSmallMessage + limits_.ratio * bytes.size()));
   if (whole.is_whole) return std::move(whole.bytes);
   throw InputError(place_, "a message cannot be decompressed", "the bag is damaged; leave that frame out");
 }
@@ -136,7 +149,7 @@ std::vector<std::byte> BagFile::read(const BagMessage& message) {
 // The files of a rosbag2 folder as one bag.
 class BagFolder final : public Bag {
  public:
-  BagFolder(const fs::path& folder, const TypeFilter& wanted);
+  BagFolder(const fs::path& folder, const TypeFilter& wanted, const BagLimits& limits);
   const BagContent& content() const override { return content_; }
   BagContent take_content() override { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) override { return files_[message.place.file]->read(message); }
@@ -149,13 +162,13 @@ class BagFolder final : public Bag {
   BagContent content_;
 };
 
-BagFolder::BagFolder(const fs::path& folder, const TypeFilter& wanted) {
+BagFolder::BagFolder(const fs::path& folder, const TypeFilter& wanted, const BagLimits& limits) {
   const Rosbag2Files bag = rosbag2_files(folder);
   content_.damage = bag.warnings;
   std::optional<InputError> first_error;
   for (const fs::path& file : bag.files) {
     try {
-      add(std::make_unique<BagFile>(file, wanted));
+      add(std::make_unique<BagFile>(file, wanted, limits));
     } catch (const InputError& error) {
       if (!first_error) first_error = error;
       content_.damage.emplace_back(error.what());
@@ -240,9 +253,9 @@ std::vector<fs::path> files_of_bag(const fs::path& path) {
   return files;
 }
 
-std::unique_ptr<Bag> open_bag(const fs::path& path, const TypeFilter& wanted) {
-  if (is_folder(path)) return std::make_unique<BagFolder>(path, wanted);
-  return std::make_unique<BagFile>(path, wanted);
+std::unique_ptr<Bag> open_bag(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits) {
+  if (is_folder(path)) return std::make_unique<BagFolder>(path, wanted, limits);
+  return std::make_unique<BagFile>(path, wanted, limits);
 }
 
 }  // namespace byre

@@ -153,6 +153,44 @@ TEST_F(BagFiles, OfRosbag2FormOneBag) {
   EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: is missing")));
 }
 
+TEST_F(BagFiles, OfRosbag2ThatAreNamedTwiceAreReadOnce) {
+  write("bag/bag_0.mcap", mcap_bytes(scene_messages(), "zstd"));
+  fs::create_symlink("bag_0.mcap", folder_ / "bag/link.mcap");
+  write("bag/metadata.yaml",
+        "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.mcap, ./bag_0.mcap, bag_0.mcap, link.mcap]\n");
+  expect_scene(folder_ / "bag", ros::Encoding::cdr, "mcap");
+  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: names files again 3 times")));
+}
+
+TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {
+  const std::vector<fs::path> chunked = {write("chunk.mcap", mcap_bytes(scene_messages(), "zstd")),
+                                         write("chunk.bag", ros1_bytes(scene_messages(), "lz4"))};
+  for (const fs::path& path : chunked) {
+    const auto bag = open_bag(path, every_type, {.free_bytes = 100, .ratio = 0});
+    EXPECT_EQ(bag->content().message_count, 0u) << path;
+    EXPECT_THAT(bag->content().damage, testing::Contains(HasSubstr("chunks were not read"))) << path;
+    EXPECT_EQ(open_bag(path, every_type, {.free_bytes = 0, .ratio = 100})->content().message_count, 18u) << path;
+  }
+  const fs::path whole = write("file.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
+  EXPECT_THROW(open_bag(whole, every_type, {.free_bytes = 100, .ratio = 0}), InputError);
+  EXPECT_EQ(open_bag(whole, every_type)->content().message_count, 18u);
+}
+
+TEST_F(BagFiles, ThatNeedAMissingTemporaryFolderAreRefusedWithItsVariable) {
+  const fs::path path = write("file.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
+  const char* const before = std::getenv("TMPDIR");
+  const std::optional<std::string> kept = before ? std::optional<std::string>(before) : std::nullopt;
+  setenv("TMPDIR", (folder_ / "absent").c_str(), 1);
+  try {
+    open_bag(path, every_type);
+    ADD_FAILURE() << "was opened";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), "TMPDIR");
+    EXPECT_THAT(error.reason(), HasSubstr("absent"));
+  }
+  kept ? setenv("TMPDIR", kept->c_str(), 1) : unsetenv("TMPDIR");
+}
+
 TEST_F(BagFiles, OfRosbag2ThatAreMissingAreTold) {
   const std::vector<SceneMessage> all = scene_messages();
   write("bag/bag_1.mcap", mcap_bytes({all.begin() + 9, all.end()}, "zstd"));

@@ -7,8 +7,12 @@
 
 namespace byre {
 
-ChunkedBag::ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted)
-    : source_(std::move(source)), place_(std::move(place)), wanted_(std::move(wanted)) {
+ChunkedBag::ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted,
+                       const BagLimits& limits)
+    : source_(std::move(source)),
+      place_(std::move(place)),
+      wanted_(std::move(wanted)),
+      most_decompressed_(limits.most(source_->size())) {
   content_.storage = std::move(storage);
   content_.bytes = source_->size();
 }
@@ -16,6 +20,16 @@ ChunkedBag::ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, 
 Decompressed ChunkedBag::decompress_piece(const CompressedPiece& piece) {
   if (piece.original_size > kMostChunkBytes) return {};
   return decompress(piece.compression, read_piece(*source_, piece.begin, piece.size), piece.original_size);
+}
+
+std::optional<Decompressed> ChunkedBag::scan_piece(const CompressedPiece& piece) {
+  const std::uint64_t stated = std::min(piece.original_size, kMostChunkBytes);
+  if (left_out_ > 0 || stated > most_decompressed_ - decompressed_) {
+    ++left_out_;
+    return std::nullopt;
+  }
+  decompressed_ += stated;
+  return decompress_piece(piece);
 }
 
 std::span<const std::byte> ChunkedBag::chunk_at(std::uint64_t begin) {
@@ -77,6 +91,11 @@ void ChunkedBag::add_broken(std::uint64_t record, const std::string& why) {
 }
 
 void ChunkedBag::finish_scan() {
+  if (left_out_ > 0) {
+    add_damage(std::to_string(left_out_) + " chunks were not read, as all together become more than " +
+               std::to_string(most_decompressed_ >> 20) +
+               " MB when decompressed; if the bag is sound, have its recorder write it without compression");
+  }
   if (broken_ > 0) {
     add_damage(std::to_string(broken_) + (broken_ == 1 ? " record is damaged: " : " records are damaged: ") +
                first_broken_);

@@ -33,7 +33,8 @@ class ChunkedBag : public Bag {
 
  protected:
   // storage: what the format is called; place: how errors name the file.
-  ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted);
+  ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted,
+             const BagLimits& limits);
 
   // The compressed piece of the chunk whose record begins there. Throws InputError when there is none any more.
   virtual CompressedPiece piece_at(std::uint64_t chunk) = 0;
@@ -41,8 +42,8 @@ class ChunkedBag : public Bag {
   ByteSource& file() { return *source_; }
   const std::string& place() const { return place_; }
 
-  // Chunks that claim to be larger than byre takes them are damaged.
-  Decompressed decompress_piece(const CompressedPiece& piece);
+  // A chunk during the scan; empty once all chunks together exceed the bound of the file.
+  std::optional<Decompressed> scan_piece(const CompressedPiece& piece);
 
   std::size_t topic_number(const std::string& name, const std::string& type, const std::string& encoding);
   // Bytes that lie in source, which is the file or a chunk of it.
@@ -59,6 +60,8 @@ class ChunkedBag : public Bag {
     std::vector<std::byte> bytes{};
   };
   std::span<const std::byte> chunk_at(std::uint64_t begin);
+  // Chunks that claim to be larger than byre takes them are damaged.
+  Decompressed decompress_piece(const CompressedPiece& piece);
 
   std::unique_ptr<ByteSource> source_;
   std::string place_;  // constant after construction
@@ -66,6 +69,9 @@ class ChunkedBag : public Bag {
   BagContent content_;
   std::vector<bool> is_wanted_;  // by topic
   std::unordered_map<std::string, std::size_t> topic_numbers_;
+  std::uint64_t most_decompressed_;  // bytes of all chunks, constant after construction
+  std::uint64_t decompressed_ = 0;   // bytes of the chunks scanned so far, as they state
+  std::uint64_t left_out_ = 0;       // chunks beyond most_decompressed_
   std::uint64_t broken_ = 0;
   std::string first_broken_;
   std::array<std::optional<CachedChunk>, 2> cache_;  // the last one first: left and right images may lie in two

@@ -150,18 +150,30 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte> bytes) {
   return compressed;
 }
 
-bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most) {
   constexpr std::size_t kPiece = 1 << 20;
   FileSource source(from);
   std::ofstream output(to, std::ios::binary);
   ZstdDecoder decoder;
   std::vector<std::byte> made(kPiece);
   bool is_sound = true, is_end = true;
+  std::error_code error;
+  const std::uint64_t usable = std::filesystem::space(to.parent_path(), error).available / 10 * 9;
+  std::uint64_t written = 0;
   for (std::uint64_t begin = 0; begin < source.size() && is_sound && output; begin += kPiece) {
     const std::vector<std::byte> piece = read_piece(source, begin, kPiece);
     for (std::span<const std::byte> left = piece; is_sound && output;) {
       const Step step = decoder.step(left, made);
       left = left.subspan(step.taken);
+      written += step.made;
+      if (written > most) {
+        throw InputError(from.string(), "becomes more than " + std::to_string(most >> 20) + " MB when decompressed",
+                         "if the bag is sound, decompress it with \"zstd -d\" and name the result");
+      }
+      if (!error && written > usable) {
+        throw InputError(from.string(), "needs more than the space that is free in " + to.parent_path().string(),
+                         "make space there, or set TMPDIR to another folder");
+      }
       output.write(reinterpret_cast<const char*>(made.data()), static_cast<std::streamsize>(step.made));
       is_sound = step.is_sound;
       is_end = step.is_end;

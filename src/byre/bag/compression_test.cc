@@ -80,12 +80,25 @@ class CompressedFile : public BagFolderTest {};
 TEST_F(CompressedFile, IsDecompressedIntoAnother) {
   const BagBytes bytes = pattern(5'000'000);
   BagBytes packed_bytes = compress_zstd(bytes);
-  EXPECT_TRUE(decompress_zstd_file(write("file.zstd", packed_bytes), folder_ / "file"));
+  EXPECT_TRUE(decompress_zstd_file(write("file.zstd", packed_bytes), folder_ / "file", bytes.size()));
   EXPECT_EQ(std::filesystem::file_size(folder_ / "file"), bytes.size());
   packed_bytes.resize(packed_bytes.size() / 2);
-  EXPECT_FALSE(decompress_zstd_file(write("cut.zstd", packed_bytes), folder_ / "cut"));
+  EXPECT_FALSE(decompress_zstd_file(write("cut.zstd", packed_bytes), folder_ / "cut", bytes.size()));
   EXPECT_LT(std::filesystem::file_size(folder_ / "cut"), bytes.size());
-  EXPECT_THROW(decompress_zstd_file(folder_ / "file.zstd", folder_ / "absent" / "file"), InputError);
+  EXPECT_THROW(decompress_zstd_file(folder_ / "file.zstd", folder_ / "absent" / "file", bytes.size()), InputError);
+}
+
+TEST_F(CompressedFile, IsRefusedBeyondTheBound) {
+  const BagBytes bytes(5'000'000);  // compressed to some hundred bytes
+  const std::filesystem::path packed = write("file.zstd", compress_zstd(bytes));
+  try {
+    decompress_zstd_file(packed, folder_ / "file", bytes.size() - 1);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place(), packed.string());
+    EXPECT_EQ(error.reason(), "becomes more than 4 MB when decompressed");
+  }
+  EXPECT_TRUE(decompress_zstd_file(packed, folder_ / "file", bytes.size()));
 }
 
 }  // namespace

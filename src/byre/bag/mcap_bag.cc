@@ -16,8 +16,8 @@ constexpr std::uint64_t kMostOfSchema = 16u << 20;  // bytes of a schema or a ch
 
 }  // namespace
 
-McapBag::McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted)
-    : ChunkedBag("mcap", std::move(source), std::move(place), std::move(wanted)) {
+McapBag::McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits)
+    : ChunkedBag("mcap", std::move(source), std::move(place), std::move(wanted), limits) {
   const std::vector<std::byte> magic = read_piece(file(), 0, kMcapMagic.size());
   if (!std::ranges::equal(magic, kMcapMagic)) {
     throw InputError(this->place(), "does not begin as MCAP files do", "use a copy, or record it again");
@@ -113,12 +113,13 @@ void McapBag::take_chunk(std::uint64_t begin, std::uint64_t size) {
     if (scan({file(), piece.begin, end, true}) < end) add_broken(record, "ends in the middle of a message");
     return;
   }
-  const Decompressed chunk_content = decompress_piece(piece);
-  const bool is_matched = chunk.checksum == 0 || mcap_checksum(chunk_content.bytes) == chunk.checksum;
-  if (chunk_content.is_whole && !is_matched) return add_broken(record, "does not match its checksum");
-  MemorySource source(chunk_content.bytes);
+  const std::optional<Decompressed> chunk_content = scan_piece(piece);
+  if (!chunk_content) return;
+  const bool is_matched = chunk.checksum == 0 || mcap_checksum(chunk_content->bytes) == chunk.checksum;
+  if (chunk_content->is_whole && !is_matched) return add_broken(record, "does not match its checksum");
+  MemorySource source(chunk_content->bytes);
   const bool is_complete = scan({source, 0, source.size(), true, record}) == source.size();
-  if (!chunk_content.is_whole || !is_complete) add_broken(record, "cannot be decompressed to its end");
+  if (!chunk_content->is_whole || !is_complete) add_broken(record, "cannot be decompressed to its end");
 }
 
 void McapBag::take_schema(std::span<const std::byte> bytes, std::uint64_t begin) {

@@ -61,8 +61,8 @@ Timestamp time_of(const Fields& fields) {
 
 }  // namespace
 
-Ros1Bag::Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted)
-    : ChunkedBag("rosbag 2.0", std::move(source), std::move(place), std::move(wanted)) {
+Ros1Bag::Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits)
+    : ChunkedBag("rosbag 2.0", std::move(source), std::move(place), std::move(wanted), limits) {
   const std::vector<std::byte> magic = read_piece(file(), 0, kMagic.size());
   if (!std::ranges::equal(magic, std::as_bytes(std::span(kMagic)))) {
     throw InputError(this->place(), "does not begin as bags of ROS 1, version 2.0, do",
@@ -155,11 +155,12 @@ void Ros1Bag::take_chunk(const Record& record, std::uint64_t begin) {
     if (scan({file(), record.data_begin, end, true}) < end) add_broken(begin, "ends in the middle of a message");
     return;
   }
-  const Decompressed chunk = decompress_piece(
+  const std::optional<Decompressed> chunk = scan_piece(
       {*compression, record.data_begin, record.data_size, number<std::uint32_t>(record.fields, "size").value_or(0)});
-  MemorySource source(chunk.bytes);
+  if (!chunk) return;
+  MemorySource source(chunk->bytes);
   const bool is_complete = scan({source, 0, source.size(), true, begin}) == source.size();
-  if (!chunk.is_whole || !is_complete) add_broken(begin, "cannot be decompressed to its end");
+  if (!chunk->is_whole || !is_complete) add_broken(begin, "cannot be decompressed to its end");
 }
 
 CompressedPiece Ros1Bag::piece_at(std::uint64_t chunk) {

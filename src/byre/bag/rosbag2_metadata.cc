@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -34,13 +35,27 @@ fs::path found_in(const fs::path& folder, const fs::path& named) {
   return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
 }
 
-std::vector<fs::path> files_named(const fs::path& metadata) {
+// Each file once, with a warning where metadata.yaml repeats files.
+Rosbag2Files files_named(const fs::path& metadata) {
   const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
-  std::vector<fs::path> files;
+  Rosbag2Files named;
+  std::set<fs::path> known;
+  int repeated = 0;
   for (const YAML::Node& file : bag["relative_file_paths"]) {
-    files.push_back(found_in(metadata.parent_path(), file.as<std::string>()));
+    fs::path path = found_in(metadata.parent_path(), file.as<std::string>());
+    std::error_code error;
+    const bool is_new = known.insert(fs::weakly_canonical(path, error)).second;
+    if (is_new || error) {
+      named.files.push_back(std::move(path));
+    } else {
+      ++repeated;
+    }
   }
-  return files;
+  if (repeated > 0) {
+    named.warnings.push_back(metadata.string() + ": names files again " + std::to_string(repeated) +
+                             " times; each is read once");
+  }
+  return named;
 }
 
 }  // namespace
@@ -59,8 +74,8 @@ Rosbag2Files rosbag2_files(const fs::path& folder) {
     why = "is missing, as after a recorder that was stopped hard";
   } else {
     try {
-      std::vector<fs::path> files = files_named(metadata);
-      if (!files.empty()) return {std::move(files)};
+      Rosbag2Files named = files_named(metadata);
+      if (!named.files.empty()) return named;
       why = "names no files";
     } catch (const YAML::Exception& exception) {
       why = std::string("cannot be understood (") + exception.what() + ")";

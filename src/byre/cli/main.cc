@@ -1,13 +1,15 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/input/printable.h"
 #include "byre/input_error.h"
 
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <stdexcept>
+#include <new>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <malloc.h>
@@ -21,8 +23,10 @@ constexpr const char* kExitCodes =
     "130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (the terminal was closed).\n"
     "\"byre COMMAND --help\" explains a command.";
 
+constexpr const char* kUnwritten = "standard output: cannot be written (make space, or redirect it to another file)";
+
 int report(const std::string& message, ExitCode code) {
-  std::cerr << "byre: error: " << message << "\n";
+  std::cerr << "byre: error: " << byre::printable(message) << "\n";
   return code;
 }
 
@@ -30,14 +34,20 @@ int run(const Action& action, CLI::App& app) {
   try {
     require_files_or_folders(app);
     const ExitCode code = action(std::cout);
-    const bool is_told = static_cast<bool>(std::cout.flush());
-    if (code == interrupted) return exit_code_of_interrupt();  // who listened may be gone with the terminal
-    if (!is_told) throw std::runtime_error("the result cannot be written to the standard output");
-    return code;
+    const bool is_written = static_cast<bool>(std::cout.flush());
+    if (code == interrupted) return exit_code_of_interrupt();  // its reader may be gone with the terminal
+    return is_written ? static_cast<int>(code) : report(kUnwritten, failed);
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
   } catch (const std::filesystem::filesystem_error& error) {  // such as a link that leads round in a circle
     return report(error.path1().string() + ": " + error.code().message(), bad_input);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory (free memory, or raise the limit that \"ulimit -v\" shows)", failed);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) return report(error.what(), failed);
+    return report("no thread can be started: " + error.code().message() +
+                      " (free memory, or raise the limits that \"ulimit -v\" and \"ulimit -u\" show)",
+                  failed);
   } catch (const std::exception& error) {
     return report(error.what(), failed);
   }
@@ -59,7 +69,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.footer(kExitCodes);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("byre: error: ") + error.what() + "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
+    return "byre: error: " + byre::printable(error.what()) +
+           "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
   });
   let_writing_fail();
   Action action;
@@ -67,7 +78,8 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // parse errors, and --help and --version, which succeed
-    return app.exit(error) == done ? done : wrong_usage;
+    if (app.exit(error) != done) return wrong_usage;
+    return std::cout.flush() ? static_cast<int>(done) : report(kUnwritten, failed);
   } catch (const byre::InputError& error) {  // bad input read by --print-options
     return report(error.what(), bad_input);
   } catch (const std::exception& error) {

@@ -92,6 +92,52 @@ TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
 }
 
+TEST_F(Program, FailsWhenItsHelpCannotBeWritten) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  for (const char* const arguments : {"--help", "--version", "map --help"}) {
+    const std::string command = std::string("'") + BYRE_PROGRAM + "' " + arguments + " >/dev/full 2>'" +
+                                (folder_ / "errors.txt").string() + "'";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << arguments;
+    EXPECT_THAT(read("errors.txt"), StartsWith("byre: error: standard output: cannot be written (")) << arguments;
+  }
+}
+
+TEST_F(Program, NamesTheChoicesOfAnOption) {
+  const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"map . --pace fast", "--pace: 'fast' is none of: inline, live, paced"},
+      {"map . --refine 2", "--refine: '2' is none of: all, none, stereo"},
+      {"map . --format csv", "--format: 'csv' is none of: euroc, kitti, tum"},
+      {"run . --map m --frame world", "--frame: 'world' is none of: map, plan"},
+      {"run . --map m --offline-policy x", "--offline-policy: 'x' is none of: first, together"},
+      {evaluate + "--alignment rigid", "--alignment: 'rigid' is none of: none, origin, se3, sim3"},
+      {evaluate + "--label best", "--label: 'best' is none of: causal, final"},
+      {evaluate + "--frames-of . --estimate-of x", "--estimate-of: 'x' is none of: body, camera"},
+      {"simulate cowshed --time night", "--time: 'night' is none of: day, dusk"},
+      {"simulate cowshed --gate ajar", "--gate: 'ajar' is none of: closed, open"},
+      {"simulate cowshed --turn u", "--turn: 'u' is none of: arc, spot"},
+      {"simulate cowshed --imperfection bad", "--imperfection: 'bad' is none of: exact, good, worn"},
+      {"completion fish", "SHELL: 'fish' is none of: bash, zsh"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr(message)) << arguments;
+  }
+}
+
+TEST_F(Program, PrintsArgumentsWithoutControlCharacters) {
+  const std::string hostile = "\"$(printf 'a\\033[2J\\nb\\377')\"";
+  for (const std::string& arguments :
+       {"evaluate --estimate estimate.txt --truth " + hostile, "bag info " + hostile, "map . --pace " + hostile,
+        "validate " + hostile, "run . --map " + hostile, hostile, "map . --fps " + hostile}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_NE(outcome.exit_code, 0) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr("a\\x1b[2J\\nb\\xff")) << arguments;
+    for (const char* const raw : {"\033", "\377"}) EXPECT_THAT(outcome.errors, Not(HasSubstr(raw))) << arguments;
+  }
+}
+
 // What decodes all kinds of images and videos takes most of the memory of a program that is linked with it.
 TEST_F(Program, IsNotLinkedWithWhatFewRunsNeed) {
   const std::string list = (folder_ / "libraries.txt").string();

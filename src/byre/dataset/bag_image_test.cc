@@ -76,5 +76,19 @@ TEST(BagImage, ThatMakesNoSenseIsRefusedWithAReason) {
   EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "is of no sensible size");
 }
 
+TEST(BagImage, ThatOpencvRefusesIsUnreadableWithItsReason) {
+  EXPECT_THAT(grey_of(image("mono16", 2, 2, std::vector<std::uint8_t>(10), 5)).failure,
+              HasSubstr("rows of 5 bytes, which is no multiple"));
+  for (const auto& [encoding, width] : {std::pair("yuyv", 3u), std::pair("uyvy", 1u)}) {
+    const ImageReading<Image> read =
+        grey_of(image(encoding, width, 2, std::vector<std::uint8_t>(4 * width), 2 * width));
+    EXPECT_TRUE(read.image || !read.failure.empty()) << encoding;
+  }
+  for (const char* const encoding : {"bayer_rggb8", "bayer_gbrg8"}) {
+    const ImageReading<Image> read = grey_of(image(encoding, 1, 1, {7}, 1));
+    EXPECT_TRUE(read.image || !read.failure.empty()) << encoding;
+  }
+}
+
 }  // namespace
 }  // namespace byre

@@ -112,6 +112,12 @@ StereoPartner partner_of(const PlacedCameraInfo& left, const PlacedCameraInfo& r
   }
   std::optional<Pose> right_from_left = by_projections(left, right);
   if (!right_from_left) right_from_left = frames.between(right.info.header.frame_id, left.info.header.frame_id);
+  if (!right_from_left && has_baseline(right.info)) {
+    for (const PlacedCameraInfo* const each : {&left, &right}) {
+      if (rotation_from_matrix(rotation_of(each->info))) continue;
+      refuse(*each, "has a field R that is not a rotation matrix", "correct R of the driver's calibration");
+    }
+  }
   if (!right_from_left) {
     refuse(right, "has no baseline in P, and /tf_static does not lead from the frame \"" + left.info.header.frame_id +
                       "\" to \"" + right.info.header.frame_id + "\"");

@@ -108,10 +108,15 @@ std::optional<ImageFrame> Video::read(int index) {
   assert(index >= 0 && index < size());
   const std::size_t number = numbers_[static_cast<std::size_t>(index)];
   cv::Mat frame;
-  if (grab(number) && capture_->retrieve(frame) && !frame.empty()) {
-    return ImageFrame{times_[static_cast<std::size_t>(index)], to_grey(frame), std::nullopt};
+  std::string reason;
+  try {
+    if (grab(number) && capture_->retrieve(frame) && !frame.empty()) {
+      return ImageFrame{times_[static_cast<std::size_t>(index)], to_grey(frame), std::nullopt};
+    }
+  } catch (const cv::Exception& exception) {  // pixels of a kind that cannot be converted
+    reason = ": " + exception.err;
   }
-  warnings_.push_back(file_.string() + ": frame " + std::to_string(number) + " cannot be decoded");
+  warnings_.push_back(file_.string() + ": frame " + std::to_string(number) + " cannot be decoded" + reason);
   return std::nullopt;
 }
 

@@ -19,6 +19,14 @@ namespace {
 // The callbacks below are called by threads of Cyclone DDS, which is C: no exception leaves them, and a null pointer
 // tells it that there is no memory.
 
+struct CdrType : ddsi_sertype {
+  std::size_t most_bytes = 0;  // longer received messages are dropped
+};
+
+std::size_t most_bytes_of(const ddsi_sertype* type) {
+  return static_cast<const CdrType*>(type)->most_bytes;
+}
+
 struct Sample : ddsi_serdata {
   std::vector<std::byte> bytes;  // up to a whole number of four bytes, as Cyclone may ask for that
   std::size_t size = 0;          // bytes of the message
@@ -42,7 +50,7 @@ Sample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind) {
 template <typename Fill>
 ddsi_serdata* filled_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size,
                             const Fill& fill) noexcept {
-  if (size > kMostMessageBytes) return nullptr;
+  if (size > most_bytes_of(type)) return nullptr;
   try {
     std::unique_ptr<Sample> sample(new_sample(type, kind));
     sample->bytes.resize(padded(size));
@@ -154,7 +162,7 @@ const ddsi_serdata_ops kSampleCallbacks = {
 
 void free_type(ddsi_sertype* type) {
   ddsi_sertype_fini(type);
-  delete type;
+  delete static_cast<CdrType*>(type);
 }
 
 void zero_structs(const ddsi_sertype*, void*, std::size_t) {}
@@ -163,12 +171,12 @@ void resize_structs(void**, const ddsi_sertype*, void*, std::size_t, std::size_t
 
 void free_structs(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
 
-bool equal_types(const ddsi_sertype*, const ddsi_sertype*) {
-  return true;  // asked when the names are equal
+bool equal_types(const ddsi_sertype* one, const ddsi_sertype* other) {
+  return most_bytes_of(one) == most_bytes_of(other);  // called for equal names
 }
 
-std::uint32_t hash_type(const ddsi_sertype*) {
-  return 0;  // beside that of the name
+std::uint32_t hash_type(const ddsi_sertype* type) {
+  return static_cast<std::uint32_t>(most_bytes_of(type));  // combined with the hash of the name
 }
 
 const ddsi_sertype_ops kTypeCallbacks = {ddsi_sertype_v0, nullptr,     free_type, zero_structs, resize_structs,
@@ -177,8 +185,9 @@ const ddsi_sertype_ops kTypeCallbacks = {ddsi_sertype_v0, nullptr,     free_type
 
 }  // namespace
 
-ddsi_sertype* make_cdr_type(const std::string& dds_type_name) {
-  auto* const type = new ddsi_sertype;
+ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes) {
+  auto* const type = new CdrType;
+  type->most_bytes = most_bytes;
   ddsi_sertype_init_flags(type, dds_type_name.c_str(), &kTypeCallbacks, &kSampleCallbacks,
                           DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;

@@ -14,11 +14,9 @@ namespace byre {
 // without keys and in the first version of the encoding (XCDR1). A message is four bytes that name the encoding and its
 // byte order, then its fields.
 
-// More bytes in one message are not taken in, whoever sends them.
-inline constexpr std::size_t kMostMessageBytes = std::size_t{128} << 20;
-
-// A type for dds_create_topic_sertype, which takes it over; name: as DDS knows it.
-ddsi_sertype* make_cdr_type(const std::string& dds_type_name);
+// A type for dds_create_topic_sertype, which takes it over; name: as DDS knows it. Received messages of more than
+// most_bytes are dropped.
+ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes);
 
 // A message of a topic's type for dds_writecdr, which takes it over; null without memory.
 ddsi_serdata* make_cdr_sample(const ddsi_sertype* type, std::vector<std::byte> message) noexcept;

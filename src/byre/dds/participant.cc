@@ -35,9 +35,10 @@ struct TypedTopic {
   const ddsi_sertype* type = nullptr;
 };
 
-TypedTopic make_topic(std::int32_t participant, const std::string& topic, const MessageType& type) {
+TypedTopic make_topic(std::int32_t participant, const std::string& topic, const MessageType& type,
+                      std::size_t most_bytes) {
   const std::string name = topic.starts_with('/') ? dds_topic_name(topic) : topic;
-  ddsi_sertype* cdr_type = make_cdr_type(dds_type_name(type.name));
+  ddsi_sertype* cdr_type = make_cdr_type(dds_type_name(type.name), most_bytes);
   const dds_entity_t made = dds_create_topic_sertype(participant, name.c_str(), &cdr_type, nullptr, nullptr, nullptr);
   if (made < 0) ddsi_sertype_unref(cdr_type);
   return {DdsEntity(made, "make the topic " + topic), cdr_type};
@@ -133,7 +134,7 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
 
 Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type);
+  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.most_bytes);
   const Qos wanted = make_qos(qos);
   tell_user_data(wanted.get(), type, note, distribution_);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
@@ -151,7 +152,7 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
 
 Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                   const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type);
+  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.most_bytes);
   const Qos wanted = make_qos(qos);
   tell_user_data(wanted.get(), type, note, distribution_);
   Subscriber subscriber;

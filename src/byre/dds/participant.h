@@ -24,7 +24,11 @@ struct TopicQos {
   bool is_reliable = true;
   bool is_latched = false;  // whether the last messages are kept for those who come later ("transient local")
   int depth = 10;           // messages kept for a reader that is slow
+  std::size_t most_bytes = std::size_t{128} << 20;  // longer received messages are dropped
 };
+
+// Bound of received messages without images: commands, poses, camera calibrations, motion, transforms.
+inline constexpr std::size_t kMostBytesWithoutImage = std::size_t{256} << 10;
 
 // A 16-byte id of DDS.
 using EntityId = std::array<std::uint8_t, 16>;

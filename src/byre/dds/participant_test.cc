@@ -56,6 +56,24 @@ class TwoParticipants : public testing::Test {
   Participant receiver_ = participant(2);
 };
 
+TEST_F(TwoParticipants, DropMessagesLongerThanTheBoundOfTheirTopic) {
+  Publisher bounded = sender_.publish("/bounded", kText, {});
+  Publisher unbounded = sender_.publish("/unbounded", kText, {});
+  Subscriber bounded_in = receiver_.subscribe("/bounded", kText, {.most_bytes = 1000});
+  Subscriber unbounded_in = receiver_.subscribe("/unbounded", kText, {});
+  ASSERT_TRUE(becomes_subscribed(bounded, receiver_));
+  ASSERT_TRUE(becomes_subscribed(unbounded, receiver_));
+  for (Publisher* publisher : {&bounded, &unbounded}) publisher->publish(message_of(200'000));
+  bounded.publish(message_of(1000));
+  const auto long_one = next(receiver_, unbounded_in);
+  ASSERT_TRUE(long_one);
+  EXPECT_EQ(long_one->bytes().size(), 200'000u);
+  const auto short_one = next(receiver_, bounded_in);
+  ASSERT_TRUE(short_one);
+  EXPECT_EQ(short_one->bytes().size(), 1000u);
+  EXPECT_TRUE(bounded_in.take().empty());
+}
+
 TEST_F(TwoParticipants, HandMessagesOfAnySizeOverAsTheyAre) {
   Publisher publisher = sender_.publish("/sizes", kText, {});
   Subscriber subscriber = receiver_.subscribe("/sizes", kText, {});

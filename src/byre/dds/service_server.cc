@@ -21,7 +21,8 @@ std::string service_note(EntityId id, const std::string& service) {
 ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
                              const std::string& type) {
   const std::string note = service_note(participant.id(), service);
-  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""}, {}, note);
+  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""},
+                                    {.most_bytes = kMostBytesWithoutImage}, note);
   replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, {}, note);
   graph.add(requests_);
   graph.add(replies_);

@@ -1,7 +1,9 @@
 #include "byre/fleet/mqtt_client.h"
 
+#include <cerrno>
 #include <chrono>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -84,7 +86,7 @@ void MqttClient::run(const std::stop_token& stop) {
     while (code == MOSQ_ERR_SUCCESS && !stop.stop_requested()) code = mosquitto_loop(client_.get(), kLoopWait, 1);
     is_connected_ = false;
     under_way_ = 0;
-    fault_ = code;
+    fault_ = code == MOSQ_ERR_ERRNO ? -errno : code;  // errno belongs to this thread
     wait_at_most(kRetry, [&stop] { return stop.stop_requested(); });
   }
 }
@@ -126,7 +128,10 @@ std::string MqttClient::state() const {
   const std::string broker = fmt::format("{}:{}", options_.host, options_.port);
   if (is_connected_) return "connected to " + broker;
   if (refusal_ != 0) return broker + " refuses the connection: " + mosquitto_connack_string(refusal_);
-  if (fault_ != 0) return broker + " cannot be reached: " + mosquitto_strerror(fault_);
+  if (const int fault = fault_; fault != 0) {
+    const std::string reason = fault < 0 ? std::generic_category().message(-fault) : mosquitto_strerror(fault);
+    return broker + " cannot be reached: " + reason + " (start the broker, or correct mqtt.host and mqtt.port)";
+  }
   return "connecting to " + broker;
 }
 

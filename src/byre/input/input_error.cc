@@ -1,5 +1,7 @@
 #include "byre/input_error.h"
 
+#include "byre/input/printable.h"
+
 namespace byre {
 namespace {
 
@@ -7,12 +9,15 @@ std::string sentence(std::string_view place, std::string_view reason, std::strin
   std::string text;
   text.append(place).append(": ").append(reason);
   if (!remedy.empty()) text.append(" (").append(remedy).append(")");
-  return text;
+  return printable(text);
 }
 
 }  // namespace
 
 InputError::InputError(std::string_view place, std::string_view reason, std::string_view remedy)
-    : std::runtime_error(sentence(place, reason, remedy)), place_(place), reason_(reason), remedy_(remedy) {}
+    : std::runtime_error(sentence(place, reason, remedy)),
+      place_(printable(place)),
+      reason_(printable(reason)),
+      remedy_(printable(remedy)) {}
 
 }  // namespace byre

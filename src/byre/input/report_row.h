@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/input/printable.h"
+
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -8,9 +10,9 @@
 
 namespace byre {
 
-// A line of a report: a label padded to a column of 12 characters, and its content.
+// A line of a report: a label padded to a column of 12 characters, and its content, which may be text from outside.
 inline std::string row(std::string_view label, std::string_view content) {
-  return fmt::format("{:12} {}\n", label, content);
+  return fmt::format("{:12} {}\n", printable(label), printable(content));
 }
 
 // "1:02:03", or "12:34" below an hour; rounded up to whole seconds.

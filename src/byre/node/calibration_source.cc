@@ -28,7 +28,8 @@ CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& part
     return subscriber;
   };
   if (config.used_mounting() == Mounting::tf) {
-    tf_static_ = subscribe("/tf_static", message_type<ros::TFMessage>(), {.is_latched = true, .depth = 100});
+    tf_static_ = subscribe("/tf_static", message_type<ros::TFMessage>(),
+                           {.is_latched = true, .depth = 100, .most_bytes = kMostBytesWithoutImage});
   }
   if (config.calibration) {
     cameras_ = read_calibration(*config.calibration);
@@ -36,7 +37,7 @@ CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& part
     if (!config.has_right()) cameras_->right.reset();
     return;
   }
-  const TopicQos qos{.is_reliable = false, .depth = 5};
+  const TopicQos qos{.is_reliable = false, .depth = 5, .most_bytes = kMostBytesWithoutImage};
   left_info_ = subscribe(config.topic(config.left_info), message_type<ros::CameraInfo>(), qos);
   if (config.has_right()) {
     right_info_ = subscribe(config.topic(config.right_info), message_type<ros::CameraInfo>(), qos);

@@ -49,11 +49,13 @@ void require_size(const ros::Image& message, const Encoding& encoding, const std
   constexpr std::uint32_t kMostSide = 1u << 16;
   const bool is_of_a_size = message.width > 0 && message.height > 0 && message.width <= kMostSide &&
                             message.height <= kMostSide && message.width * double(message.height) <= kMostPixels;
+  const std::size_t number = CV_ELEM_SIZE1(encoding.cv_type);
   const std::size_t row = message.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.cv_type));
-  if (!is_of_a_size || message.step < row || message.data.size() < std::size_t{message.step} * message.height) {
+  if (!is_of_a_size || message.step < row || message.step % number != 0 ||
+      message.data.size() < std::size_t{message.step} * message.height) {
     throw InputError(place,
                      "has an image of " + std::to_string(message.width) + " x " + std::to_string(message.height) +
-                         " pixels whose rows are not all there",
+                         " pixels whose rows of " + std::to_string(message.step) + " bytes are cut or not whole pixels",
                      "look at width, height, step and data of what the camera's driver sends");
   }
 }
@@ -84,7 +86,12 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
     const cv::Mat given(height, width, encoding->cv_type, message.data.data(), message.step);
     Image grey{width, height, std::vector<std::uint8_t>(std::size_t{message.width} * message.height)};
     cv::Mat written(height, width, CV_8UC1, grey.pixels.data());
-    cv::cvtColor(given, written, *encoding->to_grey);
+    try {
+      cv::cvtColor(given, written, *encoding->to_grey);
+    } catch (const cv::Exception& exception) {  // sizes that a conversion does not take
+      throw InputError(place, "has an image that cannot be converted from '" + message.encoding + "': " + exception.err,
+                       "look at width, height and encoding of what the camera's driver sends");
+    }
     return grey_image(std::move(message.header), std::move(grey));
   }
   ReceivedImage image;

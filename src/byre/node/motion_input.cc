@@ -45,7 +45,8 @@ MotionInput::MotionInput(const NodeConfig& config, Participant& participant, Gra
 }
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
-  const TopicQos qos{.is_reliable = false, .depth = 1000};  // as drivers of sensors send
+  // The reliability of sensor drivers.
+  const TopicQos qos{.is_reliable = false, .depth = 1000, .most_bytes = kMostBytesWithoutImage};
   Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
   graph_.add(subscriber);
   return subscriber;

@@ -1,6 +1,7 @@
 #include "byre/node/node.h"
 
 #include "byre/dds/type_hashes.h"
+#include "byre/input/printable.h"
 #include "byre/node/health_messages.h"
 #include "byre/node/hint_message.h"
 #include "byre/node/message_parsing.h"
@@ -22,6 +23,8 @@ using std::chrono_literals::operator""s;
 Timestamp steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
+
+constexpr std::size_t kShownOfText = 100;  // bytes of a message from outside in an answer or a line of the log
 
 // Reading and writing a site's map on a slow disk: nothing is tracked meanwhile.
 constexpr std::chrono::minutes kLongestWithFiles{5};
@@ -59,8 +62,9 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   };
   const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
   const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
-  command_ = subscribe(config.command, message_type<ros::String>(), {});
-  initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), {});
+  const TopicQos small{.most_bytes = kMostBytesWithoutImage};
+  command_ = subscribe(config.command, message_type<ros::String>(), small);
+  initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), small);
   if (config.services.value_or(network.has_cyclone)) services_.emplace(config, participant_, graph_, log_);
   calibration_ = calibration_source_.take("");
   if (calibration_) start();
@@ -130,7 +134,7 @@ Outcome Node::answer(const std::string& asked, const std::function<std::string()
 }
 
 Outcome Node::obey(const std::string& command) {
-  return answer(command, [&] {
+  return answer(printable(command, kShownOfText), [&] {
     const Obeyed obeyed = byre::obey(runner_, command);
     if (obeyed.begins_anew) begin_anew();
     return obeyed.answer;
@@ -155,7 +159,7 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
   constexpr double kNear = 2.0;  // metres
   const std::string& frame = message.header.frame_id;
   if (!frame.empty() && frame != config_.map_frame) {
-    throw InputError(config_.initial_pose, "is given in frame '" + frame.substr(0, 100) + "'",
+    throw InputError(config_.initial_pose, "is given in frame '" + printable(frame, kShownOfText) + "'",
                      "give it in '" + config_.map_frame + "', the fixed frame of RViz");
   }
   auto hint = hint_of(message);

@@ -1,5 +1,7 @@
 #include "byre/node/node_log.h"
 
+#include "byre/input/printable.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -10,7 +12,8 @@
 
 namespace byre {
 
-void NodeLogger::write(LogLevel level, const std::string& line) {
+void NodeLogger::write(LogLevel level, const std::string& content) {
+  const std::string line = printable(content);
   if (is_for_journal_) {
     stream_ << '<' << static_cast<int>(level) << '>' << line << std::endl;
   } else {

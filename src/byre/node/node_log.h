@@ -15,8 +15,9 @@ enum class LogLevel : std::uint8_t { error = 3, warning = 4, notice = 5, info = 
 // Told what happens, a line each.
 using NodeLog = std::function<void(LogLevel level, const std::string& line)>;
 
-// Writes lines for people, or for the journal of systemd with their level in front (sd-daemon(3)). A verdict may change
-// with every frame: lines beyond kAtOnce, and then beyond kPerSecond, are left out, and how many is told.
+// Writes lines for people, or for the journal of systemd with their level in front (sd-daemon(3)). Text from outside
+// cannot begin another line. Beyond kAtOnce, and then beyond kPerSecond, lines are left out and counted, as a verdict
+// may change with every frame.
 class NodeLogger {
  public:
   static constexpr double kAtOnce = 30.0;
@@ -25,11 +26,11 @@ class NodeLogger {
   // stream outlives this.
   NodeLogger(std::ostream& stream, bool is_for_journal) : stream_(stream), is_for_journal_(is_for_journal) {}
 
-  // now: of a clock that never goes back. Lines that tell errors are never left out.
+  // now: of a steady clock. Errors are never left out.
   void tell(LogLevel level, const std::string& line, Timestamp now);
 
  private:
-  void write(LogLevel level, const std::string& line);
+  void write(LogLevel level, const std::string& content);
 
   std::ostream& stream_;  // outlives this
   bool is_for_journal_;   // constant after construction

@@ -19,6 +19,14 @@ TEST(NodeLogger, TellsTheJournalHowMuchALineMatters) {
   EXPECT_EQ(terminal.str(), "byre node: untrusted: no pose\n");
 }
 
+TEST(NodeLogger, WritesTextFromOutsideOnOneLine) {
+  std::ostringstream journal, terminal;
+  NodeLogger(journal, true).tell(LogLevel::info, "save\n<3>fake", {});
+  NodeLogger(terminal, false).tell(LogLevel::info, "\x1b[2J\xff", {});
+  EXPECT_EQ(journal.str(), "<6>save\\n<3>fake\n");
+  EXPECT_EQ(terminal.str(), "byre node: \\x1b[2J\\xff\n");
+}
+
 TEST(NodeLogger, LeavesOutWhatComesTooFastAndSaysHowMuch) {
   std::ostringstream stream;
   NodeLogger log(stream, false);

@@ -1,5 +1,7 @@
 #include "byre/node/service_manager.h"
 
+#include "byre/input/printable.h"
+
 #include <cstdint>
 #include <utility>
 
@@ -26,7 +28,7 @@ void ServiceManager::status(const std::string& text) {
   last_status_ = text;
   std::string line = text;
   for (char& letter : line) letter = letter == '\n' ? ' ' : letter;
-  sd_notify(0, ("STATUS=" + line).c_str());
+  sd_notify(0, ("STATUS=" + printable(line)).c_str());
 }
 
 void ServiceManager::alive() {

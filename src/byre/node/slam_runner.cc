@@ -3,6 +3,7 @@
 #include "byre/dataset/settings_file.h"
 #include "byre/floor_plan.h"
 #include "byre/input/output_file.h"
+#include "byre/input/printable.h"
 #include "byre/map/map_file.h"
 #include "byre/node/kept_maps.h"
 #include "byre/node/map_messages.h"
@@ -182,7 +183,7 @@ Obeyed obey(SlamRunner& runner, const std::string& line) {
   if (line == "save") return {runner.save()};
   if (line == "pause mapping") return {runner.pause_mapping(true)};
   if (line == "resume mapping") return {runner.pause_mapping(false)};
-  throw InputError("'" + line.substr(0, 100) + "'", "is no command",
+  throw InputError("'" + printable(line, 100) + "'", "is no command",
                    "send save, load NAME, relocalise, pause mapping or resume mapping");
 }
 

@@ -12,6 +12,7 @@
 #include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
+#include "byre/input/printable.h"
 #include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -104,7 +105,7 @@ class BenchmarkProgress {
     progress_.reset();
   }
   void say(const std::string& what) const {
-    if (style_ != ProgressStyle::none) std::cerr << what << std::endl;
+    if (style_ != ProgressStyle::none) std::cerr << printable(what) << std::endl;
   }
 
  private:

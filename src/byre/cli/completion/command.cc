@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/completion/script.h"
+#include "byre/cli/shared/choice.h"
 
 #include <memory>
 #include <ostream>
@@ -26,7 +27,7 @@ Action declare_completion(CLI::App& command) {
   command.add_option("SHELL", *shell, "Which shell is to complete byre's commands")
       ->type_name("bash|zsh")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh"}).description(""));
+      ->transform(one_of<std::string>({{"bash", "bash"}, {"zsh", "zsh"}}));
   command.footer(kFooter);
   return [&command, shell](std::ostream& result) {
     CLI::App& program = *command.get_parent();

@@ -1,6 +1,7 @@
 #include "byre/assessment/evaluation_report.h"
 #include "byre/benchmark/evaluation_plot.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/pose_options.h"
@@ -131,7 +132,7 @@ void declare_inputs(CLI::App& command, EvaluateOptions& options) {
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
   command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
       ->type_name("body|camera")
-      ->transform(CLI::CheckedTransformer(movers).description(""))
+      ->transform(one_of(movers))
       ->needs(frames_of);
   declare_open_options(command, options.open);
 }
@@ -146,10 +147,10 @@ void declare_protocol(CLI::App& command, EvaluateOptions& options) {
                   "se3 (default), sim3 for monocular estimates, origin to lay the first pose on the true one, none for "
                   "poses in the frame of an aligned map")
       ->type_name("se3|sim3|origin|none")
-      ->transform(CLI::CheckedTransformer(alignments).description(""));
+      ->transform(one_of(alignments));
   command.add_option("--label", options.protocol.label, "Which poses these are, for the report's header")
       ->type_name("causal|final")
-      ->check(CLI::IsMember({"causal", "final"}).description(""));
+      ->transform(one_of<std::string>({{"causal", "causal"}, {"final", "final"}}));
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
       ->check(between(-1e6, 1e6));

@@ -3,6 +3,7 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/recording_options.h"
+#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <memory>
@@ -41,11 +42,10 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   const ColmapModel model = colmap_model_of(stored, names);
   make_folder(options.model);
   write_colmap_model(model, options.model, options.text ? ColmapFormat::text : ColmapFormat::binary);
-  result << fmt::format("written      {} cameras, {} images, {} points to ", model.cameras.size(), model.images.size(),
-                        model.points.size())
-         << options.model.string() << "\n"
-         << fmt::format("left out     {} points that one image alone sees\n",
-                        stored.map.point_count() - model.points.size());
+  result << row("written", fmt::format("{} cameras, {} images, {} points to {}", model.cameras.size(),
+                                       model.images.size(), model.points.size(), options.model.string()))
+         << row("left out",
+                fmt::format("{} points that one image alone sees", stored.map.point_count() - model.points.size()));
   return ExitCode::done;
 }
 

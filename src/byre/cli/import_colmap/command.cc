@@ -8,6 +8,7 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
+#include "byre/input/printable.h"
 #include "byre/recording.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -72,7 +73,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
   if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
   save_for_use(imported.stored, vocabulary, options.site, options.map);
-  result << to_text(imported) << "map                " << options.map.string() << "\n";
+  result << to_text(imported) << "map                " << printable(options.map.string()) << "\n";
   return ExitCode::done;
 }
 

@@ -154,6 +154,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   result << to_text(run, protocol, resources, names_of(options.outputs())) << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   messages.require_written();
+  require_frames(run, protocol);
   require_poses(run, protocol);
   return ExitCode::done;
 }

@@ -5,6 +5,7 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
+#include "byre/input/report_row.h"
 #include "byre/playback/map_from_poses_run.h"
 #include "byre/playback/source_recording.h"
 #include "byre/system/stored_map.h"
@@ -32,11 +33,11 @@ PosedRun run_with_progress(Recording& recording, const MapOptions& options, cons
 }
 
 std::string to_text(const PosedRun& run, const MapOptions& options) {
-  std::string text = "recording    " + options.recording.string() + fmt::format(", {} frames\n", run.frames);
-  text += "poses        given by " + options.given_poses->string() + ", not estimated";
-  if (run.without_pose > 0) text += fmt::format("; {} frames have none and are left out", run.without_pose);
-  text += fmt::format("\nmap          {} keyframes, {} points\n", run.map.keyframe_count(), run.map.point_count());
-  return text + "written      " + options.map->string() + "\n";
+  std::string poses = "given by " + options.given_poses->string() + ", not estimated";
+  if (run.without_pose > 0) poses += fmt::format("; {} frames have none and are left out", run.without_pose);
+  return row("recording", fmt::format("{}, {} frames", options.recording.string(), run.frames)) + row("poses", poses) +
+         row("map", fmt::format("{} keyframes, {} points", run.map.keyframe_count(), run.map.point_count())) +
+         row("written", options.map->string());
 }
 
 }  // namespace

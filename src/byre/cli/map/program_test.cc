@@ -170,6 +170,19 @@ TEST_F(MapProgram, NamesBadInput) {
   }
 }
 
+TEST_F(MapProgram, DoesNotCountAsDoneWhereManyFramesAreUnreadable) {
+  const RenderedFixture& room = RenderedFixture::shared();
+  fs::copy(room.folder(), folder_ / "torn", fs::copy_options::recursive);
+  for (std::size_t frame = 6; frame < 24; frame += 2)
+    fs::remove(folder_ / "torn" / fs::relative(room.image("cam0", frame), room.folder()));
+  const Outcome outcome = run("map torn -o torn.byre --stats stats.json --quiet");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: error: torn: 9 of 24 frames could not be read, so the result does not"));
+  EXPECT_THAT(outcome.output, HasSubstr("; 9 could not be read\n"));
+  EXPECT_GT(load_map(folder_ / "torn.byre").map.keyframe_count(), 1) << "all files are written";
+  EXPECT_EQ(run("map torn --frames 0:6 --quiet").exit_code, 0) << "the remedy";
+}
+
 TEST_F(MapProgram, SaysWhyOneCameraBeganNoMap) {
   const Outcome outcome = map("--trajectory out.txt --camera left --frames 0:2");
   EXPECT_EQ(outcome.exit_code, 1);

@@ -2,6 +2,7 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/features/image_threads.h"
+#include "byre/input/printable.h"
 #include "byre/node/node.h"
 #include "byre/node/process_settings.h"
 
@@ -47,7 +48,7 @@ ExitCode check(const std::filesystem::path& path, std::ostream& result) {
   if (faults.empty()) faults = faults_in_files(reading.config);
   for (const InputError& fault : faults) std::cerr << "byre: error: " << fault.what() << "\n";
   if (!faults.empty()) return ExitCode::bad_input;
-  result << path.string() << ": nothing wrong found\n";
+  result << printable(path.string()) << ": nothing wrong found\n";
   return ExitCode::done;
 }
 

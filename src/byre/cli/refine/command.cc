@@ -5,6 +5,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/input/output_file.h"
+#include "byre/input/report_row.h"
 #include "byre/system/refine_map.h"
 #include "byre/system/stored_map.h"
 
@@ -40,10 +41,8 @@ imported are adjusted too. Ctrl-C keeps what was reached by then, then the exit 
 
 std::string to_text(const RefineOptions& options, const Finishing& finishing) {
   const MapQuality& after = finishing.report.after;
-  std::string text = "map          " + options.map.string() +
-                     fmt::format(": {} keyframes, {} points\n", after.keyframes, after.points) +
-                     byre::to_text(finishing);
-  return text + "written      " + options.written().string() + "\n";
+  return row("map", fmt::format("{}: {} keyframes, {} points", options.map.string(), after.keyframes, after.points)) +
+         byre::to_text(finishing) + row("written", options.written().string());
 }
 
 std::string to_json(const RefineOptions& options, const Finishing& finishing) {

@@ -1,5 +1,6 @@
 #include "byre/cli/shared/pose_options.h"
 
+#include "byre/cli/shared/choice.h"
 #include "byre/input_error.h"
 
 #include <map>
@@ -13,7 +14,7 @@ CLI::Option* declare_pose_frame(CLI::App& command, PoseFrame& frame) {
   const std::map<std::string, PoseFrame> frames = {{"map", PoseFrame::map}, {"plan", PoseFrame::plan}};
   return command.add_option("--frame", frame, "Frame of the poses: the map's, or that of the plan it lies on (map)")
       ->type_name("map|plan")
-      ->transform(CLI::CheckedTransformer(frames).description(""));
+      ->transform(one_of(frames));
 }
 
 const PlanRegistration& require_plan(const std::optional<PlanRegistration>& plan, const std::filesystem::path& map) {
@@ -28,7 +29,7 @@ void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format) {
       .add_option("--format", format,
                   "Of the trajectories written: TUM's (default), EuRoC's with nanoseconds, or KITTI's without times")
       ->type_name("tum|euroc|kitti")
-      ->transform(CLI::CheckedTransformer(formats).description(""));
+      ->transform(one_of(formats));
 }
 
 }  // namespace byre::cli

@@ -1,5 +1,7 @@
 #include "byre/cli/shared/warnings.h"
 
+#include "byre/input/printable.h"
+
 #include <algorithm>
 #include <ostream>
 
@@ -8,7 +10,7 @@ namespace byre::cli {
 void show_warnings(std::ostream& stream, const std::vector<std::string>& warnings) {
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < std::min(warnings.size(), kShown); ++i) {
-    stream << "byre: warning: " << warnings[i] << "\n";
+    stream << "byre: warning: " << printable(warnings[i]) << "\n";
   }
   if (warnings.size() > kShown) stream << "byre: warning: " << warnings.size() - kShown << " more of this kind\n";
 }

@@ -1,5 +1,6 @@
 #include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
@@ -111,12 +112,12 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
   add_amount("--dust", barn.dust, 4.0, "In the air: with 1 half of the light is lost in 14 m");
   command.add_option("--time", barn.time, "When (day; dusk in even missions)")
       ->type_name("day|dusk")
-      ->transform(CLI::CheckedTransformer(times).description(""));
+      ->transform(one_of(times));
   command
       .add_option("--gate", barn.gate,
                   "Of the feed store, into which the robot drives where it is open (closed; open later)")
       ->type_name("open|closed")
-      ->transform(CLI::CheckedTransformer(gates).description(""));
+      ->transform(one_of(gates));
   command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")->type_name("N")->check(between(0, 40));
 }
 
@@ -144,7 +145,7 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
   const std::map<std::string, TurnKind> turns = {{"arc", TurnKind::arc}, {"spot", TurnKind::spot}};
   command.add_option("--turn", options.turn, "At the ends of the alley: into the lane beside, or on the spot (arc)")
       ->type_name("arc|spot")
-      ->transform(CLI::CheckedTransformer(turns).description(""));
+      ->transform(one_of(turns));
   command.add_option("--rate", options.frame_rate_hz, "Stereo pairs in a second")
       ->type_name("HZ")
       ->check(between(1.0, 200.0))

@@ -1,5 +1,6 @@
 #include "byre/cli/simulate/imperfection_options.h"
 
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/number_check.h"
 
 #include <map>
@@ -35,7 +36,7 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
   }
   command.add_option("--imperfection", options.condition, "All of what comes with age and use (exact)")
       ->type_name("exact|good|worn")
-      ->transform(CLI::CheckedTransformer(conditions).description(""))
+      ->transform(one_of(conditions))
       ->group("Camera that errs");
   add_number(command, "--calibration-level", options.calibration_level, {0.0, 10.0}, "NUMBER",
              "How far the calibration is off: 1 as a good one is, 3 as a worn one");

@@ -1,5 +1,6 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/input/printable.h"
 #include "byre/map/map_file.h"
 
 #include <filesystem>
@@ -19,10 +20,10 @@ Exit codes: 0 the map is sound, 1 it has faults, which are listed, 3 the file ca
 ExitCode run_validate(const std::filesystem::path& path, std::ostream& result) {
   const StoredMap stored = load_map(path);
   const std::vector<std::string> faults = find_faults(stored);
-  for (const std::string& fault : faults) result << path.string() << ": " << fault << "\n";
+  for (const std::string& fault : faults) result << printable(path.string() + ": " + fault) << "\n";
   if (!faults.empty()) return ExitCode::failed;
-  result << path.string() << ": sound, " << stored.map.keyframe_count() << " keyframes, " << stored.map.point_count()
-         << " points\n";
+  result << printable(path.string()) << ": sound, " << stored.map.keyframe_count() << " keyframes, "
+         << stored.map.point_count() << " points\n";
   return ExitCode::done;
 }
 

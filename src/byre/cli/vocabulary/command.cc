@@ -8,6 +8,7 @@
 #include "byre/dataset/image_descriptors.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
+#include "byre/input/report_row.h"
 #include "byre/workers/stopwatch.h"
 
 #include <iostream>
@@ -83,7 +84,7 @@ Vocabulary train_with_progress(const TrainOptions& options, const std::vector<st
 }
 
 std::string to_text(const Vocabulary& vocabulary, const fs::path& path) {
-  return "vocabulary   " + path.string() + "\n" +
+  return row("vocabulary", path.string()) +
          fmt::format("words        {}\nbranching    {}\ndepth        {}\nchecksum     {:016x}\n",
                      vocabulary.word_count(), vocabulary.branching(), vocabulary.depth(),
                      static_cast<unsigned long long>(vocabulary.checksum()));

@@ -1,0 +1,71 @@
+#include "byre/input/printable.h"
+
+#include "byre/input/report_row.h"
+#include "byre/input_error.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+using std::string_literals::operator""s;
+
+TEST(Printable, LeavesUtf8AsItIs) {
+  for (const char* text : {"", "barn.byre", "Stall 3: Kühe, 牛 🐄", "back\\slash 'quoted'"}) {
+    EXPECT_EQ(printable(text), text);
+  }
+}
+
+TEST(Printable, EscapesControlCharacters) {
+  EXPECT_EQ(printable("save\n<3>fake\r\t"), "save\\n<3>fake\\r\\t");
+  EXPECT_EQ(printable("\x1b[31mred\x1b]0;title\a"), "\\x1b[31mred\\x1b]0;title\\x07");
+  EXPECT_EQ(printable("a\0b\x7f"s), "a\\x00b\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J"),
+            "\\xc2\\x9b2J");  // U+009B, the eight-bit form of ESC [
+  EXPECT_EQ(printable("\xe2\x80\xae"
+                      "gnp.exe"),
+            "\\xe2\\x80\\xaegnp.exe");  // U+202E, writes right to left
+  EXPECT_EQ(printable("a\xe2\x80\xa8"
+                      "b"),
+            "a\\xe2\\x80\\xa8"
+            "b");  // U+2028, ends a line
+}
+
+TEST(Printable, EscapesInvalidUtf8) {
+  EXPECT_EQ(printable("K\xfche"), "K\\xfche");                       // Latin 1
+  EXPECT_EQ(printable("\xff\xfe\x41"), "\\xff\\xfeA");               // UTF-16
+  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");                    // overlong
+  EXPECT_EQ(printable("\xe0\x80\xaf"), "\\xe0\\x80\\xaf");           // overlong
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // a surrogate
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
+  EXPECT_EQ(printable("\xe7\x89"), "\\xe7\\x89");                    // cut off
+}
+
+TEST(Printable, CutsLongText) {
+  EXPECT_EQ(printable(std::string(1000, 'a'), 5), "aaaaa...");
+  EXPECT_EQ(printable("aaaaa", 5), "aaaaa");
+}
+
+TEST(Printable, OfAnyByteIsPrintableAndStaysTheSame) {
+  for (int byte = 0; byte < 256; ++byte) {
+    const std::string once = printable("a"s + static_cast<char>(byte) + "b");
+    for (const char each : once) EXPECT_TRUE(each >= 0x20 && each < 0x7f) << byte;
+    EXPECT_EQ(printable(once), once);
+  }
+}
+
+TEST(InputError, HasPrintablePlaceReasonAndRemedy) {
+  const InputError error("walk\x1b[2J.bag", "has the topic '/a\n/b'", "rename\t\xff it");
+  EXPECT_EQ(error.place(), "walk\\x1b[2J.bag");
+  EXPECT_EQ(error.reason(), "has the topic '/a\\n/b'");
+  EXPECT_EQ(error.remedy(), "rename\\t\\xff it");
+  EXPECT_STREQ(error.what(), "walk\\x1b[2J.bag: has the topic '/a\\n/b' (rename\\t\\xff it)");
+}
+
+TEST(ReportRow, IsOneLineOfPrintableText) {
+  EXPECT_EQ(row("map", "barn\n\x1b[2Jfake"), "map          barn\\n\\x1b[2Jfake\n");
+}
+
+}  // namespace
+}  // namespace byre
