@@ -10,6 +10,7 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -49,8 +50,11 @@ class TemporaryFile {
     std::error_code error;
     const fs::path folder = fs::temp_directory_path(error);
     if (error) {
-      throw InputError("TMPDIR", "names '" + folder.string() + "', which is no folder",
-                       "set it to a folder that may be written to, or unset it");
+      const char* const named = std::getenv("TMPDIR");
+      throw InputError("TMPDIR",
+                       named ? "names '" + std::string(named) + "', which is no folder"
+                             : "is not set, and there is no other folder for temporary files",
+                       "set it to a folder that may be written to");
     }
     std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));

@@ -4,7 +4,9 @@
 #include "byre/input/binary_file.h"
 #include "byre/input_error.h"
 
+#include <cstdlib>
 #include <fstream>
+#include <optional>
 
 #include <gmock/gmock.h>
 

@@ -16,7 +16,7 @@ namespace byre {
 class McapBag final : public ChunkedBag {
  public:
   // Throws InputError when it does not begin as MCAP files do.
-  McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits);
+  McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits = {});
 
  private:
   // What is read of a chunk before its records.

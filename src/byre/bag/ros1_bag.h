@@ -19,7 +19,7 @@ namespace byre {
 class Ros1Bag final : public ChunkedBag {
  public:
   // Throws InputError when it does not begin as such bags do.
-  Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits);
+  Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits = {});
 
  private:
   // Where records follow each other: in the file or in a chunk.
