@@ -2,7 +2,6 @@
 
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/finish_report.h"
-#include "byre/assessment/map_statistics.h"
 #include "byre/assessment/motion_report.h"
 #include "byre/input/report_row.h"
 #include "byre/system/stored_map.h"
@@ -245,6 +244,13 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   text += cost_rows(run, protocol.options, resources);
   text += closing_rows(run, files);
   return text;
+}
+
+void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings) {
+  if (!is_full_of_gaps(unreadable, frames)) return;
+  std::string text = fmt::format("{} of {} frames could not be read", unreadable, frames);
+  if (!warnings.empty()) text += ", see the warnings: " + warnings.front();
+  throw std::runtime_error(text + " (record or copy these images again, or leave them out by --frames)");
 }
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {

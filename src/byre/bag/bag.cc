@@ -10,6 +10,8 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -41,13 +43,21 @@ bool is_rosbag2_metadata(const fs::path& file) {
          std::string_view::npos;
 }
 
-// A file of a bag decompressed, gone when it is no longer needed.
+// A decompressed file of a bag, removed at the end of its life.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& ending) {
-    std::string name = (fs::temp_directory_path() / "byre-XXXXXX").string() + ending;
+  explicit TemporaryFile(const fs::path& bag) {
+    const std::string ending = bag.stem().extension().string();
+    const auto refuse = [&bag](const std::string& reason) {
+      throw InputError(bag.string(), "cannot be decompressed: " + reason,
+                       "set TMPDIR to a folder that exists and may be written to");
+    };
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (error) refuse("TMPDIR names no folder");
+    std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
-    if (descriptor < 0) throw InputError(name, "cannot be made", "set TMPDIR to a folder that may be written to");
+    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be made: " + std::strerror(errno));
     close(descriptor);
     path_ = name;
   }
@@ -98,7 +108,7 @@ std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, c
 BagFile::BagFile(const fs::path& path, const TypeFilter& wanted) : place_(path.string()) {
   bool is_cut = false;
   if (path.extension() == ".zstd") {
-    decompressed_ = std::make_unique<TemporaryFile>(path.stem().extension().string());
+    decompressed_ = std::make_unique<TemporaryFile>(path);
     is_cut = !decompress_zstd_file(path, decompressed_->path());
   }
   bag_ = open_file(decompressed_ ? decompressed_->path() : path, path.string(), wanted);
