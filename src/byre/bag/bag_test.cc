@@ -4,6 +4,7 @@
 #include "byre/input/binary_file.h"
 #include "byre/input_error.h"
 
+#include <cstdlib>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -136,6 +137,26 @@ TEST_F(BagFiles, MayBeCompressedAsAWhole) {
   const BagBytes rest = compress_zstd(std::span(bytes).subspan(bytes.size() / 2));
   cut.insert(cut.end(), rest.begin(), rest.end() - 9);
   EXPECT_THAT(damage_of(write("cut.mcap.zstd", cut)), testing::Contains(HasSubstr("cut.mcap.zstd: is cut or damaged")));
+}
+
+TEST_F(BagFiles, AreNamedWhereTheyCannotBeDecompressed) {
+  const fs::path whole = write("scene.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
+  const auto refusal = [&whole](const std::string& folder) -> std::string {
+    const char* const set = std::getenv("TMPDIR");
+    const std::string before = set != nullptr ? set : "/tmp";
+    setenv("TMPDIR", folder.c_str(), 1);
+    std::string reason;
+    try {
+      open_bag(whole, every_type);
+    } catch (const InputError& error) {
+      reason = error.what();
+    }
+    setenv("TMPDIR", before.c_str(), 1);
+    return reason;
+  };
+  EXPECT_EQ(refusal(folder_ / "absent"), whole.string() + ": cannot be decompressed: TMPDIR names no folder (set TMPDIR to "
+                                                           "a folder that exists and may be written to)");
+  EXPECT_EQ(refusal(folder_), "");
 }
 
 TEST_F(BagFiles, OfRosbag2FormOneBag) {

@@ -5,7 +5,9 @@
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/stored_map_scene.h"
 
+#include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <random>
 #include <thread>
 
@@ -72,8 +74,10 @@ double look_at_all(const Map& map) {
 // What opening, or looking at all of it, says is wrong; empty where it is nothing.
 std::string fault_when_looked_at(MapBytes bytes) {
   try {
-    look_at_all(WatchedFile(std::move(bytes)).open().map);
-    return "";
+    WatchedFile file(std::move(bytes));
+    const StoredMap opened = file.open();
+    look_at_all(opened.map);
+    return opened.map.damage() != nullptr ? opened.map.damage()->what() : "";
   } catch (const InputError& error) {
     return error.what();
   }
@@ -177,6 +181,27 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
               AllOf(StartsWith("barn.byre: section features at byte "), HasSubstr("wrong checksum")));
 }
 
+TEST(MapFileSource, GoesOnBesideADamagedKeyframeWhichSeesNothing) {
+  MapBytes bytes = scene_of_size(5);
+  const TableEntry section = section_of(bytes, "descriptors");
+  bytes[section.offset + section.size - 1] ^= std::byte{1};  // of the last keyframe
+  WatchedFile file(bytes);
+  const StoredMap opened = file.open();
+  EXPECT_EQ(opened.map.damage(), nullptr) << "not met yet";
+  const KeyframeId first{Origin::offline, 0}, last = opened.map.keyframe_ids().back();
+  const Keyframe& sound = *opened.map.find_keyframe(first);
+  EXPECT_TRUE(
+      std::ranges::any_of(sound.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); }));
+  EXPECT_EQ(opened.map.damage(), nullptr);
+  const Keyframe& damaged = *opened.map.find_keyframe(last);
+  EXPECT_TRUE(
+      std::ranges::none_of(damaged.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); }));
+  EXPECT_EQ(damaged.frame.features->size(), static_cast<int>(damaged.sightings.size()));
+  ASSERT_NE(opened.map.damage(), nullptr);
+  Map changed = opened.map;
+  EXPECT_THROW(changed.remove_keyframe(last), InputError) << "a change reads all of it";
+}
+
 TEST(MapFileSource, RefusesEveryShorterFile) {
   const MapBytes bytes = scene_of_size(3);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -250,7 +275,7 @@ TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome)
     begin += section.bytes;
   }
   bytes[begin + 5] ^= std::byte{1};
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   try {
     open_map(path);
     ADD_FAILURE() << "opened";
@@ -264,15 +289,19 @@ TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome)
 TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   const fs::path path = fs::path(testing::TempDir()) / ("map_source_" + std::to_string(getpid()) + ".byre");
   const MapBytes bytes = scene_of_size(7);
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   const StoredMap opened = open_map(path), untouched = open_map(path);
   fs::remove(path);
   EXPECT_EQ(write_map(opened), bytes);
 
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   const StoredMap cut = open_map(path);
   fs::resize_file(path, bytes.size() / 3);
-  EXPECT_THROW(look_at_all(cut.map), InputError);
+  look_at_all(cut.map);
+  ASSERT_NE(cut.map.damage(), nullptr);
+  EXPECT_THAT(cut.map.damage()->what(), HasSubstr("has become shorter since it was opened"));
+  EXPECT_THROW(write_map(cut), InputError) << "a part of a map is not saved as if it were the whole";
+  EXPECT_EQ(untouched.map.damage(), nullptr);
   EXPECT_EQ(write_map(untouched), bytes) << "another file of that name";
   fs::remove(path);
 }
