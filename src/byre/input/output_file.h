@@ -51,7 +51,7 @@ class OutputFile {
 
  private:
   std::filesystem::path path_;       // as given
-  std::filesystem::path target_;     // of a link: where it leads
+  std::filesystem::path target_;     // where a link leads, else the path
   std::filesystem::path temporary_;  // empty when published, and when written directly
   Durability durability_;
   bool is_direct_ = false;  // device or pipe

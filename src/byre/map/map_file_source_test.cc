@@ -184,7 +184,7 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
 TEST(MapFileSource, GoesOnBesideADamagedKeyframeWhichSeesNothing) {
   MapBytes bytes = scene_of_size(5);
   const TableEntry section = section_of(bytes, "descriptors");
-  bytes[section.offset + section.size - 1] ^= std::byte{1};  // of the last keyframe
+  bytes[section.offset + section.size - 1] ^= std::byte{1};  // the last keyframe is damaged
   WatchedFile file(bytes);
   const StoredMap opened = file.open();
   EXPECT_EQ(opened.map.damage(), nullptr) << "not met yet";
