@@ -1,7 +1,6 @@
 #pragma once
 
 #include "byre/simulation/rendered_fixture.h"
-#include <algorithm>
 
 #include <algorithm>
 #include <chrono>
