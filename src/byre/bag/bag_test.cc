@@ -154,8 +154,9 @@ TEST_F(BagFiles, AreNamedWhereTheyCannotBeDecompressed) {
     setenv("TMPDIR", before.c_str(), 1);
     return reason;
   };
-  EXPECT_EQ(refusal(folder_ / "absent"), whole.string() + ": cannot be decompressed: TMPDIR names no folder (set TMPDIR to "
-                                                           "a folder that exists and may be written to)");
+  EXPECT_EQ(refusal(folder_ / "absent"), whole.string() +
+                                             ": cannot be decompressed: TMPDIR names no folder (set TMPDIR to "
+                                             "a folder that exists and may be written to)");
   EXPECT_EQ(refusal(folder_), "");
 }
 

@@ -119,13 +119,13 @@ TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
     for (const std::size_t good_frames : {0, 4}) {
       map_shared(8);
       Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
-      std::vector<FrameReport> reports;
       for (std::size_t i = 0; i < frames.size(); ++i) {
         if (i == good_frames) damage(map_);
-        reports.push_back(slam.process(view_of(frames[i])));
-        const bool is_damaged = reports.back().health.doubt == Doubt::map_damaged;
-        EXPECT_EQ(is_damaged, slam.map_damage().has_value()) << i;
-        EXPECT_TRUE(!is_damaged || reports.back().health.verdict == Verdict::untrusted) << i;
+        const bool was_damaged = slam.map_damage().has_value();  // a search beside tracking may meet it meanwhile
+        const FrameReport report = slam.process(view_of(frames[i]));
+        const bool is_damaged = report.health.doubt == Doubt::map_damaged;
+        EXPECT_TRUE(is_damaged || !was_damaged) << i;
+        EXPECT_TRUE(!is_damaged || report.health.verdict == Verdict::untrusted) << i;
       }
       if (good_frames == 0) {
         ASSERT_TRUE(slam.map_damage());

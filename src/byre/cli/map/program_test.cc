@@ -179,8 +179,10 @@ TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
   for (const std::string poses : {"", " --poses torn"}) {
     const Outcome outcome = run("map torn -o torn.byre" + poses);
     EXPECT_EQ(outcome.exit_code, 1) << poses;
-    EXPECT_THAT(outcome.errors, HasSubstr("byre: error: 9 of 24 frames could not be read, see the warnings: torn/")) << poses;
-    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or leave them out by --frames)")) << poses;
+    EXPECT_THAT(outcome.errors, HasSubstr("byre: error: 9 of 24 frames could not be read, see the warnings: torn/"))
+        << poses;
+    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or leave them out by --frames)"))
+        << poses;
     EXPECT_GT(load_map(folder_ / "torn.byre").map.keyframe_count(), 0) << "all files are written";
   }
 }

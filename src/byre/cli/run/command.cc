@@ -84,7 +84,7 @@ class EventFile {
     log_.note(number, frame);
     try {
       file_->append(text_.view());
-      text_.str({});
+      text_.str(std::string());
     } catch (const InputError& error) {
       fault_ = "events are missing: " + std::string(error.what());
       show_warnings(std::cerr, {*fault_});
