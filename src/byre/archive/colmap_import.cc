@@ -207,7 +207,7 @@ std::vector<double> reprojection_errors(const ColmapModel& model, const std::str
 // Poses of another state of the reconstruction than the points give a map of nothing.
 void require_agreement(const ColmapModel& model, const std::string& name) {
   constexpr double kLargestMedian = 8.0;  // pixels; about 0.5 in a finished model
-  constexpr double kShareOfWidth = 0.01;  // of large images
+  constexpr double kShareOfWidth = 0.01;  // the bound for large images
   std::vector<double> errors = reprojection_errors(model, name);
   if (errors.empty()) return;
   std::ranges::sort(errors);
