@@ -75,6 +75,7 @@ void bind_enums_of_reports(py::module_& module) {
                     {"calibration", Doubt::calibration},
                     {"bridged", Doubt::bridged},
                     {"dirty", Doubt::dirty},
+                    {"map_damaged", Doubt::map_damaged},
                     {"off_the_plane", Doubt::off_the_plane},
                     {"in_wall", Doubt::in_wall},
                     {"outside", Doubt::outside},

@@ -299,6 +299,8 @@ void bind_results(SlamClass& type) {
           "The covariance of that pose on the floor plan, with what the registration leaves open, or None.")
       .def_property_readonly("calibration", &Slam::calibration, "As it is known by now.")
       .def_property_readonly("is_metric", &Slam::is_metric)
+      .def_property_readonly("map_damage", &Slam::map_damage,
+                             "Why the file of a mission's map cannot be read further; None without damage.")
       .def_property_readonly("keyframes", &Slam::keyframes)
       .def_property_readonly("points", &Slam::points)
       .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Frames handed over.")

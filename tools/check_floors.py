@@ -55,8 +55,9 @@ EVERY_ROOM = frozenset(FLOOR)
 
 # Headers that only some rooms may include. Tests are free to.
 KEPT_IN = {
-    r"thread|atomic|condition_variable|future|stop_token|semaphore|latch|barrier": {
+    r"thread|condition_variable|future|stop_token|semaphore|latch|barrier": {
         "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
+    r"atomic": {"input", "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
     r"mutex|shared_mutex": {"workers", "viewer"},
     r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
                             "archive", "viewer", "benchmark", "camera", "demo", "node", "cli"},

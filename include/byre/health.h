@@ -36,6 +36,7 @@ enum class Doubt : std::uint8_t {
   calibration,         // points of the map fit the images by another focal length
   bridged,             // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
   dirty,               // dirt hides most of the image
+  map_damaged,         // the file of the offline map cannot be read further, see Slam::map_damage
   // There is no pose, for the robot cannot be where it was found:
   off_the_plane,  // it would stand too high, too low or too tilted on the ground that the map was driven on
   in_wall,        // it would be inside a wall of the floor plan

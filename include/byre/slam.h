@@ -105,6 +105,10 @@ class Slam {
   void pause_mapping(bool is_paused);
   bool is_mapping_paused() const;
 
+  // Why the file of a mission's map cannot be read further: file, section, reason and remedy; empty without damage. A
+  // mission reads its map as it drives. Poses go on by what was read before, untrusted; save() works.
+  std::optional<std::string> map_damage() const;
+
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
   // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come
   // later are dropped.
@@ -112,7 +116,8 @@ class Slam {
 
   // Keeps what was mapped, with or without finish() before: the whole map, or of a mission what was mapped beside the
   // map it is on. Replaces the file as a whole. No frame is tracked meanwhile: some milliseconds a keyframe. Throws
-  // InputError when it cannot be written, or nothing was mapped yet.
+  // InputError when it cannot be written, holds something other than a map or the map of the mission, or nothing was
+  // mapped yet.
   void save(const std::filesystem::path& path) const;
 
   // Every frame that had a pose, as the map has it now. Where wheels lead on from these poses, or back to the frames

@@ -29,8 +29,8 @@ Trajectory read_kitti_poses(const std::filesystem::path& poses, const std::files
 // with commas (an EuRoC camera's data.csv). Throws InputError naming file and line.
 std::vector<Timestamp> read_times(const std::filesystem::path& path);
 
-// Nine digits after the point of a second, where there are seconds, and of a metre; KITTI's matrices have no times, one
-// line for each pose there is. Throws InputError when the file cannot be written.
+// Nine decimals of seconds and metres. KITTI's format has no times. Replaces an older trajectory as a whole or not at
+// all. Throws InputError if the file cannot be written, or holds something other than a trajectory.
 void write_trajectory(const Trajectory& trajectory, const std::filesystem::path& path,
                       TrajectoryFormat format = TrajectoryFormat::tum);
 

@@ -183,11 +183,51 @@ void require_content(const ColmapModel& model, const std::string& name) {
   if (model.points.empty()) throw InputError(name, "is a model without points, so no map can be made of it", remedy);
 }
 
+// Pixels from each key point of the model to where its point projects; for one that does not project, the image's
+// width.
+std::vector<double> reprojection_errors(const ColmapModel& model, const std::string& name) {
+  std::map<std::uint32_t, Camera> cameras;
+  std::vector<double> errors;
+  for (const auto& [id, image] : model.images) {
+    auto camera = cameras.find(image.camera_id);
+    if (camera == cameras.end()) {
+      const std::string place = name + ": camera " + std::to_string(image.camera_id);
+      camera = cameras.emplace(image.camera_id, camera_of(model.cameras.at(image.camera_id), place)).first;
+    }
+    for (const ColmapKeypoint& keypoint : image.keypoints) {
+      if (!keypoint.point_id) continue;
+      const Eigen::Vector3d& position = model.points.at(*keypoint.point_id).position_in_world;
+      const auto pixel = camera->second.project(image.camera_from_world * position);
+      errors.push_back(pixel ? (to_colmap_pixel(*pixel) - keypoint.pixel).norm() : camera->second.width);
+    }
+  }
+  return errors;
+}
+
+// Poses of another state of the reconstruction than the points give a map of nothing.
+void require_agreement(const ColmapModel& model, const std::string& name) {
+  constexpr double kLargestMedian = 8.0;  // pixels; about 0.5 in a finished model
+  constexpr double kShareOfWidth = 0.01;  // the bound for large images
+  std::vector<double> errors = reprojection_errors(model, name);
+  if (errors.empty()) return;
+  std::ranges::sort(errors);
+  const double median = quantile(errors, 0.5);
+  const auto width = static_cast<double>(model.cameras.begin()->second.width);
+  if (median <= std::max(kLargestMedian, kShareOfWidth * width)) return;
+  throw InputError(name,
+                   fmt::format("has poses in images that do not fit its points: half of the key points are {:.0f} "
+                               "pixels or more from where their points project",
+                               median),
+                   "write the model anew with the program that made it; poses in frames.txt or frames.bin may be newer "
+                   "than those in images (colmap model_converter writes them)");
+}
+
 }  // namespace
 
 ColmapImport import_colmap(const ColmapModel& model, const std::string& model_name, const fs::path& images_folder,
                            const ColmapImportOptions& options, const ColmapImportHooks& hooks) {
   require_content(model, model_name);
+  require_agreement(model, model_name);
   const double scale = options.metres_per_unit.value_or(1.0);
   Cameras cameras(model, model_name, options);
   ColmapImport result;

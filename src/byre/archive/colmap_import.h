@@ -43,8 +43,9 @@ struct ColmapImportHooks {
 };
 
 // Makes an offline map of a model and its images, in the order of their times; those that cannot be read, or are of
-// another size than their camera's, are left out with a warning. Throws InputError for cameras
-// byre does not have, and when no image can be used. model_name: of the model, for messages and for the map.
+// another size than their camera's, are left out with a warning. Throws InputError for cameras byre does not have, for
+// poses that do not fit the points, and when no image can be used. model_name: of the model, for messages and for the
+// map.
 ColmapImport import_colmap(const ColmapModel& model, const std::string& model_name,
                            const std::filesystem::path& images_folder, const ColmapImportOptions& options,
                            const ColmapImportHooks& hooks);

@@ -50,6 +50,26 @@ TEST_F(ImportedMap, HasPointsAndCamerasWhereTheExportedMapHadThem) {
   }
 }
 
+TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
+  const auto refusal = [](const ColmapModel& model) -> std::string {
+    try {
+      import(model);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  ColmapModel stale = model_;
+  double sign = 0.2;
+  for (auto& [id, image] : stale.images) image.camera_from_world.translation.x() += (sign = -sign);
+  EXPECT_THAT(refusal(stale), HasSubstr("has poses in images that do not fit its points: half of the key points are"));
+  ColmapModel rough = model_;
+  for (auto& [id, image] : rough.images) {
+    for (ColmapKeypoint& keypoint : image.keypoints) keypoint.pixel.x() += 3.0;
+  }
+  EXPECT_EQ(refusal(rough), "");
+}
+
 TEST_F(ImportedMap, SeesItsPointsWhereTheyProject) {
   for (const ImportedImage& image : import(model_).images) {
     EXPECT_GT(image.points_attached, 20) << image.name;

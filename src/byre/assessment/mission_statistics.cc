@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kMostMissing = 0.05;  // share of the frames of a mission whose verdicts tell how it went
+constexpr double kMostMissing = 0.05;  // share of the frames
 
 void count_verdict(const Health& health, MissionStatistics& statistics) {
   switch (health.verdict) {
@@ -61,8 +61,8 @@ void add_to_rate(const FrameReport& report, double seconds, KeyframeRate& rate) 
 
 }  // namespace
 
-bool is_full_of_gaps(const MissionStatistics& statistics) {
-  return statistics.missing > kMostMissing * statistics.frames;
+bool is_full_of_gaps(int missing, int frames) {
+  return missing > kMostMissing * frames;
 }
 
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers) {

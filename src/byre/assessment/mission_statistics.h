@@ -39,8 +39,11 @@ struct MissionStatistics {
   int frames_with_dirt = 0;         // frames with any of either image hidden
 };
 
-// So many frames are missing that what is said of the others does not stand for the mission.
-bool is_full_of_gaps(const MissionStatistics& statistics);
+// Whether so many frames are missing that the others do not represent the recording.
+bool is_full_of_gaps(int missing, int frames);
+inline bool is_full_of_gaps(const MissionStatistics& statistics) {
+  return is_full_of_gaps(statistics.missing, statistics.frames);
+}
 
 // A place is known where a frame has at least so many offline inliers.
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);

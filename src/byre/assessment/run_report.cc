@@ -2,8 +2,6 @@
 
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/finish_report.h"
-#include "byre/assessment/map_statistics.h"
-#include "byre/assessment/mission_statistics.h"
 #include "byre/assessment/motion_report.h"
 #include "byre/input/report_row.h"
 #include "byre/system/stored_map.h"
@@ -248,17 +246,11 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
   return text;
 }
 
-void require_frames(const MapRun& run, const MapProtocol& protocol) {
-  const FrameCounts counts = count_frames(run.frames);
-  MissionStatistics statistics;
-  statistics.frames = counts.frames;
-  statistics.missing = counts.unreadable;
-  if (counts.with_pose == 0 || !is_full_of_gaps(statistics)) return;  // without poses: see require_poses
-  throw std::runtime_error(
-      fmt::format("{}: {} of {} frames could not be read, so the result does not cover the recording (the warnings "
-                  "name the reason; "
-                  "repair the recording, or select other frames with --frames or --start and --end)",
-                  protocol.recording, counts.unreadable, counts.frames));
+void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings) {
+  if (!is_full_of_gaps(unreadable, frames)) return;
+  std::string text = fmt::format("{} of {} frames could not be read", unreadable, frames);
+  if (!warnings.empty()) text += ", see the warnings: " + warnings.front();
+  throw std::runtime_error(text + " (record or copy these images again, or leave them out by --frames)");
 }
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/assessment/map_statistics.h"
 #include "byre/assessment/mission_report.h"
 #include "byre/playback/map_run.h"
 #include "byre/system/resources.h"
@@ -35,9 +36,13 @@ std::string to_json(const MapRun& run, const MapProtocol& protocol, const Resour
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
 
-// Throws std::runtime_error when so many frames could not be read that the result does not stand for the recording
-// (is_full_of_gaps), unless no frame got a pose.
-void require_frames(const MapRun& run, const MapProtocol& protocol);
+// Throws std::runtime_error, with the first reason and a remedy, if so many frames could not be read that the result is
+// not that of the recording (is_full_of_gaps).
+void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings);
+inline void require_frames(const MapRun& run) {
+  const FrameCounts counts = count_frames(run.frames);
+  require_frames(counts.unreadable, counts.frames, run.warnings);
+}
 
 // Throws std::runtime_error, which says why, when no frame got a pose.
 void require_poses(const MapRun& run, const MapProtocol& protocol);

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -43,22 +45,21 @@ bool is_rosbag2_metadata(const fs::path& file) {
          std::string_view::npos;
 }
 
-// A file of a bag decompressed, gone when it is no longer needed.
+// A decompressed file of a bag, removed at the end of its life.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& ending) {
+  explicit TemporaryFile(const fs::path& bag) {
+    const std::string ending = bag.stem().extension().string();
+    const auto refuse = [&bag](const std::string& reason) {
+      throw InputError(bag.string(), "cannot be decompressed: " + reason,
+                       "set TMPDIR to a folder that exists and may be written to");
+    };
     std::error_code error;
     const fs::path folder = fs::temp_directory_path(error);
-    if (error) {
-      const char* const named = std::getenv("TMPDIR");
-      throw InputError("TMPDIR",
-                       named ? "names '" + std::string(named) + "', which is no folder"
-                             : "is not set, and there is no other folder for temporary files",
-                       "set it to a folder that may be written to");
-    }
+    if (error) refuse("TMPDIR names no folder");
     std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
-    if (descriptor < 0) throw InputError(name, "cannot be made", "set TMPDIR to a folder that may be written to");
+    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be made: " + std::strerror(errno));
     close(descriptor);
     path_ = name;
   }
@@ -112,7 +113,7 @@ BagFile::BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits
     : place_(path.string()), limits_(limits) {
   bool is_cut = false;
   if (path.extension() == ".zstd") {
-    decompressed_ = std::make_unique<TemporaryFile>(path.stem().extension().string());
+    decompressed_ = std::make_unique<TemporaryFile>(path);
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path, error);
     is_cut = !decompress_zstd_file(path, decompressed_->path(), limits.most(error ? 0 : size));

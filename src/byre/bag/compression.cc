@@ -1,11 +1,11 @@
 #include "byre/bag/compression.h"
 
 #include "byre/bag/byte_source.h"
+#include "byre/input/output_file.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -150,19 +150,19 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte> bytes) {
   return compressed;
 }
 
-bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most) {
+bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most) try {
   constexpr std::size_t kPiece = 1 << 20;
   FileSource source(from);
-  std::ofstream output(to, std::ios::binary);
+  OutputFile output(to, FileContent::other, Durability::left_to_system);
   ZstdDecoder decoder;
   std::vector<std::byte> made(kPiece);
   bool is_sound = true, is_end = true;
   std::error_code error;
   const std::uint64_t usable = std::filesystem::space(to.parent_path(), error).available / 10 * 9;
   std::uint64_t written = 0;
-  for (std::uint64_t begin = 0; begin < source.size() && is_sound && output; begin += kPiece) {
+  for (std::uint64_t begin = 0; begin < source.size() && is_sound; begin += kPiece) {
     const std::vector<std::byte> piece = read_piece(source, begin, kPiece);
-    for (std::span<const std::byte> left = piece; is_sound && output;) {
+    for (std::span<const std::byte> left = piece; is_sound;) {
       const Step step = decoder.step(left, made);
       left = left.subspan(step.taken);
       written += step.made;
@@ -174,15 +174,18 @@ bool decompress_zstd_file(const std::filesystem::path& from, const std::filesyst
         throw InputError(from.string(), "needs more than the space that is free in " + to.parent_path().string(),
                          "make space there, or set TMPDIR to another folder");
       }
-      output.write(reinterpret_cast<const char*>(made.data()), static_cast<std::streamsize>(step.made));
+      output.append(std::span(made).first(step.made));
       is_sound = step.is_sound;
       is_end = step.is_end;
       if (left.empty() && step.made < made.size()) break;
     }
   }
-  output.close();
-  if (!output) throw InputError(to.string(), "cannot be written", "make space there, or set TMPDIR to another folder");
+  output.publish();
   return is_sound && is_end;
+} catch (const InputError& error) {
+  if (error.place() != to.string()) throw;
+  throw InputError(from.string(), "cannot be decompressed into " + to.string() + ": " + error.reason(),
+                   "make space there, or set TMPDIR to another folder");
 }
 
 }  // namespace byre

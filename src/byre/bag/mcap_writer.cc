@@ -2,11 +2,8 @@
 
 #include "byre/bag/compression.h"
 #include "byre/bag/mcap_format.h"
-#include "byre/input_error.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <functional>
 
 #include <zlib.h>
@@ -39,22 +36,20 @@ std::string qos_of(ros::Durability durability) {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
+McapWriter::McapWriter(const std::filesystem::path& path)
+    : file_(std::make_unique<OutputFile>(path, FileContent::mcap)) {
   ByteWriter header, start;
   header.write_text("ros2");
   header.write_text("byre " BYRE_VERSION);
   start.write_bytes(kMcapMagic);
   write_record(start, McapRecord::header, header);
   append(start);
+  file_->publish();
 }
 
 void McapWriter::append(const ByteWriter& writer) {
-  file_.write(reinterpret_cast<const char*>(writer.bytes().data()), static_cast<std::streamsize>(writer.size()));
+  file_->append(writer.bytes());
   position_ += writer.size();
-  if (!file_) {
-    throw InputError(path_.string(), std::string("cannot be written: ") + std::strerror(errno),
-                     "check that its folder exists, may be written to and has space");
-  }
 }
 
 McapWriter::TopicId McapWriter::add(ros::Topic topic) {
@@ -126,7 +121,6 @@ void McapWriter::flush() {
   chunk.length = record.size();
   append(record);
   write_message_indexes(chunk);
-  file_.flush();
   chunks_.push_back(std::move(chunk));
   chunk_ = {};
   chunk_messages_.clear();
@@ -236,8 +230,7 @@ void McapWriter::close() {
   summary.write(mcap_checksum(summary.bytes()));
   summary.write_bytes(kMcapMagic);
   append(summary);
-  file_.close();
-  if (!file_) throw InputError(path_.string(), "cannot be written", "check that its folder has space");
+  file_->sync();
 }
 
 }  // namespace byre

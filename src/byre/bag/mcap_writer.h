@@ -1,13 +1,14 @@
 #pragma once
 
 #include "byre/input/byte_stream.h"
+#include "byre/input/output_file.h"
 #include "byre/ros/message_sink.h"
 #include "byre/trajectory.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,8 +55,7 @@ class McapWriter : public ros::MessageSink {
   void write_message_indexes(ChunkIndex& chunk);
   void append(const ByteWriter& writer);
 
-  std::filesystem::path path_;  // constant after construction
-  std::ofstream file_;
+  std::unique_ptr<OutputFile> file_;
   std::uint64_t position_ = 0;     // bytes written to the file
   std::vector<Schema> schemas_;    // by id - 1
   std::vector<Channel> channels_;  // by id

@@ -2,12 +2,12 @@
 
 #include "byre/benchmark/peak_memory.h"
 #include "byre/dataset/trajectory_input.h"
-#include "byre/evaluation/trajectory_output.h"
 #include "byre/input_error.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/playback/source_recording.h"
 #include "byre/system/resources.h"
 #include "byre/system/stored_map.h"
+#include "byre/trajectory_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -111,6 +111,7 @@ TimedRun run_and_time(Recording& recording, const EngineOptions& options, const 
   const double cpu_before = resources_used_so_far().cpu_seconds;
   TimedRun timed;
   timed.run = run_map(recording, options, hooks);
+  if (timed.run.map_damage) throw InputError(*timed.run.map_damage);
   timed.cost.cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
   if (is_reset) timed.cost.peak_memory_mb = peak_memory_mb();
   return timed;
@@ -253,8 +254,8 @@ class BenchmarkRunner {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
     const std::string run_name = name + fmt::format(".{}", index + 1);
-    write_whole(folder / (run_name + ".final.txt"), run.final);
-    write_whole(folder / (run_name + ".causal.txt"), run.causal);
+    write_trajectory(run.final, folder / (run_name + ".final.txt"));
+    write_trajectory(run.causal, folder / (run_name + ".causal.txt"));
   }
 
   // Constant after construction; borrowed.

@@ -59,6 +59,7 @@ SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
     hooks.after_frame(done, frame);
   };
   const MapRun run = run_map(*opened.recording, engine, watched);
+  if (run.map_damage) throw InputError(*run.map_damage);
 
   SpeedMeasures measures = measures_of(run);
   measures.first_pose_seconds = first_pose_seconds;

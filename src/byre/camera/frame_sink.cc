@@ -4,12 +4,11 @@
 #include "byre/bag/mcap_writer.h"
 #include "byre/camera/still_image.h"
 #include "byre/dataset/euroc_sensor.h"
-#include "byre/input/binary_file.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
 
 #include <cassert>
-#include <fstream>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,36 +19,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const fs::path& path) {
-  throw InputError(path.string(), "cannot be written", "check that its folder may be written to and has space");
-}
-
 // A camera's folder of a EuRoC recording. An image is listed once its file is whole.
 class EurocCamera {
  public:
   explicit EurocCamera(fs::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     fs::create_directories(folder_ / "data", error);
-    list_.open(folder_ / "data.csv");
-    list_ << "#timestamp [ns],filename\n" << std::flush;
-    if (!list_) refuse(folder_ / "data.csv");
+    list_.emplace(folder_ / "data.csv", FileContent::table);
+    list_->append("#timestamp [ns],filename\n");
+    list_->publish();
   }
 
   void write_image(const Image& image, Timestamp time) const {
     const std::vector<std::uint8_t> bytes = png_of(image);
-    write_file(folder_ / "data" / name_of(time), std::as_bytes(std::span(bytes)));
+    write_whole(folder_ / "data" / name_of(time), std::as_bytes(std::span(bytes)), Durability::left_to_system);
   }
 
-  void list(Timestamp time) {
-    list_ << time.count() << "," << name_of(time) << "\n" << std::flush;
-    if (!list_) refuse(folder_ / "data.csv");
-  }
+  void list(Timestamp time) { list_->append(std::to_string(time.count()) + "," + name_of(time) + "\n"); }
 
  private:
   static std::string name_of(Timestamp time) { return std::to_string(time.count()) + ".png"; }
 
   fs::path folder_;  // constant after construction
-  std::ofstream list_;
+  std::optional<OutputFile> list_;
 };
 
 class EurocSink final : public FrameSink {

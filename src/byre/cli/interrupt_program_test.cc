@@ -73,10 +73,11 @@ TEST_F(InterruptedProgram, WritesTheOtherFilesWhenOneIsTooLarge) {
                               small.folder().string() +
                               "' -o room.byre --trajectory final.txt >stdout.txt 2>stderr.txt";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
-  EXPECT_THAT(read("stderr.txt"), HasSubstr("room.byre.unfinished: cannot be written: File too large (raise the limit "
-                                            "of file sizes (ulimit -f))"));
+  EXPECT_THAT(read("stderr.txt"),
+              HasSubstr("room.byre: cannot be written: File too large (raise the limit of file sizes "
+                        "(ulimit -f))"));
   EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(2));
-  EXPECT_FALSE(fs::exists(folder_ / "room.byre.unfinished"));
+  EXPECT_FALSE(has_unfinished_files());
 }
 
 TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
@@ -95,11 +96,10 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   const RenderedFixture small("byre_eventful_room", 8, 20.0);
   const Outcome full = run("run '" + small.folder().string() + "' --events /dev/full --trajectory final.txt");
   EXPECT_EQ(full.exit_code, 1);
-  const std::string warning =
-      "byre: warning: /dev/full: events are missing, as they could not be written: No space left";
+  const std::string warning = "byre: warning: events are missing: /dev/full: cannot be written: No space left";
   EXPECT_THAT(full.errors, HasSubstr(warning));
   EXPECT_LT(full.errors.find(warning), full.errors.find("8 of 8 frames"));
-  EXPECT_THAT(full.errors, HasSubstr("byre: error: /dev/full: events are missing"));
+  EXPECT_THAT(full.errors, HasSubstr("byre: error: events are missing: /dev/full"));
   EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(8));
 
   // Found in a map after some frames, which is another event than that it is in view.
@@ -109,8 +109,7 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   EXPECT_EQ(std::system(reading.c_str()), 0);
   const Outcome closed = run("run '" + small.folder().string() + "' --map known.byre --events pipe --stats stats.json");
   EXPECT_EQ(closed.exit_code, 1);
-  EXPECT_THAT(closed.errors,
-              HasSubstr("byre: warning: pipe: events are missing, as they could not be written: Broken"));
+  EXPECT_THAT(closed.errors, HasSubstr("byre: warning: events are missing: pipe: cannot be written: Broken"));
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 8u);
 }
 
@@ -124,10 +123,9 @@ TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {
   EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
   kill(process, SIGINT);
   EXPECT_TRUE(comes_to_be("room.byre"));
-  write("room.byre.unfinished", "half of a map");
   kill(process, SIGINT);
   EXPECT_EQ(exit_code_of(process), 130);
-  EXPECT_FALSE(fs::exists(folder_ / "room.byre.unfinished"));
+  EXPECT_FALSE(has_unfinished_files());
   EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
 }
 

@@ -89,7 +89,7 @@ class Stops : public ProgramTest {
 
   void wait_for(Moment moment, double seconds, pid_t process) const {
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-    while (moment == Moment::saving && !has_ended(process) && !fs::exists(folder_ / "room.byre.unfinished")) {
+    while (moment == Moment::saving && !has_ended(process) && !has_unfinished_files()) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
   }
@@ -130,7 +130,7 @@ class Stops : public ProgramTest {
     for (const char* const name : {"final.txt", "causal.txt", "stats.json"}) EXPECT_TRUE(is_there(name)) << name;
     const bool has_poses = read("causal.txt").find('\n') + 1 < read("causal.txt").size();
     EXPECT_TRUE(is_there("room.byre") || !has_poses);
-    EXPECT_FALSE(is_there("room.byre.unfinished"));
+    EXPECT_FALSE(has_unfinished_files());
   }
 
   void expect_nothing() const {

@@ -2,6 +2,7 @@
 #include "byre/dataset/colmap_files.h"
 #include "byre/input/binary_file.h"
 #include "byre/input/byte_stream.h"
+#include "byre/input/output_file.h"
 
 #include <cmath>
 #include <limits>
@@ -178,9 +179,9 @@ std::map<std::uint64_t, ColmapPoint> read_colmap_points_binary(const fs::path& p
 }
 
 void write_colmap_binary(const ColmapModel& model, const fs::path& folder) {
-  replace_file(folder / "cameras.bin", camera_bytes(model).bytes());
-  replace_file(folder / "images.bin", image_bytes(model).bytes());
-  replace_file(folder / "points3D.bin", point_bytes(model).bytes());
+  write_whole(folder / "cameras.bin", camera_bytes(model).bytes());
+  write_whole(folder / "images.bin", image_bytes(model).bytes());
+  write_whole(folder / "points3D.bin", point_bytes(model).bytes());
 }
 
 }  // namespace byre

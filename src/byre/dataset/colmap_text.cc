@@ -1,6 +1,6 @@
 #include "byre/dataset/colmap_camera.h"
 #include "byre/dataset/colmap_files.h"
-#include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 
@@ -180,7 +180,7 @@ void append(std::string& text, const Eigen::Vector3d& vector) {
 }
 
 void write_text(const std::string& text, const fs::path& path) {
-  replace_file(path, std::as_bytes(std::span(text)));
+  write_whole(path, text);
 }
 
 std::string camera_text(const ColmapModel& model) {

@@ -1,7 +1,7 @@
 #include "byre/dataset/file_safety.h"
 
-#include "byre/dataset/file_content.h"
 #include "byre/dataset/files_read.h"
+#include "byre/input/output_file.h"
 
 #include <algorithm>
 #include <array>
@@ -37,17 +37,6 @@ std::optional<Identity> identity_of(const fs::path& path) {
 bool is_special(const fs::path& path) {
   std::error_code error;
   return fs::is_other(path, error);
-}
-
-// The file that a path stands for, also by links, whether it is there or not.
-fs::path target_of(fs::path path) {
-  constexpr int kMostLinks = 40;
-  std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
-    path = path.parent_path() / fs::read_symlink(path, error);
-  }
-  const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
-  return error ? path : target;
 }
 
 std::vector<fs::path> files_of(const NamedInput& read) {
@@ -138,12 +127,7 @@ void require_not_read(const NamedOutput& written, const Owners& owners) {
   std::error_code error;
   const bool is_shared_folder = written.output == OutputKind::colmap_model && fs::is_directory(written.path, error);
   if (!is_shared_folder) require_not_read(written, written.path, owners);
-  for (const fs::path& file : files_of(written)) {
-    require_not_read(written, file, owners);
-    fs::path unfinished = target_of(file);
-    unfinished += ".unfinished";  // where it is written first
-    require_not_read(written, unfinished, owners);
-  }
+  for (const fs::path& file : files_of(written)) require_not_read(written, file, owners);
 }
 
 // Such as /dev/stdout, which may stand for a file that is gone on with.
@@ -156,62 +140,51 @@ bool is_svg(const fs::path& file) {
   return file.extension() == ".svg" || file.extension() == ".SVG";
 }
 
-// What a file of an output holds, as its first bytes tell, and what that is called.
-struct Kind {
-  FileContent content{};
-  std::string_view name;
-};
-
-Kind kind_of(const NamedOutput& written, const fs::path& file) {
+FileContent content_written(const NamedOutput& written, const fs::path& file) {
   switch (written.output) {
     case OutputKind::viewed_map:
-      return file == written.path ? Kind{FileContent::map, "map"} : Kind{FileContent::table, "table of picks"};
+      return file == written.path ? FileContent::map : FileContent::table;
     case OutputKind::map:
     case OutputKind::refined_map:
     case OutputKind::updated_map:
-      return {FileContent::map, "map"};
+      return FileContent::map;
     case OutputKind::trajectory:
-      return {FileContent::trajectory, "trajectory"};
+      return FileContent::trajectory;
     case OutputKind::json:
-      return {FileContent::json, "JSON"};
+      return FileContent::json;
     case OutputKind::picture:
-      return is_svg(file) ? Kind{FileContent::svg, "SVG picture"} : Kind{FileContent::png, "PNG picture"};
+      return is_svg(file) ? FileContent::svg : FileContent::png;
     case OutputKind::video:
-      return {FileContent::video, "video"};
+      return FileContent::video;
     case OutputKind::point_cloud:
-      return {FileContent::point_cloud, "point cloud"};
+      return FileContent::point_cloud;
     case OutputKind::mcap:
-      return {FileContent::mcap, "MCAP file"};
+      return FileContent::mcap;
     case OutputKind::calibration:
-      return {FileContent::yaml, "calibration"};
+      return FileContent::yaml;
     case OutputKind::vocabulary:
-      return {FileContent::vocabulary, "vocabulary"};
+      return FileContent::vocabulary;
     case OutputKind::colmap_model:
+      return FileContent::colmap_model;
     case OutputKind::recording:
     case OutputKind::folder:
       break;
   }
-  return {FileContent::other, "part of a model"};
-}
-
-// The parts of a model are binary or text, and lines of numbers may look like a trajectory.
-bool may_replace(const Kind& kind, FileContent content) {
-  if (content == kind.content) return true;
-  return kind.content == FileContent::other && (content == FileContent::text || content == FileContent::trajectory);
+  return FileContent::other;
 }
 
 void require_same_kind(const NamedOutput& written, const fs::path& file) {
   const auto content = content_of(file);
-  const Kind kind = kind_of(written, file);
-  if (!content || *content == FileContent::nothing || may_replace(kind, *content)) return;
-  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(kind.name) +
+  const FileContent expected = content_written(written, file);
+  if (!content || may_replace(*content, expected)) return;
+  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(name_of(expected)) +
                                            ": name another file, or remove that one first");
 }
 
 }  // namespace
 
 void require_not_read(const NamedFiles& arguments) {
-  if (arguments.outputs.empty()) return;  // nobody needs to know all that is read
+  if (arguments.outputs.empty()) return;  // listing what is read takes time
   const Owners owners = owners_of(arguments.inputs);
   for (const NamedOutput& written : arguments.outputs) require_not_read(written, owners);
 }
@@ -224,9 +197,7 @@ void require_distinct(const std::vector<NamedOutput>& outputs) {
   };
   for (const NamedOutput& written : outputs) {
     for (const fs::path& file : files_of(written)) {
-      fs::path unfinished = target_of(file);
-      require_new(files.insert(unfinished).second, file);
-      require_new(files.insert(unfinished += ".unfinished").second, file);
+      require_new(files.insert(target_of(file)).second, file);
       const auto identity = identity_of(file);
       if (identity) require_new(identities.insert(*identity).second, file);
     }

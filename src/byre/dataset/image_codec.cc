@@ -1,9 +1,11 @@
 #include "byre/dataset/image_codec.h"
 
 #include "byre/dataset/opencv_library.h"
+#include "byre/input/output_file.h"
 
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 
 namespace byre {
@@ -34,12 +36,9 @@ std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pix
   return bytes;
 }
 
-bool write_image_file(const std::filesystem::path& path, const cv::Mat& pixels, const std::vector<int>& parameters) {
+void write_image_file(const std::filesystem::path& path, const cv::Mat& pixels, const std::vector<int>& parameters) {
   const std::vector<std::uint8_t> bytes = encode_image(path.extension().c_str(), pixels, parameters);
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  return !bytes.empty() && file.good();
+  write_whole(path, std::as_bytes(std::span(bytes)), Durability::left_to_system);
 }
 
 }  // namespace byre

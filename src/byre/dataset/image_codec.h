@@ -21,8 +21,8 @@ cv::Mat decode_image_file(const std::filesystem::path& path, int flags);
 std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pixels,
                                        const std::vector<int>& parameters = {});
 
-// Whether the file was written. Its extension says the format.
-bool write_image_file(const std::filesystem::path& path, const cv::Mat& pixels,
+// The extension determines the format. Written as one of many files, see Durability::left_to_system.
+void write_image_file(const std::filesystem::path& path, const cv::Mat& pixels,
                       const std::vector<int>& parameters = {});
 
 }  // namespace byre

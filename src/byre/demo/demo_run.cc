@@ -6,10 +6,10 @@
 #include "byre/dataset/trajectory_input.h"
 #include "byre/demo/painter.h"
 #include "byre/demo/table.h"
-#include "byre/evaluation/trajectory_output.h"
 #include "byre/features/image_threads.h"
 #include "byre/playback/source_recording.h"
 #include "byre/system/stored_map.h"
+#include "byre/trajectory_file.h"
 #include "byre/workers/stopwatch.h"
 
 #include <algorithm>
@@ -191,8 +191,8 @@ class DemoRunner {
   void write_trajectories(const MapRun& run, const std::string& name) const {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
-    write_whole(folder / (name + ".published.txt"), run.causal);
-    write_whole(folder / (name + ".final.txt"), run.final);
+    write_trajectory(run.causal, folder / (name + ".published.txt"));
+    write_trajectory(run.final, folder / (name + ".final.txt"));
   }
 
   fs::path map_file() const { return options_.output / "barn.byre"; }

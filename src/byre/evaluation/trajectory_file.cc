@@ -1,6 +1,6 @@
 #include "byre/trajectory_file.h"
 
-#include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 
@@ -196,9 +196,11 @@ std::vector<Timestamp> read_times(const fs::path& path) {
 }
 
 void write_trajectory(const Trajectory& trajectory, const fs::path& path, TrajectoryFormat format) {
+  OutputFile file(path, FileContent::trajectory);
   std::string text(head_of(format));
   for (const StampedPose& sample : trajectory) text += line_of(sample, format);
-  write_file(path, std::as_bytes(std::span(text)));
+  file.append(text);
+  file.publish();
 }
 
 std::optional<fs::path> find_euroc_ground_truth(const fs::path& folder) {

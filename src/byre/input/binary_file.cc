@@ -25,21 +25,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
 constexpr std::string_view kChangeRemedy = "put another file in its place rather than to change it while it is in use";
-constexpr std::string_view kWriteRemedy = "check that its folder exists, may be written to and has space";
-
-[[noreturn]] void fail_to_write(const fs::path& path) {
-  if (errno == ENOSPC || errno == EDQUOT) fail(path, "cannot be written", "make space, or name a file on another disk");
-  if (errno == EFBIG) fail(path, "cannot be written", "raise the limit of file sizes (ulimit -f)");
-  fail(path, "cannot be written", kWriteRemedy);
-}
-
 // An open file, closed at the end of its life.
 class OpenFile {
  public:
-  OpenFile(const fs::path& path, int flags, std::string_view remedy)
-      : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    const bool is_to_write = (flags & O_ACCMODE) == O_WRONLY;
-    if (descriptor_ < 0) fail(path, is_to_write ? "cannot be written" : "cannot be opened", remedy);
+  explicit OpenFile(const fs::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) fail(path, "cannot be opened", kReadRemedy);
   }
   ~OpenFile() { close(descriptor_); }
   OpenFile(const OpenFile&) = delete;
@@ -62,37 +52,10 @@ class OpenFile {
     return static_cast<std::size_t>(count);
   }
 
-  void write_all(std::span<const std::byte> bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-      if (count < 0 && errno != EINTR) fail_to_write(path_);
-      if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-  }
-
-  void sync() const {
-    if (fsync(descriptor_) != 0) fail_to_write(path_);
-  }
-
  private:
   fs::path path_;
   int descriptor_;
 };
-
-bool is_special(const fs::path& path) {
-  return fs::exists(path) && !fs::is_regular_file(path) && !fs::is_directory(path);
-}
-
-// The file a link stands for, so that the link survives.
-fs::path target_of(const fs::path& path) {
-  return fs::is_symlink(path) ? fs::weakly_canonical(path) : path;
-}
-
-void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
-  const OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy);
-  file.write_all(bytes);
-  file.sync();
-}
 
 }  // namespace
 
@@ -102,7 +65,7 @@ fs::path folder_of(const fs::path& path) {
 
 std::vector<std::byte> read_file(const fs::path& path) {
   refuse_pipe(path);
-  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const OpenFile file(path);
   const struct stat status = file.status();
   if (S_ISDIR(status.st_mode)) throw InputError(path.string(), "is a folder", "name a file in it");
   std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
@@ -116,29 +79,9 @@ std::vector<std::byte> read_file(const fs::path& path) {
   return bytes;
 }
 
-void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
-  if (is_special(path)) return OpenFile(path, O_WRONLY, kWriteRemedy).write_all(bytes);
-  const fs::path target = target_of(path);
-  fs::path unfinished = target;
-  unfinished += ".unfinished";
-  try {
-    write_synced(unfinished, bytes);
-    if (rename(unfinished.c_str(), target.c_str()) != 0) fail(path, "cannot be replaced", kWriteRemedy);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
-    throw;
-  }
-  OpenFile(folder_of(target), O_RDONLY | O_DIRECTORY, kWriteRemedy).sync();
-}
-
-void write_file(const fs::path& path, std::span<const std::byte> bytes) {
-  OpenFile(path, O_WRONLY | O_CREAT | O_TRUNC, kWriteRemedy).write_all(bytes);
-}
-
 PiecewiseFile::PiecewiseFile(const fs::path& path) : path_(path) {
   refuse_pipe(path);
-  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const OpenFile file(path);
   const struct stat status = file.status();
   if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
   size_ = static_cast<std::size_t>(status.st_size);
@@ -163,7 +106,7 @@ void PiecewiseFile::read(std::size_t offset, std::span<std::byte> bytes) const {
 
 MappedFile::MappedFile(const fs::path& path) {
   refuse_pipe(path);
-  const OpenFile file(path, O_RDONLY, kReadRemedy);
+  const OpenFile file(path);
   const struct stat status = file.status();
   if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
   size_ = static_cast<std::size_t>(status.st_size);

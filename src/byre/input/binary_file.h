@@ -11,20 +11,11 @@ namespace byre {
 // The whole file. Throws InputError when it cannot be read.
 std::vector<std::byte> read_file(const std::filesystem::path& path);
 
-// Writes beside the path ("PATH.unfinished"), syncs the file, renames it to path and syncs the folder: whenever the
-// program or the machine stops, path holds either all of what it held before or all of the new bytes. A path that is
-// a device or a pipe is written to directly. Throws InputError, and leaves path as it was, when it cannot be done.
-void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
-
-// The folder that a file lies in; "." where the path names none.
+// The folder of a file; "." if the path names none.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-// Writes it where it is, in place of what is there. Throws InputError when it cannot be done, and says what to do where
-// the disk is full or the file larger than allowed.
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
-
-// An open file, pieces of which are read as they are needed. Stays the same file when its path is given to another one.
-// Several threads may read at once.
+// An open file that is read piece by piece. Stays the same file if its path is given to another one. Several threads
+// may read at once.
 class PiecewiseFile {
  public:
   explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError when it cannot be opened

@@ -2,6 +2,7 @@
 
 #include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
+#include "byre/input_error.h"
 #include "byre/map/block_list.h"
 #include "byre/map/ids.h"
 #include "byre/workers/reused_memory.h"
@@ -132,7 +133,8 @@ struct Covisible {
 };
 
 // What a map leaves in its file until it is looked at. Several threads may look at once. What is handed out stays as
-// long as the source does. Everything throws InputError where the file is damaged there.
+// long as the source does. A keyframe or points that cannot be read, as the file is damaged there, are noted as
+// damage() and replaced: the keyframe sees no point, the points are seen by no keyframe.
 class MapSource {
  public:
   using WordVisitor = std::function<void(KeyframeId, std::span<const Word>)>;
@@ -142,7 +144,10 @@ class MapSource {
   virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const = 0;
   virtual const ObservedPoint& point(std::uint32_t number) const = 0;
   virtual ReusedVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
-  virtual void visit_words(const WordVisitor& visit) const = 0;               // as Map does
+  // As Map does. Throws InputError if they are damaged.
+  virtual void visit_words(const WordVisitor& visit) const = 0;
+  // The first damage that a look met, with file, section and remedy; nullptr without damage.
+  virtual const InputError* damage() const = 0;
 };
 
 // A plain value: copy it, change the copy, save it. Keeps both ends of every observation in step.
@@ -152,7 +157,8 @@ class MapSource {
 // none changes it.
 //
 // A map with a source reads what keyframes see, and points, from it when they are first looked at, and keeps it from
-// then on. Such a look throws InputError where the source is damaged. The first change reads all of it.
+// then on. damage() reports a source that is damaged. The first change reads all of it, and throws InputError if it is
+// damaged.
 class Map {
  public:
   explicit Map(Origin origin) : origin_(origin) {}
@@ -222,6 +228,8 @@ class Map {
   std::vector<PointId> point_ids() const;        // ascending
   // Calls visit with the words of each keyframe, none where they are not known, ascending by keyframe.
   void visit_words(const MapSource::WordVisitor& visit) const;
+  // See MapSource; nullptr without a source.
+  const InputError* damage() const { return source_ ? source_->damage() : nullptr; }
   int keyframe_count() const { return keyframe_count_; }
   int point_count() const { return point_count_; }
 

@@ -42,6 +42,7 @@ void Map::read_from_source() {
   parts.points.reserve(static_cast<std::size_t>(point_count_));
   for (const KeyframeId id : keyframe_ids()) parts.keyframes.push_back(*find_keyframe(id));
   for (const PointId id : point_ids()) parts.points.push_back(*find_point(id));
+  if (const InputError* const fault = damage()) throw InputError(*fault);
   *this = Map(origin_, std::move(parts));
 }
 

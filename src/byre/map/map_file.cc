@@ -1,6 +1,7 @@
 #include "byre/map/map_file.h"
 
 #include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file_source.h"
 #include "byre/map/map_sections.h"
@@ -382,6 +383,7 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
 std::vector<std::byte> write_map(const StoredMap& stored) {
   std::vector<std::byte> file(header_bytes(kSectionCount));
   const SectionEnds ends = write_sections(stored, file);
+  if (const InputError* const fault = stored.map.damage()) throw InputError(*fault);
   ByteWriter header;
   write_header(Bytes(file).subspan(file.size() - ends.back()), ends, header);
   std::ranges::copy(header.bytes(), file.begin());
@@ -481,14 +483,14 @@ StoredMap reread(std::span<const std::byte> bytes, const std::filesystem::path& 
 void save_map(const StoredMap& stored, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = write_map(stored);
   reread(bytes, path);
-  replace_file(path, bytes);
+  write_whole(path, bytes);
 }
 
 void save_and_reread(StoredMap& stored, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = write_map(stored);
   stored = {};
   stored = reread(bytes, path);
-  replace_file(path, bytes);
+  write_whole(path, bytes);
 }
 
 }  // namespace byre

@@ -86,8 +86,8 @@ struct SectionSize {
 };
 
 // The layout is described in docs/map_format.md. Equal maps give equal bytes. Values are rounded, far below their
-// noise; a map that was read from its bytes is written as them again. Preconditions: ids without gaps, and keyframes
-// whose rigs exist.
+// noise; a map that was read from its bytes is written as them again. Throws InputError for a map with a damaged
+// source. Preconditions: ids without gaps, and keyframes whose rigs exist.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
 // All or nothing: throws InputError naming section and byte for any damage, any broken invariant, and a format that is
@@ -95,7 +95,7 @@ std::vector<std::byte> write_map(const StoredMap& stored);
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 
-// The same on files. Saving replaces a file as a whole, see replace_file, once the bytes have been read back: a map
+// The same on files. Saving replaces a file as a whole, see write_whole, once the bytes have been read back: a map
 // that could not be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
 // As read_map and load_map, but for what keyframes see and points: these are read, and checked, when they are first

@@ -15,6 +15,23 @@ using Bytes = std::span<const std::byte>;
 constexpr std::array<std::string_view, kViewSections> kViewNames = {"features", "patches", "observations",
                                                                     "descriptors", "words"};
 
+// With as many features as points that can be read may say that the keyframe has.
+Keyframe unseeing(const Keyframe& bare, const Rig& rig, std::uint32_t features) {
+  const Keypoint anywhere{.pixel = Eigen::Vector2f::Zero()};
+  Keyframe keyframe = bare;
+  keyframe.frame.features =
+      std::make_shared<const Features>(rig.width, rig.height, std::vector<Keypoint>(features, anywhere),
+                                       std::vector<Descriptor>(features), std::vector<Patch>());
+  keyframe.sightings.resize(features);
+  return keyframe;
+}
+
+ObservedPoint unseen_point() {
+  ObservedPoint unseen;
+  unseen.point.reference.keyframe = {Origin::offline, 0};
+  return unseen;
+}
+
 }  // namespace
 
 MapFileSource::MapFileSource(File file, Lookup lookup)
@@ -23,21 +40,38 @@ MapFileSource::MapFileSource(File file, Lookup lookup)
       keyframes_(lookup_.keyframes.size()),
       blocks_(lookup_.blocks.size()) {}
 
+template <typename Read, typename Substitute>
+auto MapFileSource::read_or(Read read, Substitute substitute) const {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    damage_.get(0, [&error] { return error; });
+    return substitute();
+  }
+}
+
 const Keyframe& MapFileSource::keyframe(std::uint32_t number, const Keyframe& bare) const {
-  return keyframes_.get(number, [&] { return read_keyframe(number, bare); });
+  const std::uint32_t features = lookup_.keyframes[number].features;
+  return keyframes_.get(number, [&] {
+    return read_or([&] { return read_keyframe(number, bare); },
+                   [&] { return unseeing(bare, file_.rigs[static_cast<std::size_t>(bare.rig)], features); });
+  });
 }
 
 const ObservedPoint& MapFileSource::point(std::uint32_t number) const {
   const std::uint32_t block = number / kPointsOfBlock;
-  return blocks_.get(block, [&] { return read_block(block); })[number % kPointsOfBlock];
+  const std::uint32_t size = std::min(kPointsOfBlock, file_.point_count - block * kPointsOfBlock);
+  return blocks_.get(block, [&] {
+    return read_or([&] { return read_block(block); }, [&] { return Block(size, unseen_point()); });
+  })[number % kPointsOfBlock];
 }
 
 ReusedVector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
   const PartPlace& place = lookup_.keyframes[number].covisible;
   const std::size_t first_byte = file_.lookup + lookup_.first_byte_of_covisible + place.begin;
-  return read_covisible(
-      ByteReader(Bytes(lookup_.covisible).subspan(place.begin, place.size), place_of("lookup"), first_byte), number,
-      lookup_.keyframes.size());
+  const ByteReader reader(Bytes(lookup_.covisible).subspan(place.begin, place.size), place_of("lookup"), first_byte);
+  return read_or([&] { return read_covisible(reader, number, lookup_.keyframes.size()); },
+                 [] { return ReusedVector<Covisible>(); });
 }
 
 void MapFileSource::visit_words(const WordVisitor& visit) const {

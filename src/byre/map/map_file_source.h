@@ -34,6 +34,7 @@ class MapFileSource : public MapSource {
   const ObservedPoint& point(std::uint32_t number) const override;
   ReusedVector<Covisible> covisible(std::uint32_t number) const override;
   void visit_words(const WordVisitor& visit) const override;
+  const InputError* damage() const override { return damage_.find(0); }
 
  private:
   using Block = std::vector<ObservedPoint>;
@@ -48,11 +49,15 @@ class MapFileSource : public MapSource {
   std::string place_of(std::string_view section) const;
   Keyframe read_keyframe(std::uint32_t number, const Keyframe& bare) const;
   Block read_block(std::uint32_t number) const;
+  // The result of read(); notes damage and gives the substitute if that throws.
+  template <typename Read, typename Substitute>
+  auto read_or(Read read, Substitute substitute) const;
 
   File file_;
   Lookup lookup_;
   MadeOnce<Keyframe> keyframes_;
   MadeOnce<Block> blocks_;
+  MadeOnce<InputError> damage_{1};
 };
 
 }  // namespace byre

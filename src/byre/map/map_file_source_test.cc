@@ -5,7 +5,9 @@
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/stored_map_scene.h"
 
+#include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <random>
 #include <thread>
 
@@ -72,8 +74,10 @@ double look_at_all(const Map& map) {
 // What opening, or looking at all of it, says is wrong; empty where it is nothing.
 std::string fault_when_looked_at(MapBytes bytes) {
   try {
-    look_at_all(WatchedFile(std::move(bytes)).open().map);
-    return "";
+    WatchedFile file(std::move(bytes));
+    const StoredMap opened = file.open();
+    look_at_all(opened.map);
+    return opened.map.damage() != nullptr ? opened.map.damage()->what() : "";
   } catch (const InputError& error) {
     return error.what();
   }
@@ -177,6 +181,29 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
               AllOf(StartsWith("barn.byre: section features at byte "), HasSubstr("wrong checksum")));
 }
 
+TEST(MapFileSource, GoesOnBesideADamagedKeyframeWhichSeesNothing) {
+  MapBytes bytes = scene_of_size(5);
+  const StoredMap sound = read_map(bytes, "");
+  const TableEntry section = section_of(bytes, "patches");
+  bytes[section.offset + section.size - 1] ^= std::byte{1};
+  WatchedFile file(bytes);
+  const StoredMap opened = file.open();
+  const auto sees_points = [](const Keyframe& keyframe) {
+    return std::ranges::any_of(keyframe.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); });
+  };
+  EXPECT_EQ(opened.map.damage(), nullptr) << "not met yet";
+  for (const KeyframeId id : opened.map.keyframe_ids()) {
+    const bool was_met = opened.map.damage() != nullptr;
+    const Keyframe& keyframe = *opened.map.find_keyframe(id);
+    const bool is_damaged = !was_met && opened.map.damage() != nullptr;
+    EXPECT_EQ(sees_points(keyframe), sees_points(*sound.map.find_keyframe(id)) && !is_damaged) << id.number;
+    EXPECT_EQ(keyframe.frame.features->size(), static_cast<int>(keyframe.sightings.size()));
+  }
+  ASSERT_NE(opened.map.damage(), nullptr);
+  Map changed = opened.map;
+  EXPECT_THROW(changed.remove_keyframe(opened.map.keyframe_ids().back()), InputError) << "a change reads all of it";
+}
+
 TEST(MapFileSource, RefusesEveryShorterFile) {
   const MapBytes bytes = scene_of_size(3);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -250,7 +277,7 @@ TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome)
     begin += section.bytes;
   }
   bytes[begin + 5] ^= std::byte{1};
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   try {
     open_map(path);
     ADD_FAILURE() << "opened";
@@ -264,15 +291,19 @@ TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome)
 TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   const fs::path path = fs::path(testing::TempDir()) / ("map_source_" + std::to_string(getpid()) + ".byre");
   const MapBytes bytes = scene_of_size(7);
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   const StoredMap opened = open_map(path), untouched = open_map(path);
   fs::remove(path);
   EXPECT_EQ(write_map(opened), bytes);
 
-  write_file(path, bytes);
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
   const StoredMap cut = open_map(path);
   fs::resize_file(path, bytes.size() / 3);
-  EXPECT_THROW(look_at_all(cut.map), InputError);
+  EXPECT_THROW(look_at_all(cut.map), InputError) << "of words";
+  ASSERT_NE(cut.map.damage(), nullptr);
+  EXPECT_THAT(cut.map.damage()->what(), HasSubstr("has become shorter since it was opened"));
+  EXPECT_THROW(write_map(cut), InputError) << "a part of a map is not saved as if it were the whole";
+  EXPECT_EQ(untouched.map.damage(), nullptr);
   EXPECT_EQ(write_map(untouched), bytes) << "another file of that name";
   fs::remove(path);
 }

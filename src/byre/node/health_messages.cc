@@ -23,6 +23,8 @@ std::string advice_for(Doubt doubt) {
       return "look whether the cameras are in step, exchanged or were moved; calibrate them";
     case Doubt::calibration:
       return "calibrate the cameras";
+    case Doubt::map_damaged:
+      return "replace the map by a copy, then send load NAME or restart the node";
     case Doubt::bridged:
       return "look for covered lenses and darkness; wheels lead the robot on for some metres only";
     case Doubt::off_the_plane:

@@ -4,11 +4,11 @@
 
 namespace byre {
 
-// Where the map is kept that a saved one has taken the place of: of barn.byre barn.previous.byre.
+// Path of the version of a map before the present one: of barn.byre barn.previous.byre.
 std::filesystem::path previous_map(const std::filesystem::path& map);
 
-// Keeps a map as the previous one, before another takes its place; nothing where there is none. The map stays where it
-// is, and at any moment there is a whole one of each name. Throws InputError where that cannot be done.
+// Keeps the map of this path as its previous version, before another one replaces it; does nothing if it is no map
+// file. At any moment there is a whole map under each name. Throws InputError if that cannot be done.
 void keep_as_previous(const std::filesystem::path& map);
 
 }  // namespace byre

@@ -1,5 +1,9 @@
 #include "byre/node/kept_maps.h"
 
+#include "byre/input/output_file.h"
+#include "byre/input_error.h"
+#include "byre/node/slam_runner.h"
+
 #include <fstream>
 #include <sstream>
 
@@ -10,6 +14,7 @@ namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
 
 class KeptMaps : public testing::Test {
  protected:
@@ -26,32 +31,85 @@ class KeptMaps : public testing::Test {
   fs::path map_ = folder_ / "barn.byre";
 };
 
+const std::string kBegin =
+    "\x89"
+    "BYRE\r\n";
+
 TEST_F(KeptMaps, AreTheOneThatIsSavedAndTheOneBefore) {
   keep_as_previous(map_);
   EXPECT_FALSE(fs::exists(previous_map(map_))) << "there was none";
-  for (const char* day : {"monday", "tuesday", "wednesday"}) {
+  for (const char* const day : {"monday", "tuesday", "wednesday"}) {
     keep_as_previous(map_);
-    fs::remove(map_);  // another file takes the name
-    std::ofstream(map_) << day;
+    write_whole(map_, kBegin + day);
   }
-  EXPECT_EQ(content(map_), "wednesday");
-  EXPECT_EQ(content(folder_ / "barn.previous.byre"), "tuesday");
+  EXPECT_EQ(content(map_), kBegin + "wednesday");
+  EXPECT_EQ(content(folder_ / "barn.previous.byre"), kBegin + "tuesday");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
 TEST_F(KeptMaps, LeaveNothingBesideWhereASaveWasInterruptedBeforeTheMapWasReplaced) {
-  std::ofstream(map_) << "monday";
+  write_whole(map_, kBegin + "monday");
   for (int save = 0; save < 2; ++save) keep_as_previous(map_);
-  EXPECT_EQ(content(previous_map(map_)), "monday");
+  EXPECT_EQ(content(previous_map(map_)), kBegin + "monday");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
 TEST_F(KeptMaps, OutliveWhatAnInterruptedSaveLeft) {
-  std::ofstream(map_) << "monday";
-  std::ofstream(folder_ / "barn.previous.byre.unfinished") << "half";
+  write_whole(map_, kBegin + "monday");
+  std::ofstream(folder_ / "barn.previous.byre.0123abcd.unfinished") << "half";
   keep_as_previous(map_);
-  EXPECT_EQ(content(previous_map(map_)), "monday");
-  EXPECT_FALSE(fs::exists(folder_ / "barn.previous.byre.unfinished"));
+  EXPECT_EQ(content(previous_map(map_)), kBegin + "monday");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
+TEST_F(KeptMaps, DoNotComeOfOtherFilesNorReplaceThem) {
+  std::ofstream(map_) << "Dear reader";
+  keep_as_previous(map_);
+  EXPECT_FALSE(fs::exists(previous_map(map_)));
+  fs::remove(map_);
+  write_whole(map_, kBegin + "monday");
+  std::ofstream(previous_map(map_)) << "Dear reader";
+  EXPECT_THROW(keep_as_previous(map_), InputError);
+  EXPECT_EQ(content(previous_map(map_)), "Dear reader");
+  keep_as_previous("/dev/null");
+  EXPECT_FALSE(fs::exists("/dev/null.previous"));
+}
+
+std::string refusal_of(const NodeConfig& config) {
+  try {
+    SlamRunner runner(config);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST_F(KeptMaps, AreNoFileThatTheNodeReadsNorOfAnotherKind) {
+  NodeConfig config;
+  config.file = folder_ / "robot.yaml";
+  config.map = folder_ / "barn.byre";
+  config.calibration = folder_ / "calibration.yaml";
+  config.plan = folder_ / "plan.yaml";
+  std::ofstream(*config.file) << "slam:\n";
+  std::ofstream(*config.calibration) << "cam0:\n";
+  std::ofstream(*config.plan) << "image: plan.png\n";
+  for (const char* const image : {"plan.png", "photo.png"}) std::ofstream(folder_ / image) << "\x89PNG\r\n";
+  write_whole(*config.map, kBegin);
+  fs::create_hard_link(*config.map, folder_ / "same.byre");
+  const auto with = [&config, this](const char* name) {
+    config.save = folder_ / name;
+    return refusal_of(config);
+  };
+  for (const char* const read : {"robot.yaml", "calibration.yaml", "plan.yaml", "plan.png", "barn.byre", "same.byre"}) {
+    EXPECT_THAT(with(read), HasSubstr("so it may not be written: name another file")) << read;
+  }
+  EXPECT_THAT(with("photo.png"), HasSubstr("is there and is no map"));
+  EXPECT_EQ(with("today.byre"), "");
+  config.map = folder_ / "today.previous.byre";
+  EXPECT_THAT(with("today.byre"), HasSubstr("today.previous.byre is read, for slam.map")) << "a save would replace it";
+  config.map = folder_ / "barn.byre";
+  config.task = NodeTask::extend;
+  EXPECT_EQ(with("barn.byre"), "") << "a map may be extended in place";
 }
 
 }  // namespace

@@ -256,6 +256,10 @@ void Node::note_events(const FrameReport& report) {
     }
     log_(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
   }
+  const bool was_damaged = last_report_ && last_report_->health.doubt == Doubt::map_damaged;
+  if (report.health.doubt == Doubt::map_damaged && !was_damaged) {
+    log_(LogLevel::error, runner_.map_damage().value_or("the map file is damaged"));
+  }
   if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
   const std::string doubt =
       report.health.doubt == Doubt::none ? "" : ": " + std::string(to_string(report.health.doubt));

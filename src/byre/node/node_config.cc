@@ -104,6 +104,7 @@ std::string NodeConfig::topic(const std::string& given) const {
 
 NodeConfigReading read_node_config(const fs::path& path) {
   NodeConfigReading reading;
+  reading.config.file = path;
   const std::vector<Setting> given = read_settings(path);
   for (const Setting& setting : given) {
     const std::string place = path.string() + ":" + std::to_string(setting.line);

@@ -41,6 +41,8 @@ struct FleetSettings {
 // What `byre node` is told. Topics that do not begin with a slash are within the node: "/byre/odometry". An empty one
 // is left out. Paths can be opened as they are.
 struct NodeConfig {
+  std::optional<std::filesystem::path> file;  // file of these settings
+
   std::string name = "byre";
   std::string name_space = "/";
   std::optional<bool> services;  // whether commands are services too; empty: where ROS is by Cyclone DDS

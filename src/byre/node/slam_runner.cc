@@ -1,5 +1,6 @@
 #include "byre/node/slam_runner.h"
 
+#include "byre/dataset/file_safety.h"
 #include "byre/dataset/settings_file.h"
 #include "byre/floor_plan.h"
 #include "byre/input/output_file.h"
@@ -51,10 +52,36 @@ fs::path beside(const fs::path& map, const std::string& name) {
   return map.parent_path() / name;
 }
 
+// slam.save and its previous version are files that may be written, and none that the node reads; but for the map that
+// is extended.
+void require_safe_save(const NodeConfig& config) {
+  if (!config.save) return;
+  NamedFiles files;
+  const auto add = [&files](InputKind kind, const char* name, const std::optional<fs::path>& file) {
+    if (file) files.inputs.push_back({kind, name, *file});
+  };
+  add(InputKind::file, "the settings", config.file);
+  if (config.task != NodeTask::extend) add(InputKind::file, "slam.map", config.map);
+  add(InputKind::file, "slam.options", config.options);
+  add(InputKind::file, "slam.vocabulary", config.vocabulary);
+  add(InputKind::plan, "slam.plan", config.plan);
+  add(InputKind::file, "calibration.file", config.calibration);
+  add(InputKind::file, "mqtt.password_file", config.fleet.password_file);
+  for (const fs::path& written : {*config.save, previous_map(*config.save)}) {
+    files.outputs.push_back({OutputKind::map, "slam.save", written});
+  }
+  try {
+    require_not_read(files);
+  } catch (const FileConflict& conflict) {
+    throw InputError(conflict.argument(), conflict.what());
+  }
+  require_writable(*config.save, FileContent::map);
+}
+
 }  // namespace
 
 SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
-  if (config.save) require_writable(*config.save);
+  require_safe_save(config);
 }
 
 FrameReport SlamRunner::process(const CameraImages& images) {
@@ -71,6 +98,7 @@ void SlamRunner::replace(Slam slam) {
   slam.pause_mapping(slam_ && slam_->is_mapping_paused());
   slam_.emplace(std::move(slam));
   had_pose_ = false;
+  has_saved_ = false;
 }
 
 SlamOptions SlamRunner::options_for(const fs::path& map) const {
@@ -136,9 +164,11 @@ void SlamRunner::require_running() const {
 std::string SlamRunner::save() {
   require_running();
   if (!config_.save) throw InputError("save", "has no file to write", "set slam.save");
-  if (slam_->keyframes() > 0 && is_map_sound_) keep_as_previous(*config_.save);
+  require_safe_save(config_);
+  if (slam_->keyframes() > 0 && is_map_sound_ && !has_saved_) keep_as_previous(*config_.save);
   slam_->save(*config_.save);
   is_map_sound_ = true;
+  has_saved_ = true;
   return "saved " + config_.save->string();
 }
 

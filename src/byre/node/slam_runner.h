@@ -14,7 +14,8 @@ namespace byre {
 // looked for from nothing.
 class SlamRunner {
  public:
-  // Throws InputError for options that cannot be read, and a file to save that cannot be written.
+  // Throws InputError for options that cannot be read, and for a file to save that may not be written, see
+  // input/output_file.h, or that the node reads.
   explicit SlamRunner(const NodeConfig& config);
 
   // Throws InputError as Slam does, and for a pair of cameras that knows no metres. Where the kept map cannot be used,
@@ -32,6 +33,7 @@ class SlamRunner {
 
   // A pose of the body, as it is published: on the floor plan where that is wanted.
   Pose published(const Pose& map_from_body) const;
+  std::optional<std::string> map_damage() const { return slam_->map_damage(); }  // see Slam
   Trajectory trajectory() const { return slam_->trajectory(); }
   // Points of the map that is made, or of the kept map that a mission is on, as they are published. Of a mission the
   // file is read once more, which takes as long as loading it.
@@ -41,7 +43,8 @@ class SlamRunner {
   bool makes_a_map() const { return config_.task != NodeTask::mission; }
 
   // Each throws InputError for what cannot be done, and leaves everything as it was then.
-  std::string save();                         // what was done; the map that stood there is kept as the previous one
+  // Keeps the map that was there before the first save of this Slam as the previous version. Gives what was done.
+  std::string save();
   std::string load(const std::string& name);  // a map beside the one that is loaded, by its file's name alone
   std::string relocalise();                   // looks for the robot from nothing, in the same map
   std::string pause_mapping(bool is_paused);  // nothing is added to what is mapped meanwhile
@@ -60,7 +63,8 @@ class SlamRunner {
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
-  bool is_map_sound_ = true;  // whether the map that is there was used, so that it is worth keeping as the previous one
+  bool is_map_sound_ = true;  // false after a start on the previous version, as the map could not be loaded
+  bool has_saved_ = false;    // whether the file is of slam_ already
   bool had_pose_ = false;     // whether any frame of slam_ had a pose
 };
 

@@ -1,6 +1,7 @@
 #include "byre/place/vocabulary.h"
 
 #include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/place/dbow2_file.h"
 #include "byre/place/k_majority.h"
 #include "byre/place/vocabulary_file.h"
@@ -70,7 +71,7 @@ Vocabulary Vocabulary::load(const std::filesystem::path& path) {
 }
 
 void Vocabulary::save(const std::filesystem::path& path) const {
-  replace_file(path, data_->bytes);
+  write_whole(path, data_->bytes);
 }
 
 int Vocabulary::word_count() const {

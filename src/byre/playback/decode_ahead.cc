@@ -2,6 +2,8 @@
 
 #include "byre/workers/stopwatch.h"
 
+#include <exception>
+#include <string>
 #include <utility>
 
 namespace byre {
@@ -23,29 +25,30 @@ void DecodeAhead::decode_all(const std::stop_token& stop) {
   }
 }
 
-DecodeAhead::Slot DecodeAhead::decode(int index) {
+DecodedFrame DecodeAhead::decode(int index) {
   const Stopwatch watch;
-  Slot slot;
-  slot.frame.time = recording_.times()[static_cast<std::size_t>(index)];
+  DecodedFrame slot;
+  slot.time = recording_.times()[static_cast<std::size_t>(index)];
   const auto warned_before = static_cast<std::ptrdiff_t>(recording_.warnings().size());
+  std::string failure;
   try {
-    slot.frame.images = recording_.read(index);
-  } catch (...) {
-    slot.failure = std::current_exception();
+    slot.images = recording_.read(index);
+  } catch (const std::exception& error) {
+    failure = error.what();
   }
   const std::vector<std::string>& warnings = recording_.warnings();
-  slot.frame.warnings.assign(warnings.begin() + warned_before, warnings.end());
-  slot.frame.seconds = watch.seconds();
+  slot.warnings.assign(warnings.begin() + warned_before, warnings.end());
+  if (!failure.empty()) slot.warnings.push_back("frame " + std::to_string(index) + " is left out: " + failure);
+  slot.seconds = watch.seconds();
   return slot;
 }
 
 std::optional<DecodedFrame> DecodeAhead::next() {
   if (taken_ == recording_.size()) return std::nullopt;
   filled_.acquire();
-  Slot slot = std::exchange(slot_of(taken_++), {});
+  DecodedFrame frame = std::exchange(slot_of(taken_++), {});
   free_.release();
-  if (slot.failure) std::rethrow_exception(slot.failure);
-  return std::move(slot.frame);
+  return frame;
 }
 
 }  // namespace byre

@@ -3,7 +3,6 @@
 #include "byre/recording.h"
 
 #include <array>
-#include <exception>
 #include <optional>
 #include <semaphore>
 #include <string>
@@ -31,23 +30,18 @@ class DecodeAhead {
   DecodeAhead(const DecodeAhead&) = delete;
   DecodeAhead& operator=(const DecodeAhead&) = delete;
 
-  // Waits for the next frame; empty after the last one. Throws what reading it threw.
+  // Waits for the next frame; empty after the last one. A frame whose reading throws is without images, with a warning.
   std::optional<DecodedFrame> next();
 
  private:
-  struct Slot {
-    DecodedFrame frame;
-    std::exception_ptr failure;
-  };
-
   void decode_all(const std::stop_token& stop);
-  Slot decode(int index);
-  Slot& slot_of(int index) { return slots_[static_cast<std::size_t>(index % kAhead)]; }
+  DecodedFrame decode(int index);
+  DecodedFrame& slot_of(int index) { return slots_[static_cast<std::size_t>(index % kAhead)]; }
 
   Recording& recording_;  // read from by the thread alone
   int taken_ = 0;         // owned by the caller of next()
   // A slot belongs to the thread from when it is free until it is filled, then to the caller until it is free again.
-  std::array<Slot, kAhead> slots_;
+  std::array<DecodedFrame, kAhead> slots_;
   std::counting_semaphore<kAhead + 1> free_{kAhead};  // room for one more, to wake the thread when it is to stop
   std::counting_semaphore<kAhead> filled_{0};
   std::jthread thread_;  // the last member: it uses the others

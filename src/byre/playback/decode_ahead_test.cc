@@ -74,13 +74,16 @@ TEST(DecodeAhead, StaysAFewFramesAheadAndNoMore) {
   EXPECT_EQ(recording.reads, 100);
 }
 
-TEST(DecodeAhead, ThrowsInTheCallersThreadWhatReadingThrew) {
+TEST(DecodeAhead, LeavesOutAFrameWhoseReadingThrows) {
   FakeRecording recording(3);
   recording.failing = 1;
   DecodeAhead decoder(recording);
-  EXPECT_TRUE(decoder.next());
-  EXPECT_THAT([&] { decoder.next(); }, testing::ThrowsMessage<std::runtime_error>("the camera is gone"));
-  EXPECT_TRUE(decoder.next());
+  EXPECT_TRUE(decoder.next()->images);
+  const auto left_out = decoder.next();
+  EXPECT_FALSE(left_out->images);
+  EXPECT_EQ(left_out->time, Timestamp(10));
+  EXPECT_THAT(left_out->warnings, ElementsAre("frame 1 is left out: the camera is gone"));
+  EXPECT_FALSE(decoder.next()->images) << "frame 2 cannot be read";
 }
 
 TEST(DecodeAhead, MayBeLeftAtAnyFrame) {

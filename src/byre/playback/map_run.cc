@@ -126,12 +126,13 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
     is_begun = is_begun || (has_pose(run.frames.back()) && engine.online().keyframe_count() > 0);
     if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.kept_with_map());
+    if (engine.map_damage() != nullptr) break;
   }
   const std::size_t noted_jobs = engine.log().job_seconds.size();
-  if (hooks.should_stop()) engine.hurry();
+  if (hooks.should_stop() || engine.map_damage() != nullptr) engine.hurry();
   engine.finish();
   const FinishHooks finish_hooks = frugal(hooks);
-  if (is_begun && !hooks.should_stop()) {
+  if (is_begun && !hooks.should_stop() && engine.map_damage() == nullptr) {
     if (options.offline) {
       run.mission_finishing_seconds = engine.finish_mission(finish_hooks);
     } else if (options.vocabulary) {
@@ -140,6 +141,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
   }
   note_jobs(engine, run, noted_jobs);
   take_over_result(engine, run);
+  if (const InputError* const damage = engine.map_damage()) run.map_damage = *damage;
   run.wall_seconds = watch.seconds();
   return run;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/input_error.h"
 #include "byre/recording.h"
 #include "byre/system/engine.h"
 
@@ -47,7 +48,9 @@ struct MapRun {
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;
-  bool is_metric = true;              // lengths of the map and of final poses are metres
+  bool is_metric = true;  // lengths of the map and of final poses are metres
+  // Damage of the offline map's file, at which the mission was ended, see Engine::map_damage.
+  std::optional<InputError> map_damage;
   std::vector<std::string> warnings;  // warnings of the recording
   std::vector<double> lateness;       // seconds by which late frames were fed too late, in a live run
   double wall_seconds = 0.0;          // wall time of the whole run

@@ -1,12 +1,12 @@
 #include "byre/simulation/cowshed_plan.h"
 
 #include "byre/dataset/image_codec.h"
-#include "byre/input_error.h"
+#include "byre/input/output_file.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
+#include <sstream>
 
 #include <opencv2/imgproc.hpp>
 
@@ -19,21 +19,19 @@ constexpr double kMargin = 1.0;  // metres around the building
 constexpr std::uint8_t kFree = 254;
 constexpr std::uint8_t kOccupied = 0;
 
-// Calls write with the open file. Throws InputError when it cannot be written to its end.
+// write: fills in the text.
 template <typename Write>
-void write_text(const fs::path& path, Write write) {
-  std::ofstream file(path);
-  file << std::fixed << std::setprecision(6);
-  write(file);
-  file.close();
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder may be written to");
+void write_fixed_text(const fs::path& path, Write write) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(6);
+  write(text);
+  write_whole(path, text.view());
 }
 
-void write_image(const fs::path& path, const Image& image) {
+void write_plan_image(const fs::path& path, const Image& image) {
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
-  if (write_image_file(path, pixels)) return;
-  throw InputError(path.string(), "cannot be written", "check that its folder may be written to");
+  write_image_file(path, pixels);
 }
 
 }  // namespace
@@ -71,12 +69,12 @@ void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& p
                       const std::vector<MarkSighting>& sightings, const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  write_image(folder / "plan.png", plan.image);
-  write_text(folder / "plan.yaml", [&](std::ostream& file) {
+  write_plan_image(folder / "plan.png", plan.image);
+  write_fixed_text(folder / "plan.yaml", [&](std::ostream& file) {
     file << "image: plan.png\nresolution: " << plan.resolution << "\norigin: [" << plan.origin.x() << ", "
          << plan.origin.y() << ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
   });
-  write_text(folder / "picks.csv", [&](std::ostream& file) {
+  write_fixed_text(folder / "picks.csv", [&](std::ostream& file) {
     file << "#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n";
     for (const MarkPick& pick : picks) {
       for (const double value : pick.point_in_map) file << value << ",";
@@ -84,7 +82,7 @@ void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& p
       file << pick.name << "\n";
     }
   });
-  write_text(folder / "pick_pixels.csv", [&](std::ostream& file) {
+  write_fixed_text(folder / "pick_pixels.csv", [&](std::ostream& file) {
     file << "#time_ns,u_px,v_px,name\n";
     for (const MarkSighting& sighting : sightings) {
       file << sighting.time.count() << "," << sighting.pixel.x() << "," << sighting.pixel.y() << "," << sighting.name

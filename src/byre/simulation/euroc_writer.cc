@@ -4,13 +4,13 @@
 
 #include "byre/dataset/euroc_sensor.h"
 #include "byre/dataset/image_codec.h"
-#include "byre/input_error.h"
+#include "byre/input/output_file.h"
 #include "byre/trajectory_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iomanip>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include <opencv2/imgcodecs.hpp>
@@ -20,18 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::ofstream create(const fs::path& path) {
+void make_folder_of(const fs::path& path) {
   std::error_code failure;
-  fs::create_directories(path.parent_path(), failure);
-  std::ofstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be written", "check that its folder exists and may be written");
-  file << std::setprecision(std::numeric_limits<double>::max_digits10);
-  return file;
+  fs::create_directories(path.parent_path(), failure);  // writing the file fails otherwise, and says why
 }
 
-void close(std::ofstream& file, const fs::path& path) {
-  file.close();
-  if (!file) throw InputError(path.string(), "could not be written to its end", "check that the disk is not full");
+std::ostringstream exact_text() {
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10);
+  return text;
+}
+
+void write_text(const fs::path& path, const std::ostringstream& text) {
+  make_folder_of(path);
+  write_whole(path, text.view());
 }
 
 // Precondition: it is the calibration of a pair.
@@ -45,9 +47,8 @@ double mean_rate_hz(const std::vector<Timestamp>& times) {
 }
 
 void write_sensor(const fs::path& path, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
-  std::ofstream file = create(path);
-  file << write_euroc_sensor({camera, body_from_camera}, rate_hz, "rendered");
-  close(file, path);
+  make_folder_of(path);
+  write_whole(path, write_euroc_sensor({camera, body_from_camera}, rate_hz, "rendered"));
 }
 
 std::string image_name(Timestamp time) {
@@ -56,10 +57,10 @@ std::string image_name(Timestamp time) {
 
 void write_image_list(const fs::path& folder, const std::vector<Timestamp>& times) {
   const fs::path path = folder / "data.csv";
-  std::ofstream file = create(path);
+  std::ostringstream file = exact_text();
   file << "#timestamp [ns],filename\n";
   for (const Timestamp time : times) file << time.count() << "," << image_name(time) << "\n";
-  close(file, path);
+  write_text(path, file);
 }
 
 void write_camera(const fs::path& folder, const Camera& camera, const Pose& body_from_camera,
@@ -75,8 +76,7 @@ void write_recorded_image(const fs::path& folder, const Image& image, Timestamp 
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
   constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
-  if (write_image_file(path, pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest})) return;
-  throw InputError(path.string(), "cannot be written", "check that its folder may be written and the disk is not full");
+  write_image_file(path, pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
 }
 
 // Velocity by central differences, metres per second.
@@ -90,7 +90,7 @@ Eigen::Vector3d velocity_in_world(const Trajectory& truth, std::size_t i) {
 
 void write_truth(const fs::path& folder, const Trajectory& truth) {
   const fs::path path = folder / "data.csv";
-  std::ofstream file = create(path);
+  std::ostringstream file = exact_text();
   file << "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
           "v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], "
           "b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\n";
@@ -103,7 +103,7 @@ void write_truth(const fs::path& folder, const Trajectory& truth) {
     for (const double value : velocity) file << "," << value;
     file << ",0,0,0,0,0,0\n";  // there is no gyroscope and no accelerometer to have biases
   }
-  close(file, path);
+  write_text(path, file);
 }
 
 }  // namespace
@@ -121,11 +121,11 @@ EurocWriter::EurocWriter(const Calibration& calibration, const std::vector<Times
 void write_motion(const MotionSamples& motion, const fs::path& folder) {
   write_trajectory(motion.wheels, folder / "wheel.txt");
   const fs::path imu = folder / "mav0" / "imu0", path = imu / "data.csv", axes = imu / "sensor.yaml";
-  std::ofstream sensor = create(axes);
-  sensor << "sensor_type: imu\ncomment: rendered\nT_BS:\n  cols: 4\n  rows: 4\n"
-            "  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
-  close(sensor, axes);
-  std::ofstream file = create(path);
+  make_folder_of(axes);
+  write_whole(axes,
+              "sensor_type: imu\ncomment: rendered\nT_BS:\n  cols: 4\n  rows: 4\n"
+              "  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n");
+  std::ostringstream file = exact_text();
   file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
           "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
   for (std::size_t i = 0; i < motion.rates.size(); ++i) {
@@ -134,7 +134,7 @@ void write_motion(const MotionSamples& motion, const fs::path& folder) {
     file << time.count() << "," << rate.x() << "," << rate.y() << "," << rate.z() << "," << acceleration.x() << ","
          << acceleration.y() << "," << acceleration.z() << "\n";
   }
-  close(file, path);
+  write_text(path, file);
 }
 
 void write_true_calibration(const Calibration& calibration, const std::vector<Timestamp>& times,

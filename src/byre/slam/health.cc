@@ -130,6 +130,8 @@ std::string_view to_string(Doubt doubt) {
       return "bridged by wheels or a gyroscope";
     case Doubt::dirty:
       return "dirt hides most of the image";
+    case Doubt::map_damaged:
+      return "map file is damaged";
     case Doubt::off_the_plane:
       return "place found is off the driving plane";
     case Doubt::in_wall:

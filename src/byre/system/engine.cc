@@ -73,7 +73,8 @@ std::string_view name_of(OfflinePolicy policy) {
 }
 
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
-    : body_from_left_(given.body_from_left.rotation),
+    : offline_(options.offline),
+      body_from_left_(given.body_from_left.rotation),
       known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
       is_metric_(given.tells_metres() || options.offline || before),
@@ -117,6 +118,10 @@ FrameReport Engine::process_in_time(const Frame& frame, const std::optional<Body
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
   if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
     prior_.note_place(*report.map_from_body);
+  }
+  if (map_damage() != nullptr) {
+    report.health.verdict = Verdict::untrusted;
+    report.health.doubt = Doubt::map_damaged;
   }
   budget_.end();
   report.cuts = budget_.cuts();

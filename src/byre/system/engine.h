@@ -105,6 +105,9 @@ class Engine {
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
   Finishing finish_map(const FinishHooks& hooks);
   double finish_mission(const FinishHooks& hooks);  // finishes a mission, after finish(); wall time, seconds
+  // Why the offline map cannot be read further, with file, section and remedy; nullptr without damage. What was read
+  // before stays in use, and all later reports are untrusted.
+  const InputError* map_damage() const { return offline_ ? offline_->map().damage() : nullptr; }
 
   const Rig& rig() const { return extractor_.rig(); }
   const Map& online() const { return session_.map().online(); }
@@ -130,8 +133,9 @@ class Engine {
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
-  Eigen::Quaterniond body_from_left_;        // constant after construction
-  std::optional<RefinedCalibration> known_;  // before any frame
+  std::shared_ptr<const OfflineMap> offline_;  // nullptr without a mission
+  Eigen::Quaterniond body_from_left_;          // constant after construction
+  std::optional<RefinedCalibration> known_;    // before any frame
   Extractor extractor_;
   MotionPrior prior_;
   bool is_metric_;

@@ -101,6 +101,7 @@ struct Slam::Parts {
   StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
   std::shared_ptr<const OfflineMap> offline;
   bool is_extended = false;
+  std::optional<fs::path> mission_map;   // map that a mission is on
   std::optional<PlanRegistration> plan;  // place of the map that poses are in on its floor plan
 
   Engine engine;
@@ -202,6 +203,7 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   engine.offline = load_offline_map(map, vocabulary, options.plan);
   auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
   parts->plan = load_plan_registration(map);
+  parts->mission_map = map;
   return Slam(std::move(parts));
 }
 
@@ -252,12 +254,17 @@ void Slam::look_near(const PoseHint& hint) {
   parts_->engine.look_near(hint);
 }
 
+std::optional<std::string> Slam::map_damage() const {
+  const InputError* const damage = parts_->engine.map_damage();
+  return damage != nullptr ? std::optional<std::string>(damage->what()) : std::nullopt;
+}
+
 void Slam::finish(const std::function<bool()>& should_stop) {
   if (std::exchange(parts_->is_finished, true)) return;
   const FinishHooks hooks{should_stop ? should_stop : [] { return false; }, {}};
   if (hooks.should_stop()) parts_->engine.hurry();
   parts_->engine.finish();
-  if (hooks.should_stop() || !parts_->has_mapped()) return;
+  if (hooks.should_stop() || !parts_->has_mapped() || map_damage()) return;
   if (parts_->offline) {
     parts_->engine.finish_mission(hooks);
   } else {
@@ -269,6 +276,11 @@ void Slam::save(const fs::path& path) const {
   if (!parts_->has_mapped()) {
     throw InputError(path.string(), "is not written, as nothing was mapped yet",
                      "let the robot move, and look at the reports");
+  }
+  std::error_code none_there;
+  if (parts_->mission_map && fs::equivalent(path, *parts_->mission_map, none_there)) {
+    throw InputError(path.string(), "is the map that the mission is on, so it may not be replaced",
+                     "name another file");
   }
   save_for_use(parts_->kept(), parts_->vocabulary, parts_->options.site, path);
 }

@@ -6,6 +6,7 @@
 #include "byre/simulation/rendered_fixture.h"
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -100,6 +101,57 @@ TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
   EXPECT_FALSE(slam.plan_covariance(*report.map_from_body, report.covariance));
   slam.finish();
   EXPECT_GT(slam.trajectory().size(), 10u);
+}
+
+// The file stays the same one, as when a disk fails.
+void zero_in_place(const fs::path& file) {
+  const std::string zeros(fs::file_size(file), '\0');
+  std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << zeros;
+}
+
+void cut_in_place(const fs::path& file) {
+  fs::resize_file(file, 1000);
+}
+
+TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  for (const auto damage : {zero_in_place, cut_in_place}) {
+    for (const std::size_t good_frames : {0, 4}) {
+      map_shared(8);
+      Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (i == good_frames) damage(map_);
+        const bool was_damaged = slam.map_damage().has_value();  // a search beside tracking may meet it meanwhile
+        const FrameReport report = slam.process(view_of(frames[i]));
+        const bool is_damaged = report.health.doubt == Doubt::map_damaged;
+        EXPECT_TRUE(is_damaged || !was_damaged) << i;
+        EXPECT_TRUE(!is_damaged || report.health.verdict == Verdict::untrusted) << i;
+      }
+      if (good_frames == 0) {
+        ASSERT_TRUE(slam.map_damage());
+        EXPECT_THAT(*slam.map_damage(), HasSubstr(map_.string()));
+      }
+      slam.finish();
+      fs::remove(map_);
+      if (slam.keyframes() == 0) continue;
+      slam.save(map_);
+      EXPECT_GT(load_map(map_).map.keyframe_count(), 0);
+    }
+  }
+}
+
+TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
+  map_shared(8);
+  Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
+  causal(slam, shared_frames());
+  ASSERT_GT(slam.keyframes(), 0);
+  const auto time = fs::last_write_time(map_);
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map that the mission is on"));
+  EXPECT_EQ(fs::last_write_time(map_), time);
+  const fs::path letter = map_.string() + ".txt";
+  std::ofstream(letter) << "Dear reader";
+  EXPECT_THAT(error_by([&] { slam.save(letter); }), HasSubstr("is there and is no map"));
+  fs::remove(letter);
 }
 
 TEST_F(SlamWithAFile, GoesOnWithAMap) {

@@ -52,8 +52,10 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
   StoredMap stored = made_ready(open_map(path), path, vocabulary);
   std::optional<PlacedWalls> walls;
   if (plan) walls = walls_of(stored, path, *plan);
-  return std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
-                                            std::move(walls), mounting_in(stored.notes));
+  auto offline = std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
+                                                    std::move(walls), mounting_in(stored.notes));
+  if (const InputError* const damage = offline->map().damage()) throw InputError(*damage);
+  return offline;
 }
 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {

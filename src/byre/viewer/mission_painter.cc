@@ -57,6 +57,7 @@ void MissionPainter::look(const RunView& run) {
 
 PaintedMission MissionPainter::finish() {
   mission_.way = std::move(scene_.paths.back());
+  if (video_) video_->finish();
   return std::move(mission_);
 }
 

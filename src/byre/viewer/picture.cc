@@ -35,7 +35,7 @@ Picture below(Picture first, const Picture& second) {
 void write_picture(const Picture& picture, const std::filesystem::path& file) {
   if (file.extension() == ".svg" || file.extension() == ".SVG") return write_whole(file, to_svg(picture));
   const std::vector<std::byte> png = to_png(picture);
-  write_whole(file, std::string(reinterpret_cast<const char*>(png.data()), png.size()));
+  write_whole(file, png);
 }
 
 std::vector<Eigen::Vector2d> corners_of(Symbol symbol, double size) {

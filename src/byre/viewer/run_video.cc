@@ -32,11 +32,12 @@ Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& came
 }
 
 RunVideo::RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height)
-    : width_(even(width)), height_(even(height)) {
+    : file_(file, FileContent::video), width_(even(width)), height_(even(height)) {
   const cv::Size size(width_, height_);
-  writer_ = open_video_writer(file.string(), "avc1", frame_rate_hz, size);
+  const std::string name = file_.temporary().string();
+  writer_ = open_video_writer(name, "avc1", frame_rate_hz, size);
   is_h264_ = writer_->isOpened();
-  if (!is_h264_) writer_ = open_video_writer(file.string(), "mp4v", frame_rate_hz, size);
+  if (!is_h264_) writer_ = open_video_writer(name, "mp4v", frame_rate_hz, size);
   if (writer_->isOpened()) return;
   throw InputError(file.string(), "cannot be written as a video",
                    "name it .mp4 in a folder that exists, and have OpenCV with FFmpeg");
@@ -51,6 +52,11 @@ void RunVideo::add(const Picture& picture) {
   const cv::Rect part(0, 0, std::min(width_, drawn.cols), std::min(height_, drawn.rows));
   drawn(part).copyTo(frame(part));
   writer_->write(frame);
+}
+
+void RunVideo::finish() {
+  writer_->release();
+  file_.publish();
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/input/output_file.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/plan_picture.h"
 
@@ -22,16 +23,20 @@ Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& came
 // An MP4 file of pictures of one size, H.264 where the system's FFmpeg can, else MPEG-4.
 class RunVideo {
  public:
-  // Throws InputError when no such file can be written.
+  // Throws InputError if no such file can be written.
   RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height);
   ~RunVideo();
 
   // Cut off, or filled up with white, where it is of another size.
   void add(const Picture& picture);
 
+  // Gives the file its name. Once, after the last picture.
+  void finish();
+
   bool plays_in_browsers() const { return is_h264_; }
 
  private:
+  OutputFile file_;
   int width_;  // pixels, even as the format wants it
   int height_;
   bool is_h264_ = false;

@@ -28,6 +28,8 @@ TEST_F(RunVideoTest, HoldsEveryFrameAtItsRate) {
     RunVideo video(file_, 12.5, 161, 120);
     for (int i = 0; i < 7; ++i) video.add(plain({0, 0, 200}, 161, 120));
     for (int i = 0; i < 6; ++i) video.add(plain({200, 0, 0}, 161, 120));
+    EXPECT_FALSE(fs::exists(file_)) << "not yet whole";
+    video.finish();
   }
   cv::VideoCapture played(file_.string());
   ASSERT_TRUE(played.isOpened());
@@ -44,6 +46,7 @@ TEST_F(RunVideoTest, CutsOffAndFillsUpWhatIsOfAnotherSize) {
   {
     RunVideo video(file_, 10.0, 160, 120);
     for (int i = 0; i < 3; ++i) video.add(plain({0, 0, 200}, 80, 300));
+    video.finish();
   }
   cv::VideoCapture played(file_.string());
   cv::Mat frame;

@@ -1,7 +1,7 @@
 #include "byre/viewer/web_map.h"
 
 #include "byre/dataset/files_read.h"
-#include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/input_error.h"
 #include "byre/viewer/plan_image.h"
 #include "byre/viewer/plan_picks.h"
@@ -102,9 +102,8 @@ class MapSite : public WebSite {
     }
     map_.stored.plan = found.registration;
     save_map(map_.stored, *map_.output);
-    const std::string csv = picks_csv(picks);
     const std::filesystem::path csv_path = picks_path(*map_.output);
-    replace_file(csv_path, std::as_bytes(std::span(csv)));
+    write_whole(csv_path, picks_csv(picks));
     return {map_.output->string(), csv_path.string()};
   }
 

@@ -18,6 +18,9 @@ class MadeOnce {
   MadeOnce(const MadeOnce&) = delete;
   MadeOnce& operator=(const MadeOnce&) = delete;
 
+  // nullptr if it is not made yet.
+  const Thing* find(std::size_t index) const { return things_[index].load(std::memory_order_acquire); }
+
   // make() gives the thing; what it throws goes to the caller, and the thing is made by who asks next.
   template <typename Make>
   const Thing& get(std::size_t index, Make make) const {

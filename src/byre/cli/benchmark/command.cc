@@ -126,13 +126,9 @@ ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& re
   what.engine.vocabulary = open_vocabulary(options.vocabulary);
   what.cores = processor_count();
   const fs::path& folder = options.run.output;
-  std::vector<fs::path> outputs;
-  if (!folder.empty()) {
-    make_folder(folder);
-    outputs = {folder / "speed.md", folder / "speed.json"};
-  }
+  if (!folder.empty()) make_folder(folder);
   limit_image_threads(1);
-  const InterruptCatcher interrupt(outputs);
+  const InterruptCatcher interrupt;
   BenchmarkProgress progress(options.quiet);
   MapRunHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
@@ -164,7 +160,7 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
 
   limit_image_threads(1);
   const fs::path& folder = options.run.output;
-  const InterruptCatcher interrupt({folder / "benchmark.md", folder / "benchmark.json"});
+  const InterruptCatcher interrupt;
   BenchmarkProgress progress(options.quiet);
   BenchmarkHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };

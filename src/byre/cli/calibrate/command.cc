@@ -69,7 +69,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   EngineOptions run_options = read_engine_options(options.options_file);
   run_options.vocabulary = open_vocabulary(std::nullopt);
   limit_image_threads(1);
-  const InterruptCatcher interrupt({options.output});
+  const InterruptCatcher interrupt;
   const MapRun run = run_with_progress(*recording, run_options, {}, interrupt, options.quiet);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (!run.calibration) {

@@ -8,7 +8,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/image_condition.h"
-#include "byre/input/binary_file.h"
+#include "byre/input/output_file.h"
 #include "byre/input/report_row.h"
 #include "byre/workers/stopwatch.h"
 
@@ -102,7 +102,7 @@ ExitCode run_show(const CameraShowOptions& options, std::ostream& result) {
   if (options.still) {
     const ImageFrame& frame = *shown.newest;
     const std::vector<std::uint8_t> png = png_of(frame.right ? side_by_side(frame.left, *frame.right) : frame.left);
-    replace_file(*options.still, std::as_bytes(std::span(png)));
+    write_whole(*options.still, std::as_bytes(std::span(png)));
     result << row("written", options.still->string());
   }
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;

@@ -47,7 +47,7 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
   make_new_folder(options.demo.output);
   const fs::path& folder = options.demo.output;
   const fs::path page = folder / "index.html";
-  const InterruptCatcher interrupt({page});
+  const InterruptCatcher interrupt;
   DemoHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
   hooks.before_stage = [&](const std::string& stage) {

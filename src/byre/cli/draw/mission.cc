@@ -56,7 +56,7 @@ DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const Pl
   MapRunHooks hooks;
   hooks.look = [&painter](const RunView& run) { painter.look(run); };
   limit_image_threads(1);
-  const InterruptCatcher interrupt(options.outputs());
+  const InterruptCatcher interrupt;
   MapRun run = run_with_progress(*recording, run_options(options, std::move(stored)), hooks, interrupt, options.quiet);
   return {painter.finish(), scene_beside(run.map), std::move(run.warnings), interrupt.caught()};
 }

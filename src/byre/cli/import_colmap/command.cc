@@ -68,7 +68,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   const ColmapModel model = read_colmap_model(options.model);
 
   limit_image_threads(1);
-  const InterruptCatcher interrupt({options.map});
+  const InterruptCatcher interrupt;
   const ColmapImport imported = run_with_progress(model, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
   if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for

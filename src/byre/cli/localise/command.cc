@@ -10,7 +10,6 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/trajectory_input.h"
-#include "byre/evaluation/trajectory_output.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
@@ -18,6 +17,7 @@
 #include "byre/playback/localise_run.h"
 #include "byre/playback/run_on_plan.h"
 #include "byre/system/stored_map.h"
+#include "byre/trajectory_file.h"
 #include "byre/workers/stopwatch.h"
 
 #include <algorithm>
@@ -134,7 +134,7 @@ void write_found(const Work& work, const fs::path& path) {
   std::ranges::stable_sort(found, {}, &StampedPose::time);
   const auto repeated = std::ranges::unique(found, {}, &StampedPose::time);
   found.erase(repeated.begin(), repeated.end());
-  write_whole(path, work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found);
+  write_trajectory(work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found, path);
 }
 
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
@@ -146,14 +146,13 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
   add_words(stored, vocabulary);
 
   limit_image_threads(1);
-  std::vector<fs::path> outputs;
-  if (options.trajectory) outputs.push_back(*options.trajectory);
-  const InterruptCatcher interrupt(outputs);
+  const InterruptCatcher interrupt;
   const Work work = localise_all(options, stored, vocabulary, interrupt);
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
   if (options.trajectory) write_found(work, *options.trajectory);
   const std::optional<LocalisationErrors> errors = judge(options, work.run, stored);
   result << (options.json ? to_json(work.run, work.protocol, errors) : to_text(work.run, work.protocol, errors));
+  if (const InputError* const damage = stored.map.damage()) throw InputError(*damage);
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 

@@ -133,7 +133,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
 
   limit_image_threads(1);
   input.show_check();
-  const InterruptCatcher interrupt(options.outputs());
+  const InterruptCatcher interrupt;
   RecordFile messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                       [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
   MapRun run = run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
@@ -154,7 +154,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   result << to_text(run, protocol, resources, names_of(options.outputs())) << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   messages.require_written();
-  require_frames(run, protocol);
+  require_frames(run);
   require_poses(run, protocol);
   return ExitCode::done;
 }

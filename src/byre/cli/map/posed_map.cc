@@ -1,5 +1,6 @@
 #include "byre/cli/map/posed_map.h"
 
+#include "byre/assessment/run_report.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/warnings.h"
@@ -47,7 +48,7 @@ ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
   const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range, options.open);
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
   limit_image_threads(1);
-  const InterruptCatcher interrupt(options.outputs());
+  const InterruptCatcher interrupt;
   const PosedRun run = run_with_progress(*recording, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
 
@@ -57,7 +58,9 @@ ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
   stored.pose_source = PoseSource::given;
   save_for_use(std::move(stored), vocabulary, options.site, *options.map);
   result << to_text(run, options);
-  return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
+  if (interrupt.caught()) return ExitCode::interrupted;
+  require_frames(run.unreadable, run.frames, run.warnings);
+  return ExitCode::done;
 }
 
 }  // namespace byre::cli

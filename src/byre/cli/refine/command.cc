@@ -59,7 +59,7 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   StoredMap stored = load_for_mapping(options.map, vocabulary);
 
-  const InterruptCatcher interrupt({options.written()});
+  const InterruptCatcher interrupt;
   const Finishing finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
   save_for_use(std::move(stored), vocabulary, "", options.written());
   result << (options.json ? to_json(options, finishing) : to_text(options, finishing));

@@ -17,11 +17,9 @@
 #include "byre/playback/run_on_plan.h"
 #include "byre/system/stored_map.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -71,35 +69,38 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   return protocol;
 }
 
-// Written frame by frame, unlike the other outputs: what is known of a mission is kept however it ends. That they
-// cannot be written any more is told at once, for somebody may wait for them.
+// Written frame by frame, unlike the other outputs, so that they are kept however the program ends. A failure to write
+// is reported at once, as another program may wait for events.
 class EventFile {
  public:
   explicit EventFile(const std::optional<fs::path>& path) : path_(path) {
     if (!path_) return;
-    file_.open(*path_);
-    if (!file_) throw InputError(path_->string(), "cannot be written", "check that its folder exists and has space");
+    file_.emplace(*path_, FileContent::json);
+    file_->publish();
   }
 
   void note(int number, const MappedFrame& frame) {
-    if (!path_ || has_failed_) return;
-    errno = 0;
+    if (!path_ || fault_) return;
     log_.note(number, frame);
-    has_failed_ = !file_;
-    if (has_failed_) show_warnings(std::cerr, {fault() + (errno == 0 ? "" : std::string(": ") + std::strerror(errno))});
+    try {
+      file_->append(text_.view());
+      text_.str(std::string());
+    } catch (const InputError& error) {
+      fault_ = "events are missing: " + std::string(error.what());
+      show_warnings(std::cerr, {*fault_});
+    }
   }
 
   void require_written() const {
-    if (has_failed_) throw std::runtime_error(fault());
+    if (fault_) throw std::runtime_error(*fault_);
   }
 
  private:
-  std::string fault() const { return path_->string() + ": events are missing, as they could not be written"; }
-
   std::optional<fs::path> path_;  // empty: nothing is noted
-  std::ofstream file_;
-  EventLog log_{file_};
-  bool has_failed_ = false;
+  std::optional<OutputFile> file_;
+  std::ostringstream text_;  // lines not yet in the file
+  EventLog log_{text_};
+  std::optional<std::string> fault_;
 };
 
 MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewer* viewer, EventFile& events,
@@ -153,7 +154,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   input.show_check();
   std::optional<WatchedRunViewer> viewer;
   if (options.view.is_wanted) viewer.emplace(options.view, input.watched(options.map, protocol.options.offline));
-  const InterruptCatcher interrupt(options.outputs());
+  const InterruptCatcher interrupt;
   EventFile events(options.events);
   RecordFile record(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                     [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
@@ -176,6 +177,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   write_results(options, run, protocol, mission, resources, outputs);
   outputs.require_written();
   result << to_text(run, protocol, resources, names_of(options.outputs()), mission) << input.report();
+  if (run.map_damage) throw InputError(*run.map_damage);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {
     result.flush();
@@ -183,7 +185,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   }
   events.require_written();
   record.require_written();
-  require_frames(run, protocol);
+  require_frames(run);
   require_poses(run, protocol);
   return ExitCode::done;
 }

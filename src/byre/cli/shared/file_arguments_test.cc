@@ -325,7 +325,7 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
 }
 
 TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
-  for (const char* const other : {"out.txt", "./out.txt", "out.txt.unfinished", "link.txt"}) {
+  for (const char* const other : {"out.txt", "./out.txt", "link.txt"}) {
     start_over();
     fs::create_symlink("out.txt", folder_ / "link.txt");
     const Outcome outcome =

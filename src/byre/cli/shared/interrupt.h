@@ -2,18 +2,16 @@
 
 #include <array>
 #include <csignal>
-#include <filesystem>
-#include <vector>
 
 namespace byre::cli {
 
-// While it lives, the first Ctrl-C (SIGINT), request to end (SIGTERM) or loss of the terminal (SIGHUP) is only noted. A
-// second one ends the program at once with 128 and the signal's number as exit code, and the outputs are left as they
-// were: what was being written beside them is removed. Only SIGHUP never does, as a terminal that closes sends several.
-// Where one is ignored, as by nohup or for a program started in the background, it stays so. Have one at a time.
+// During its life the first Ctrl-C (SIGINT), request to end (SIGTERM) or loss of the terminal (SIGHUP) is only noted. A
+// second one ends the program at once with 128 and the signal's number as exit code, and removes temporary files, so
+// that outputs stay as they were. SIGHUP never ends the program, as a terminal that closes sends several. A signal that
+// is ignored, as by nohup, stays ignored. One at a time.
 class InterruptCatcher {
  public:
-  explicit InterruptCatcher(const std::vector<std::filesystem::path>& outputs = {});
+  InterruptCatcher();
   ~InterruptCatcher();
   InterruptCatcher(const InterruptCatcher&) = delete;
   InterruptCatcher& operator=(const InterruptCatcher&) = delete;

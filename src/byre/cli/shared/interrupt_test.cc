@@ -1,8 +1,11 @@
 #include "byre/cli/shared/interrupt.h"
 
+#include "byre/input/output_file.h"
+
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -70,20 +73,21 @@ TEST_F(Interrupt, EndsTheProgramTheSecondTime) {
 }
 
 TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
-  const std::filesystem::path output = std::filesystem::path(testing::TempDir()) / "byre_interrupted.byre";
-  const std::filesystem::path unfinished = output.string() + ".unfinished";
-  std::ofstream(output) << "whole";
-  std::ofstream(unfinished) << "ha";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "byre_interrupted";
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / "whole.txt") << "whole";
   EXPECT_EXIT(
       {
-        const InterruptCatcher catcher({output});
+        const InterruptCatcher catcher;
+        OutputFile half(folder / "whole.txt", FileContent::text);
+        half.append("ha");
         std::raise(SIGINT);
         std::raise(SIGINT);
       },
       testing::ExitedWithCode(130), "");
-  EXPECT_TRUE(std::filesystem::exists(output));
-  EXPECT_FALSE(std::filesystem::exists(unfinished));
-  std::filesystem::remove(output);
+  EXPECT_TRUE(std::filesystem::exists(folder / "whole.txt"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(Interrupt, StaysIgnoredWhereItWas) {

@@ -1,6 +1,5 @@
 #include "byre/cli/shared/outputs.h"
 
-#include "byre/evaluation/trajectory_output.h"
 #include "byre/input_error.h"
 
 #include <system_error>
@@ -18,7 +17,7 @@ void OutputWriter::attempt(const std::function<void()>& write) {
 }
 
 void OutputWriter::attempt(const std::optional<fs::path>& path, const Trajectory& trajectory, TrajectoryFormat format) {
-  if (path) attempt([&] { write_whole(*path, trajectory, format); });
+  if (path) attempt([&] { write_trajectory(trajectory, *path, format); });
 }
 
 void OutputWriter::require_written() const {

@@ -2,6 +2,7 @@
 
 #include "byre/simulation/rendered_fixture.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -43,6 +44,12 @@ class ProgramTest : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   ~ProgramTest() override { std::filesystem::remove_all(folder_); }
+
+  // Temporary files of outputs in the folder.
+  bool has_unfinished_files() const {
+    const auto is_unfinished = [](const auto& entry) { return entry.path().extension() == ".unfinished"; };
+    return std::any_of(std::filesystem::directory_iterator(folder_), {}, is_unfinished);
+  }
 
   void write(const std::string& name, const std::string& content) const { std::ofstream(folder_ / name) << content; }
 

@@ -45,7 +45,7 @@ std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
 }
 
 ExitCode view(const ViewCommandOptions& options) {
-  const InterruptCatcher interrupt(outputs_of(options));
+  const InterruptCatcher interrupt;
   ViewedMap viewed;
   viewed.name = options.map.filename().string();
   viewed.stored = load_map(options.map);

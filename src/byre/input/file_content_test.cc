@@ -1,4 +1,4 @@
-#include "byre/dataset/file_content.h"
+#include "byre/input/file_content.h"
 
 #include <fstream>
 
@@ -43,6 +43,34 @@ TEST(ContentOf, TellsOtherTextFromAllThat) {
   EXPECT_EQ(content_of_bytes("\n\n"), FileContent::text);
   EXPECT_EQ(content_of_bytes("#timestamp [ns],filename\n1403636579763555584,1.png\n"), FileContent::table);
   EXPECT_EQ(content_of_bytes(std::string("\0\1\2", 3)), FileContent::other);
+}
+
+TEST(ContentOf, RecognisesPartsOfColmapModelsAndPages) {
+  const auto content = [](std::string_view bytes, const char* name) {
+    return content_of(std::as_bytes(std::span(bytes)), name);
+  };
+  EXPECT_EQ(content("# Camera list with one line of data per camera:\n1 PINHOLE 4 4 1 1 2 2\n", "cameras.txt"),
+            FileContent::colmap_model);
+  EXPECT_EQ(content("# POINT3D_ID X Y Z R G B ERROR, then\n", "points3D.txt"), FileContent::colmap_model);
+  const std::string one_camera = std::string("\1\0\0\0\0\0\0\0", 8) + std::string(48, '\2');
+  EXPECT_EQ(content(one_camera, "cameras.bin"), FileContent::colmap_model);
+  EXPECT_EQ(content(one_camera, "cameras"), FileContent::other);
+  EXPECT_EQ(content(std::string("\x7f"
+                                "ELF\2\1\1\0\0\0\0",
+                                11),
+                    "cameras.bin"),
+            FileContent::other);
+  EXPECT_EQ(content(std::string("\xff\xd8\xff\xe0\0\x10JFIF", 10), "cameras.bin"), FileContent::other);
+  EXPECT_EQ(content("<!doctype html>\n<svg>", "index.html"), FileContent::page);
+  EXPECT_EQ(content("# Title\nname: text, more\n", "report.md"), FileContent::page);
+}
+
+TEST(ContentOf, DecidesWhatMayBeReplaced) {
+  EXPECT_TRUE(may_replace(FileContent::map, FileContent::map));
+  EXPECT_TRUE(may_replace(FileContent::nothing, FileContent::map));
+  EXPECT_FALSE(may_replace(FileContent::text, FileContent::map));
+  EXPECT_FALSE(may_replace(FileContent::map, FileContent::nothing));
+  EXPECT_FALSE(may_replace(FileContent::other, FileContent::other));
 }
 
 TEST(ContentOf, IsUnknownForWhatIsNoFile) {
