@@ -1,5 +1,6 @@
 #include "byre/trajectory_file.h"
 
+#include "byre/evaluation/trajectory_lines.h"
 #include "byre/input/binary_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
@@ -45,13 +46,6 @@ Timestamp time_of(const std::optional<Timestamp>& parsed, std::string_view field
                   const std::string& place) {
   if (parsed) return *parsed;
   throw InputError(place, "\"" + std::string(field) + "\" is not a time in " + std::string(unit));
-}
-
-// A line with commas begins with whole nanoseconds, any other with seconds.
-Timestamp parse_time(const TextLine& line, const std::string& place) {
-  const std::string_view first = split_fields(line.text).front();
-  if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
-  return time_of(parse_seconds(first), first, "seconds", place);
 }
 
 StampedPose parse_stamped_pose(const TextLine& line, TrajectoryFormat format, const std::string& place) {
@@ -143,7 +137,26 @@ const char* head_of(TrajectoryFormat format) {
   return "";
 }
 
+// With the line that each pose is on.
+template <typename Use>
+void for_each_pose(const fs::path& path, const Use& use) {
+  const TrajectoryFormat format = guess_trajectory_format(path);
+  if (format == TrajectoryFormat::kitti) {
+    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
+  }
+  for (const TextLine& line : read_lines(path)) {
+    const std::string place = place_of(path, line);
+    use(parse_stamped_pose(line, format, place), place);
+  }
+}
+
 }  // namespace
+
+Timestamp parse_time(const TextLine& line, const std::string& place) {
+  const std::string_view first = split_fields(line.text).front();
+  if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
+  return time_of(parse_seconds(first), first, "seconds", place);
+}
 
 TrajectoryFormat guess_trajectory_format(const fs::path& path) {
   const std::vector<TextLine> lines = read_lines(path);
@@ -164,17 +177,17 @@ Trajectory read_trajectory(const fs::path& path) {
     if (!truth) throw InputError(path.string(), "holds no ground truth in mav0/state_groundtruth_estimate0/data.csv");
     return read_trajectory(*truth);
   }
-  const TrajectoryFormat format = guess_trajectory_format(path);
-  if (format == TrajectoryFormat::kitti) {
-    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
-  }
   Trajectory trajectory;
-  for (const TextLine& line : read_lines(path)) {
-    const std::string place = place_of(path, line);
-    const StampedPose sample = parse_stamped_pose(line, format, place);
+  for_each_pose(path, [&](const StampedPose& sample, const std::string& place) {
     require_later(sample.time, trajectory.empty() ? std::nullopt : std::optional(trajectory.back().time), place);
     trajectory.push_back(sample);
-  }
+  });
+  return trajectory;
+}
+
+Trajectory read_trajectory_lines(const fs::path& path) {
+  Trajectory trajectory;
+  for_each_pose(path, [&](const StampedPose& sample, const std::string&) { trajectory.push_back(sample); });
   return trajectory;
 }
 

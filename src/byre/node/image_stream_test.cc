@@ -2,7 +2,7 @@
 
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_pairs.h"
-#include "byre/node/stamp_clock.h"
+#include "byre/dataset/stamp_clock.h"
 
 #include <gmock/gmock.h>
 

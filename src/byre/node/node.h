@@ -15,7 +15,7 @@
 #include "byre/node/pose_frames.h"
 #include "byre/node/service_manager.h"
 #include "byre/node/slam_runner.h"
-#include "byre/node/stamp_clock.h"
+#include "byre/dataset/stamp_clock.h"
 #include "byre/viewer/live_topics.h"
 #include "byre/viewer/status_site.h"
 #include "byre/viewer/web_server.h"

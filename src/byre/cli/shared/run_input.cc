@@ -95,6 +95,7 @@ void RunInput::describe(MapProtocol& protocol) const {
   protocol.camera = camera_of(*scaled_.recording, choice_.open);
   protocol.range = choice_.range;
   protocol.frames_in_range = scaled_.recording->size();
+  protocol.times = scaled_.recording->time_corrections();
 }
 
 SourceRecording RunInput::source() const {
