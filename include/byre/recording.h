@@ -61,9 +61,7 @@ struct TimeCorrections {
   int repeated = 0;   // images with the stamp of another: left out
   int unstamped = 0;  // images whose stamp is zero or nonsense: timed by their neighbours
 
-  bool any() const {
-    return source != TimeSource::stamps || !clock_steps.empty() || late + repeated + unstamped > 0;
-  }
+  bool any() const { return source != TimeSource::stamps || !clock_steps.empty() || late + repeated + unstamped > 0; }
 };
 
 // What a recording does not say of itself, or is to be taken otherwise.

@@ -64,7 +64,8 @@ std::string describe(const RecordingCheck& check, const std::vector<Finding>& fi
 
 Json times_json(const TimeCorrections& times) {
   Json steps = Json::array();
-  for (const ClockStep& step : times.clock_steps) steps.push_back({{"frame", step.frame}, {"by_s", to_seconds(step.by)}});
+  for (const ClockStep& step : times.clock_steps)
+    steps.push_back({{"frame", step.frame}, {"by_s", to_seconds(step.by)}});
   return {{"source", to_string(times.source)},
           {"clock_steps", steps},
           {"late", times.late},

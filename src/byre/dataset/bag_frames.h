@@ -19,8 +19,8 @@ struct BagFrame {
 
 struct BagFrames {
   std::vector<BagFrame> frames;
-  TimeCorrections corrections;  // of the left images
-  SensorClock clock;            // of the left images
+  TimeCorrections corrections;        // corrections of the left images
+  SensorClock clock;                  // clock of the left images
   std::vector<std::string> warnings;  // counts of what is out of order, left out or alone
 };
 

@@ -72,7 +72,8 @@ std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& p
 std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::string& place, const SensorClock& images,
                                      std::vector<std::string>& warnings) {
   const BagTopic& kind = bag.content().topics[topic];
-  if (holds<ros::TwistStamped>(kind)) return read_topic<ros::TwistStamped, WheelSample>(bag, topic, place, images, warnings);
+  if (holds<ros::TwistStamped>(kind))
+    return read_topic<ros::TwistStamped, WheelSample>(bag, topic, place, images, warnings);
   if (holds<ros::TwistWithCovarianceStamped>(kind)) {
     return read_topic<ros::TwistWithCovarianceStamped, WheelSample>(bag, topic, place, images, warnings);
   }

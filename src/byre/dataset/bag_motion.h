@@ -24,8 +24,8 @@ bool is_of_motion(std::string_view type, const OpenOptions& options);
 //               TwistWithCovarianceStamped; of the topic that the options name; or the file that they name
 //   gyroscope   sensor_msgs/Imu of the topic that they name; of the only one, where they ask for a gyroscope alone
 // place: how the bag is named in errors and warnings. Warnings count what is damaged or not finite, and corrections of
-// times. images: clock of the left images. Throws InputError, listing the topics of that kind, for a topic that is not there, and
-// where that leaves a choice.
+// times. images: clock of the left images. Throws InputError, listing the topics of that kind, for a topic that is not
+// there, and where that leaves a choice.
 BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place,
                           const SensorClock& images = {});
 

@@ -34,8 +34,7 @@ bool is_wanted(std::string_view type) {
 class BagRecording final : public Recording {
  public:
   BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames,
-               MotionSamples motion, TimeCorrections corrections, std::string place,
-               std::vector<std::string> warnings)
+               MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings)
       : bag_(std::move(bag)),
         calibration_(std::move(calibration)),
         frames_(std::move(frames)),

@@ -176,8 +176,9 @@ void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
 void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
   if (!times.clock_steps.empty()) {
     const ClockStep& first = times.clock_steps.front();
-    const std::string count = formatted("the clock of the images was set %d time%s while recording",
-                                        static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
+    const std::string count =
+        formatted("the clock of the images was set %d time%s while recording",
+                  static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
     findings.push_back({false,
                         count + formatted(", first by %.3f s at frame %d; times after it are shifted",
                                           to_seconds(first.by), first.frame),
@@ -185,16 +186,16 @@ void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
                         "makestep); do not record a bag that is played in a loop"});
   }
   if (times.source != TimeSource::stamps) {
-    const char* const used = times.source == TimeSource::receive_times ? "receive times are used"
-                                                                       : "images of one stamp are spread evenly";
+    const char* const used =
+        times.source == TimeSource::receive_times ? "receive times are used" : "images of one stamp are spread evenly";
     findings.push_back({false, std::string("images have no time stamps, or stamps as coarse as whole seconds; ") + used,
                         "have the driver stamp each image to the microsecond: speeds, wheels and gyroscopes need it"});
   }
   if (times.unstamped > 0) {
-    findings.push_back({false,
-                        formatted("%d images have a time stamp of zero or a wrong one; their times are interpolated",
-                                  times.unstamped),
-                        "begin to record once the driver stamps its images"});
+    findings.push_back(
+        {false,
+         formatted("%d images have a time stamp of zero or a wrong one; their times are interpolated", times.unstamped),
+         "begin to record once the driver stamps its images"});
   }
   if (times.late > 0) {
     findings.push_back({false, formatted("%d images were recorded after later ones, and are put in order", times.late),

@@ -103,7 +103,8 @@ Times spread_evenly(const Times& stamps) {
   const Timestamp resolution = usual_interval(starts);
   const auto step_after = [&](std::size_t run) { return starts[run + 1] - starts[run]; };
   const auto is_whole = [&](std::size_t run) {
-    return run > 0 && run + 1 < runs.size() && step_after(run) > Timestamp{} && step_after(run) <= scaled(1.5, resolution);
+    return run > 0 && run + 1 < runs.size() && step_after(run) > Timestamp{} &&
+           step_after(run) <= scaled(1.5, resolution);
   };
   Times intervals;
   Timestamp::rep largest = 1;
@@ -204,7 +205,8 @@ class ContinuousLine {
 
   // Items from i on that are far ahead, before the stamps come back.
   std::size_t wrong_ahead(std::size_t i) const {
-    if (stamps_[i] - front() <= std::max<Timestamp>(static_cast<Timestamp::rep>(kFew) * interval_, kLeastForward)) return 0;
+    if (stamps_[i] - front() <= std::max<Timestamp>(static_cast<Timestamp::rep>(kFew) * interval_, kLeastForward))
+      return 0;
     for (std::size_t count = 1; count <= kFew && i + count < stamps_.size(); ++count) {
       const Timestamp next = stamps_[i + count];
       if (next < stamps_[i] && goes_on(next, count)) return count;
@@ -238,8 +240,7 @@ class ContinuousLine {
   bool is_step_forward(std::size_t i) const {
     if (received_.empty()) return false;
     const Timestamp stamped = stamps_[i] - front(), waited = received_[i] - received_[front_];
-    return is_set_forward(stamped, waited) &&
-           median(delays_from(i)) - least_delay_before() < (waited - stamped) / 2;
+    return is_set_forward(stamped, waited) && median(delays_from(i)) - least_delay_before() < (waited - stamped) / 2;
   }
 
   bool is_step_back(std::size_t i) const {
@@ -444,7 +445,7 @@ class StepAdoption {
   const SensorClock& other_;
 };
 
-// Of items with one time the first is kept.
+// Sorts by time and keeps the first item of each time.
 void keep_in_order(const Times& times, RestoredTimes& result) {
   result.times_of_all = times;
   std::vector<std::size_t> items(times.size());
@@ -541,8 +542,8 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
   const auto& steps = corrections.clock_steps;
   for (std::size_t i = 0; i < std::min(steps.size(), kMostListed); ++i) {
     const double by = to_seconds(steps[i].by);
-    add(formatted("clock set %s by %.3f s at %s %d: times after it are shifted to continue", by < 0.0 ? "back" : "forward",
-                  std::abs(by), names.counted.c_str(), steps[i].frame));
+    add(formatted("clock set %s by %.3f s at %s %d: times after it are shifted to continue",
+                  by < 0.0 ? "back" : "forward", std::abs(by), names.counted.c_str(), steps[i].frame));
   }
   if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
   if (corrections.unstamped > 0) {

@@ -30,10 +30,10 @@ struct SensorClock {
 };
 
 struct RestoredTimes {
-  std::vector<std::size_t> items;  // items that are kept, by their numbers, in the order of their times
-  std::vector<Timestamp> times;    // one for each of them, strictly increasing
+  std::vector<std::size_t> items;       // items that are kept, by their numbers, in the order of their times
+  std::vector<Timestamp> times;         // one for each of them, strictly increasing
   std::vector<Timestamp> times_of_all;  // one for each item, also of those that are left out
-  TimeCorrections corrections;     // counts all items; steps by places in `items`
+  TimeCorrections corrections;          // counts all items; steps by places in `items`
   SensorClock clock;
 };
 

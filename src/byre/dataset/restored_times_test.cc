@@ -174,8 +174,8 @@ TEST(RestoredTimes, PutLateItemsInOrder) {
   const Times taken = steady(60);
   for (const bool has_reception : {false, true}) {
     Times stamps = taken;
-    std::swap(stamps[20], stamps[21]);                                              // overtaken by one
-    std::rotate(stamps.begin() + 40, stamps.begin() + 41, stamps.begin() + 45);     // by four
+    std::swap(stamps[20], stamps[21]);                                           // overtaken by one
+    std::rotate(stamps.begin() + 40, stamps.begin() + 41, stamps.begin() + 45);  // by four
     const RestoredTimes restored = restore_times({stamps, has_reception ? received_of(taken) : Times()});
     EXPECT_EQ(restored.times, taken);
     EXPECT_EQ(restored.items[20], 21u);
@@ -313,11 +313,12 @@ TEST(TimeCorrections, AreNamedWithWhatWasDone) {
   corrections.late = 2;
   corrections.repeated = 3;
   corrections.unstamped = 4;
-  EXPECT_THAT(describe(corrections, {"walk.mcap: /left", "image", "frame"}),
-              ElementsAre("walk.mcap: /left: clock set back by 0.620 s at frame 70: times after it are shifted to continue",
-                          HasSubstr("4 images have a time stamp of zero or a wrong one: timed between their neighbours"),
-                          HasSubstr("2 images were recorded after later ones: put in order"),
-                          HasSubstr("3 images have the time stamp of another one and are left out")));
+  EXPECT_THAT(
+      describe(corrections, {"walk.mcap: /left", "image", "frame"}),
+      ElementsAre("walk.mcap: /left: clock set back by 0.620 s at frame 70: times after it are shifted to continue",
+                  HasSubstr("4 images have a time stamp of zero or a wrong one: timed between their neighbours"),
+                  HasSubstr("2 images were recorded after later ones: put in order"),
+                  HasSubstr("3 images have the time stamp of another one and are left out")));
   corrections = {.source = TimeSource::receive_times};
   EXPECT_THAT(describe(corrections, {"a", "image", "frame"}), ElementsAre(HasSubstr("receive times are used")));
 }

@@ -55,7 +55,8 @@ TimedMessages timed_messages(const BagContent& content, std::size_t topic, const
   for (std::size_t i = 0; i < restored.items.size(); ++i) {
     timed.messages.push_back({restored.times[i], std::move(recorded.messages[restored.items[i]])});
   }
-  timed.warnings = describe(timed.corrections, {names.place + ": " + content.topics[topic].name, names.kind, names.counted});
+  timed.warnings =
+      describe(timed.corrections, {names.place + ": " + content.topics[topic].name, names.kind, names.counted});
   return timed;
 }
 
