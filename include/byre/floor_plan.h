@@ -17,7 +17,7 @@ namespace byre {
 // other way round where the plan is negated.
 enum class PlanMode : std::uint8_t {
   trinary,  // darkness above occupied_threshold is occupied, below free_threshold free, between unknown
-  scale,    // thresholds as above, a share of 100 between them; pixels that are not opaque are unknown
+  scale,    // as trinary, with shares of 100 between the thresholds; pixels that are not opaque are unknown
   raw       // the grey value itself up to 100; above unknown. Neither thresholds nor negation apply
 };
 
