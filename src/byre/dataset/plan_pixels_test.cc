@@ -108,7 +108,7 @@ TEST_F(PlanImages, HaveThePixelsOfTheirRowsFromTheTop) {
 }
 
 TEST_F(PlanImages, MayHaveSixteenBits) {
-  const cv::Mat image = (cv::Mat_<std::uint16_t>(1, 4) << 0, 65535, 22937, 22936);
+  const cv::Mat image = (cv::Mat_<std::uint16_t>(1, 4) << 0, 65535, 22938, 22937);
   EXPECT_THAT(read(image).occupancy, ElementsAre(100, 0, -1, 100));
 }
 

@@ -28,7 +28,7 @@ constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);
 
 // Which items have a stamp. Zero is one in recordings whose clock starts there.
 std::vector<bool> which_are_stamped(const Times& stamps) {
-  static constexpr Timestamp kNearZero = std::chrono::hours(24);
+  static constexpr Timestamp kNearZero = 10s;
   const bool is_zero_time = std::ranges::any_of(
       stamps, [](Timestamp stamp) { return stamp != Timestamp{} && std::chrono::abs(stamp) < kNearZero; });
   std::vector<bool> are_stamped;
