@@ -155,7 +155,12 @@ void for_each_pose(const fs::path& path, const Use& use) {
 Timestamp parse_time(const TextLine& line, const std::string& place) {
   const std::string_view first = split_fields(line.text).front();
   if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
-  return time_of(parse_seconds(first), first, "seconds", place);
+  // Too large for seconds: ORB-SLAM3 writes nanoseconds, with zeros behind the point.
+  std::optional<Timestamp> time = parse_seconds(first);
+  const std::string_view whole = first.substr(0, first.find('.'));
+  const bool is_whole = first.find_first_not_of(".0", whole.size()) == std::string_view::npos;
+  if (!time && is_whole) time = parse_nanoseconds(whole);
+  return time_of(time, first, "seconds", place);
 }
 
 TrajectoryFormat guess_trajectory_format(const fs::path& path) {

@@ -14,6 +14,7 @@ namespace byre {
 namespace {
 
 constexpr std::string_view kWhiteSpace = " \t\r\v\f";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8, which editors of Windows begin files with
 constexpr int kNanosecondDigits = 9;
 constexpr int kMaxExponent = 30;
 
@@ -62,6 +63,7 @@ std::vector<TextLine> read_lines(const std::filesystem::path& path) {
   std::vector<TextLine> lines;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {
+    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     const std::string_view content = trimmed(text);
     if (!content.empty() && content.front() != '#') lines.push_back({number, std::string(content)});
   }

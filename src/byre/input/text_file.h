@@ -16,8 +16,8 @@ struct TextLine {
   std::string text;  // text of the line without white space at its ends
 };
 
-// The lines that say something: without blank ones and comments ("#..."). Line ends may be LF or CRLF.
-// Throws InputError when the file cannot be read.
+// The lines that say something: without blank ones and comments ("#..."). Line ends may be LF or CRLF; a byte order
+// mark is skipped. Throws InputError when the file cannot be read.
 std::vector<TextLine> read_lines(const std::filesystem::path& path);
 
 // "file:line", as InputError names a place.
