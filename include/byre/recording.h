@@ -38,6 +38,32 @@ struct FrameRange {
   int stride = 1;                   // every n-th frame within the limits is read
 };
 
+// What the times of a recording's frames are made of.
+enum class TimeSource : std::uint8_t {
+  stamps,         // the recorded time stamps
+  receive_times,  // when a bag's messages were received: their stamps are zero, or as coarse as whole seconds
+  even_spacing    // coarse stamps, with the images of one stamp spread evenly
+};
+
+std::string_view to_string(TimeSource source);
+
+// The clock that stamped the images was set while they were recorded.
+struct ClockStep {
+  int frame = 0;   // first frame after it, counted in the whole recording
+  Timestamp by{};  // negative: set back. Frame times are continuous: the sum of the steps so far is subtracted
+};
+
+// How frame times differ from the recorded time stamps. Counts are of the whole recording, left images.
+struct TimeCorrections {
+  TimeSource source = TimeSource::stamps;
+  std::vector<ClockStep> clock_steps{};
+  int late = 0;       // images recorded after later ones: put in order
+  int repeated = 0;   // images with the stamp of another: left out
+  int unstamped = 0;  // images whose stamp is zero or nonsense: timed by their neighbours
+
+  bool any() const { return source != TimeSource::stamps || !clock_steps.empty() || late + repeated + unstamped > 0; }
+};
+
 // What a recording does not say of itself, or is to be taken otherwise.
 struct OpenOptions {
   std::optional<CameraChoice> camera{};  // empty: both where there are two, with depth where there is depth
@@ -51,6 +77,7 @@ struct OpenOptions {
   bool use_gyroscope = false;  // whether imu0 of the folder, or the only sensor_msgs/Imu of a bag is used
   std::optional<std::string> wheels_topic{};  // topic of a bag's wheels, nav_msgs/Odometry or twists; empty: none
   std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
+  std::optional<double> pair_tolerance_s{};   // most seconds between the stamps of a pair; empty: 0.002
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
@@ -69,6 +96,8 @@ class Recording {
   virtual std::optional<ImageFrame> read(int index) = 0;
   // What wheels and a gyroscope told meanwhile; none where nothing was recorded or asked for.
   virtual const MotionSamples& motion() const;
+  // How times() differs from the recorded stamps; nothing for steady frame rates. Each correction has a warning, too.
+  virtual const TimeCorrections& time_corrections() const;
   virtual const std::vector<std::string>& warnings() const = 0;  // warnings of opening it first, then of reading
 
   int size() const { return static_cast<int>(times().size()); }
@@ -86,7 +115,7 @@ bool is_video_file(const std::filesystem::path& path);
 // info and /tf_static. Of a recording of one camera with the
 // calibration of a pair, the choice of camera says which of the two that was. Throws InputError, naming the file and
 // what is wrong with it: missing files, a calibration that does not parse, makes no sense or is of another image size,
-// a camera that is not there, time stamps out of order, no frame in range.
+// a camera that is not there, images that all have one time stamp, no frame in range.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& path, const FrameRange& range,
                                           const OpenOptions& options = {});
 

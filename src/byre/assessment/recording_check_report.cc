@@ -63,6 +63,17 @@ std::string describe(const RecordingCheck& check, const std::vector<Finding>& fi
   return text;
 }
 
+Json times_json(const TimeCorrections& times) {
+  Json steps = Json::array();
+  for (const ClockStep& step : times.clock_steps)
+    steps.push_back({{"frame", step.frame}, {"by_s", to_seconds(step.by)}});
+  return {{"source", to_string(times.source)},
+          {"clock_steps", steps},
+          {"late", times.late},
+          {"repeated", times.repeated},
+          {"unstamped", times.unstamped}};
+}
+
 Json check_json(const RecordingCheck& check, const std::vector<Finding>& findings) {
   Json json = {{"frames", check.frames},
                {"rate_hz", check.rate_hz},
@@ -75,6 +86,7 @@ Json check_json(const RecordingCheck& check, const std::vector<Finding>& finding
                {"features", check.features},
                {"field_of_view_deg", check.field_of_view_deg},
                {"baseline_m", check.baseline_m},
+               {"times", times_json(check.times)},
                {"left", to_json(check.left)},
                {"right", check.right ? to_json(*check.right) : Json()},
                {"pair", nullptr},

@@ -15,6 +15,9 @@ std::string summary_of(const RecordingCheck& check);
 // Rows of a report, then what was found, each with what to do about it.
 std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings);
 
+// {"source": "stamps", "clock_steps": [{"frame": 70, "by_s": -0.62}], "late": 0, "repeated": 0, "unstamped": 0}
+nlohmann::ordered_json times_json(const TimeCorrections& times);
+
 nlohmann::ordered_json check_json(const RecordingCheck& check, const std::vector<Finding>& findings);
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/finish_report.h"
 #include "byre/assessment/map_statistics.h"
+#include "byre/assessment/recording_check_report.h"
 #include "byre/assessment/report_json.h"
 #include "byre/assessment/run_report.h"
 #include "byre/system/option_table.h"
@@ -63,6 +64,7 @@ Json protocol_json(const MapProtocol& protocol) {
                  {"end_frame", or_null(range.last)},
                  {"stride_frames", range.stride}}},
                {"frames_in_range", protocol.frames_in_range},
+               {"times", times_json(protocol.times)},
                {"pace", name_of(protocol.options.pace)}};
   if (protocol.options.pace == Pace::paced) {
     json["mapping_latency_frames"] = kPacedLatency;

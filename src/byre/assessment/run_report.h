@@ -18,6 +18,7 @@ struct MapProtocol {
   CameraChoice camera = CameraChoice::stereo;
   FrameRange range;
   int frames_in_range = 0;
+  TimeCorrections times;  // how frame times differ from the recorded stamps
   EngineOptions options;
   std::string extended;                  // the map that was gone on with; empty for none
   std::vector<std::string> recordings;   // recordings of the whole map

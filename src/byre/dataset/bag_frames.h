@@ -2,6 +2,7 @@
 
 #include "byre/bag/bag.h"
 #include "byre/dataset/bag_topics.h"
+#include "byre/dataset/restored_times.h"
 
 #include <optional>
 #include <string>
@@ -18,11 +19,15 @@ struct BagFrame {
 
 struct BagFrames {
   std::vector<BagFrame> frames;
+  TimeCorrections corrections;        // corrections of the left images
+  SensorClock clock;                  // clock of the left images
   std::vector<std::string> warnings;  // counts of what is out of order, left out or alone
 };
 
-// Frames of the left images, strictly increasing in the time of their headers, each with the right image taken with it.
-// place: how warnings name the bag. Throws InputError when there are right images and none belongs to a left one.
-BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const std::string& place);
+// Frames of the left images in the order of their times (timed_messages), each with the right image whose time differs
+// by the tolerance at most. place: how warnings name the bag. Throws InputError when there are right images and none
+// belongs to a left one, and when all left images have one time stamp.
+BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const std::string& place,
+                     Timestamp tolerance);
 
 }  // namespace byre

@@ -1,12 +1,12 @@
 #include "byre/dataset/bag_motion.h"
 
 #include "byre/dataset/bag_image.h"
+#include "byre/dataset/motion_files.h"
 #include "byre/dataset/motion_messages.h"
 #include "byre/dataset/timed_messages.h"
 #include "byre/dataset/wheel_stream.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
-#include "byre/trajectory_file.h"
 
 #include <optional>
 #include <utility>
@@ -46,9 +46,11 @@ std::size_t choose_topic(const BagContent& content, const Asked& asked, const st
 
 // What the messages of one topic tell.
 template <ros::Message M, typename Sample>
-std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& place,
+std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& place, const SensorClock& images,
                                std::vector<std::string>& warnings) {
-  const TimedMessages timed = timed_messages(bag.content(), topic, {place, "messages"});
+  SensorClock shared = images;
+  shared.source = TimeSource::stamps;  // sound stamps of a sensor are used although those of images are not
+  const TimedMessages timed = timed_messages(bag.content(), topic, {place, "message", "message"}, shared);
   warnings.insert(warnings.end(), timed.warnings.begin(), timed.warnings.end());
   const BagTopic& kind = bag.content().topics[topic];
   const std::string name = place + ": " + kind.name;
@@ -67,14 +69,15 @@ std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& p
   return samples;
 }
 
-std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::string& place,
+std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::string& place, const SensorClock& images,
                                      std::vector<std::string>& warnings) {
   const BagTopic& kind = bag.content().topics[topic];
-  if (holds<ros::TwistStamped>(kind)) return read_topic<ros::TwistStamped, WheelSample>(bag, topic, place, warnings);
+  if (holds<ros::TwistStamped>(kind))
+    return read_topic<ros::TwistStamped, WheelSample>(bag, topic, place, images, warnings);
   if (holds<ros::TwistWithCovarianceStamped>(kind)) {
-    return read_topic<ros::TwistWithCovarianceStamped, WheelSample>(bag, topic, place, warnings);
+    return read_topic<ros::TwistWithCovarianceStamped, WheelSample>(bag, topic, place, images, warnings);
   }
-  return read_topic<ros::Odometry, WheelSample>(bag, topic, place, warnings);
+  return read_topic<ros::Odometry, WheelSample>(bag, topic, place, images, warnings);
 }
 
 // One kind is used of all messages, and may be known by the later ones alone.
@@ -101,20 +104,20 @@ bool is_of_motion(std::string_view type, const OpenOptions& options) {
   return (options.wheels_topic && is_of_wheels) || (wants_gyroscope(options) && holds<ros::Imu>(topic));
 }
 
-BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place) {
+BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place, const SensorClock& images) {
   BagMotion motion;
   if (options.wheels) {
-    motion.samples.wheels = read_trajectory(*options.wheels);
+    motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);
   } else if (options.wheels_topic) {
     const Asked asked{options.wheels_topic, "name one of them: --wheels-topic TOPIC"};
     const std::size_t topic =
         choose_topic<ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped>(bag.content(), asked, place);
-    take_over_wheels(read_wheels(bag, topic, place, motion.warnings), motion.samples);
+    take_over_wheels(read_wheels(bag, topic, place, images, motion.warnings), motion.samples);
   }
   if (wants_gyroscope(options)) {
     const Asked asked{options.imu_topic, "name one of them: --imu-topic TOPIC, or leave the gyroscope out"};
     const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
-    for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, motion.warnings)) {
+    for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, images, motion.warnings)) {
       motion.samples.rates.push_back(sample.rate);
       if (sample.acceleration) motion.samples.accelerations.push_back(*sample.acceleration);
     }

@@ -8,6 +8,7 @@
 #include "byre/dataset/bag_topics.h"
 #include "byre/dataset/camera_info.h"
 #include "byre/dataset/frame_selection.h"
+#include "byre/dataset/timed_files.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
 
@@ -33,11 +34,12 @@ bool is_wanted(std::string_view type) {
 class BagRecording final : public Recording {
  public:
   BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames,
-               MotionSamples motion, std::string place, std::vector<std::string> warnings)
+               MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings)
       : bag_(std::move(bag)),
         calibration_(std::move(calibration)),
         frames_(std::move(frames)),
         motion_(std::move(motion)),
+        corrections_(std::move(corrections)),
         place_(std::move(place)),
         warnings_(std::move(warnings)) {
     for (const BagFrame& frame : frames_) times_.push_back(frame.time);
@@ -48,6 +50,7 @@ class BagRecording final : public Recording {
   const std::vector<std::string>& warnings() const override { return warnings_; }
   std::optional<ImageFrame> read(int index) override;
   const MotionSamples& motion() const override { return motion_; }
+  const TimeCorrections& time_corrections() const override { return corrections_; }
 
  private:
   std::optional<Image> read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera);
@@ -58,6 +61,7 @@ class BagRecording final : public Recording {
   std::vector<BagFrame> frames_;       // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
   MotionSamples motion_;               // constant after construction
+  TimeCorrections corrections_;        // constant after construction
   std::string place_;                  // constant after construction
   std::vector<std::string> warnings_;  // grows with read
 };
@@ -219,7 +223,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   std::vector<std::string> warnings = content.damage;
   ImageTopics topics = choose_image_topics(content, options, path);
   if (options.camera == CameraChoice::left) topics.right.reset();
-  auto [frames, frame_warnings] = bag_frames(content, topics, place);
+  auto [frames, corrections, clock, frame_warnings] = bag_frames(content, topics, place, pair_tolerance(options));
   warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
 
   PlacedCalibration calibration = calibration_of(*bag, path, topics, options);
@@ -229,7 +233,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
   frames = frames_of_choice(std::move(frames), calibration, options.camera);
   require_calibrated_sizes(*bag, frames, calibration, path);
-  auto [motion, motion_warnings] = read_bag_motion(*bag, options, place);
+  auto [motion, motion_warnings] = read_bag_motion(*bag, options, place, clock);
   warnings.insert(warnings.end(), motion_warnings.begin(), motion_warnings.end());
 
   std::vector<Timestamp> times;
@@ -237,7 +241,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   std::vector<BagFrame> selected;
   for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(frames[i]);
   return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), std::move(motion),
-                                        place, std::move(warnings));
+                                        std::move(corrections), place, std::move(warnings));
 }
 
 }  // namespace byre

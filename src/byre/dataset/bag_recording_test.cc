@@ -106,7 +106,7 @@ TEST_F(BagRecordings, AreRefusedWhereNoImagesBelongTogether) {
   EXPECT_THAT(
       open_error(with_infos({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1025), ms(1026)),
                              image_of_bag(kLeft, 3, ms(1050), ms(1051))})),
-      HasSubstr("no right image was taken within 2 ms of any left one; the nearest is off by 25.0"));
+      HasSubstr("no right image was taken within 2 ms of a left one; the median distance is 25.000 ms"));
 }
 
 TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
@@ -115,14 +115,96 @@ TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
   EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050)));
   EXPECT_EQ(recording->read(1)->left.pixels, scene_image(1, {}).data);
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 images were recorded after later ones"),
-                                                 HasSubstr("1 images bear the time of another")));
+                                                 HasSubstr("1 images have the time stamp of another one")));
 }
 
 TEST_F(BagRecordings, WithoutTimesInTheirHeadersHaveThoseOfTheRecorder) {
   const auto recording =
       open({image_of_bag(kLeft, 1, ms(0), ms(1001)), image_of_bag(kLeft, 2, ms(0), ms(1051)), infos()[0]});
   EXPECT_THAT(recording->times(), ElementsAre(ms(1001), ms(1051)));
-  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("has no time stamps in its headers")));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("receive times are used for all images")));
+}
+
+// Pairs, 50 ms apart, each received 3 to 5 ms after it was taken. stamp: what its headers say.
+std::vector<SceneMessage> pairs_stamped(int count, const std::function<Timestamp(Timestamp)>& stamp,
+                                        const std::function<Timestamp(Timestamp)>& log) {
+  std::vector<SceneMessage> messages = infos();
+  for (int i = 0; i < count; ++i) {
+    const Timestamp taken = ms(1'000'000 + 50 * i);
+    messages.push_back(image_of_bag(kLeft, i % 10, stamp(taken), log(taken + ms(3 + i % 3))));
+    messages.push_back(image_of_bag(kRight, i % 10 + 10, stamp(taken), log(taken + ms(4 + i % 2))));
+  }
+  return messages;
+}
+
+void expect_steady_pairs(Recording& recording, int count, Timestamp tolerance) {
+  ASSERT_EQ(recording.size(), count);
+  for (int i = 0; i < count; ++i) {
+    const auto frame = recording.read(i);
+    ASSERT_TRUE(frame && frame->right) << i;
+    EXPECT_EQ(frame->left.pixels, scene_image(i % 10, {}).data) << i;
+    EXPECT_EQ(frame->right->pixels, scene_image(i % 10 + 10, {}).data) << i;
+    EXPECT_LE(std::chrono::abs(frame->time - ms(1'000'000 + 50 * i)), tolerance) << i;
+  }
+}
+
+Timestamp as_it_is(Timestamp time) {
+  return time;
+}
+
+// NTP sets the clock of the computer back by 0.62 s, 1.5 s after the first pair.
+Timestamp set_back(Timestamp time) {
+  return time - (time >= ms(1'001'500) ? ms(620) : ms(0));
+}
+
+TEST_F(BagRecordings, ContinueWhereTheClockOfTheCamerasWasSetBack) {
+  const auto recording = open(pairs_stamped(60, set_back, as_it_is));
+  expect_steady_pairs(*recording, 60, ms(0));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("/left/image_raw: clock set back by 0.620 s at frame 30"),
+                                                 HasSubstr("/right/image_raw: clock set back by 0.620 s at frame 30")));
+  ASSERT_EQ(recording->time_corrections().clock_steps.size(), 1u);
+  EXPECT_EQ(recording->time_corrections().clock_steps[0].by, ms(-620));
+}
+
+TEST_F(BagRecordings, ContinueWhereTheClockOfTheRecorderWasSetBackWithIt) {
+  const std::vector<SceneMessage> messages = pairs_stamped(60, set_back, set_back);
+  expect_steady_pairs(*open(messages), 60, ms(0));
+  write_db3(folder_ / "walk.db3", messages);
+  for (const fs::path& path : {folder_ / "walk.db3", write("walk.bag", ros1_bytes(messages))}) {
+    expect_steady_pairs(*open_recording(path, {}), 60, ms(0));
+  }
+}
+
+TEST_F(BagRecordings, KeepStampsWhereTheClockOfTheRecorderAloneWasSetBack) {
+  const auto recording = open(pairs_stamped(60, as_it_is, set_back));
+  expect_steady_pairs(*recording, 60, ms(0));
+  EXPECT_FALSE(recording->time_corrections().any());
+}
+
+TEST_F(BagRecordings, ContinueWhereTheyWerePlayedInALoop) {
+  const auto recording = open(pairs_stamped(
+      60, [](Timestamp time) { return ms(1'000'000) + time % ms(1'000); }, as_it_is));
+  expect_steady_pairs(*recording, 60, ms(0));
+  EXPECT_EQ(recording->time_corrections().clock_steps.size(), 2u);
+}
+
+TEST_F(BagRecordings, HaveTheirReceiveTimesWhereStampsAreOfWholeSeconds) {
+  const auto recording = open(pairs_stamped(
+      60, [](Timestamp time) { return time - time % std::chrono::seconds(1); }, as_it_is));
+  expect_steady_pairs(*recording, 60, ms(5));
+  EXPECT_EQ(recording->time_corrections().source, TimeSource::receive_times);
+}
+
+TEST_F(BagRecordings, TimeThreeZeroStampsByTheirNeighbours) {
+  for (const int first : {0, 20}) {
+    const auto is_zero = [&](Timestamp time) {
+      return time >= ms(1'000'000 + 50 * first) && time < ms(1'000'000 + 50 * (first + 3));
+    };
+    const auto recording = open(pairs_stamped(
+        40, [&](Timestamp time) { return is_zero(time) ? ms(0) : time; }, as_it_is));
+    expect_steady_pairs(*recording, 40, ms(0));
+    EXPECT_EQ(recording->time_corrections().unstamped, 3);
+  }
 }
 
 TEST_F(BagRecordings, MayBeOfOneCameraOfAPair) {

@@ -5,6 +5,8 @@
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 
+#include <utility>
+
 namespace byre {
 namespace {
 
@@ -19,19 +21,16 @@ TimedFile parse_euroc_line(const TextLine& line, const fs::path& images, const s
   return {*time, images / fields[1]};
 }
 
-std::vector<TimedFile> read_image_list(const fs::path& camera_folder) {
+// left: clock of the left images, for those of the right camera.
+RestoredFiles read_image_list(const fs::path& camera_folder, const SensorClock& left = {}) {
   const fs::path csv = camera_folder / "data.csv";
   std::vector<TimedFile> files;
   for (const TextLine& line : read_lines(csv)) {
     const std::string place = place_of(csv, line);
-    TimedFile file = parse_euroc_line(line, camera_folder / "data", place);
-    if (!files.empty() && file.time <= files.back().time) {
-      throw InputError(place, "the time stamp is not later than the one before it", "sort the lines by time");
-    }
-    files.push_back(std::move(file));
+    files.push_back(parse_euroc_line(line, camera_folder / "data", place));
   }
   if (files.empty()) throw InputError(csv.string(), "lists no images");
-  return files;
+  return restore_files(files, csv.string(), left);
 }
 
 StereoPartner read_partner(const EurocSensor& left, const fs::path& right_file) {
@@ -66,9 +65,15 @@ RecordingIndex index_euroc(const fs::path& folder, const OpenOptions& options) {
   const bool has_right = options.camera != CameraChoice::left && fs::is_directory(*mav / "cam1");
   RecordingIndex index;
   index.calibration = options.calibration ? calibration_for(folder, options) : read_sensors(*mav, has_right);
-  const std::vector<TimedFile> left = read_image_list(*mav / "cam0");
-  index.frames = frames_of(left, has_right ? read_image_list(*mav / "cam1") : std::vector<TimedFile>());
-  if (has_right) require_pairs(index.frames, (*mav / "cam1" / "data.csv").string());
+  RestoredFiles left = read_image_list(*mav / "cam0");
+  const RestoredFiles right = has_right ? read_image_list(*mav / "cam1", left.clock) : RestoredFiles();
+  const Timestamp tolerance = pair_tolerance(options);
+  index.frames = frames_of(left.files, right.files, tolerance);
+  if (has_right) require_pairs(index.frames, right.files, tolerance, (*mav / "cam1" / "data.csv").string());
+  index.warnings = std::move(left.warnings);
+  index.warnings.insert(index.warnings.end(), right.warnings.begin(), right.warnings.end());
+  index.corrections = std::move(left.corrections);
+  index.clock = std::move(left.clock);
   return index;
 }
 

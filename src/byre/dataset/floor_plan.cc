@@ -2,14 +2,15 @@
 
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_size.h"
+#include "byre/input/formatted.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -20,8 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Smaller pixels than this, in metres, are none of a plan, but may well be degrees.
-constexpr double kSmallestPixel = 1e-4;
+constexpr double kSmallestPixel = 1e-4;  // metres; smaller ones may be degrees
+constexpr double kLargestPixel = 100.0;  // metres
+constexpr double kFarthest = 1e9;        // metres, of coordinates of any projected system
 
 void read_image_size(FloorPlan& plan) {
   const std::optional<ImageSize> size = stated_size(plan.image);
@@ -62,7 +64,11 @@ double to_number(const YAML::Node& node, const std::string& place) {
 double read_resolution(const YAML::Node& root, const fs::path& path) {
   const std::string place = path.string() + ": resolution";
   const double resolution = to_number(root["resolution"], place);
-  if (resolution < kSmallestPixel) throw InputError(place, "is not positive", "give the metres of a pixel");
+  if (resolution <= 0.0) throw InputError(place, "is not positive", "give metres per pixel, such as 0.05");
+  if (resolution < kSmallestPixel || resolution > kLargestPixel) {
+    throw InputError(place, formatted("is %g metres per pixel, outside 0.0001 to 100", resolution),
+                     "give metres per pixel, such as 0.05");
+  }
   return resolution;
 }
 
@@ -78,7 +84,9 @@ PlanOrigin read_origin(const YAML::Node& root, const fs::path& path) {
   if (!origin.IsSequence() || origin.size() != 3) {
     throw InputError(place, "is no list of three numbers", "give x, y and yaw of the lower left corner");
   }
-  return {{to_number(origin[0], place), to_number(origin[1], place)}, to_number(origin[2], place)};
+  const PlanOrigin read{{to_number(origin[0], place), to_number(origin[1], place)}, to_number(origin[2], place)};
+  if (read.corner_in_plan.cwiseAbs().maxCoeff() <= kFarthest) return read;
+  throw InputError(place, "lies more than a million kilometres away", "give x and y in metres");
 }
 
 fs::path read_image_path(const YAML::Node& root, const fs::path& path) {
@@ -95,9 +103,40 @@ std::optional<double> read_occupied_threshold(const YAML::Node& root, const fs::
   return threshold;
 }
 
-bool read_is_negated(const YAML::Node& root) {
+double read_free_threshold(const YAML::Node& root, const fs::path& path, double usual) {
+  if (!root["free_thresh"]) return usual;
+  const std::string place = path.string() + ": free_thresh";
+  const double threshold = to_number(root["free_thresh"], place);
+  if (!(threshold >= 0.0 && threshold <= 1.0)) throw InputError(place, "is not between 0 and 1");
+  return threshold;
+}
+
+// A whole number, or a boolean in any spelling of YAML.
+bool read_is_negated(const YAML::Node& root, const fs::path& path) {
   const YAML::Node negate = root["negate"];
-  return negate && negate.IsScalar() && (negate.Scalar() == "1" || negate.Scalar() == "true");
+  if (!negate) return false;
+  int number = 0;
+  bool is_true = false;
+  if (YAML::convert<int>::decode(negate, number)) return number != 0;
+  if (YAML::convert<bool>::decode(negate, is_true)) return is_true;
+  throw InputError(path.string() + ": negate", "is neither 0 or 1 nor true or false",
+                   "give 1 where white is occupied, else 0");
+}
+
+PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
+  const YAML::Node mode = root["mode"];
+  if (!mode) return PlanMode::trinary;
+  std::string word = mode.IsScalar() ? mode.Scalar() : "";
+  std::ranges::transform(word, word.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (word == "trinary") return PlanMode::trinary;
+  if (word == "scale") return PlanMode::scale;
+  if (word == "raw") return PlanMode::raw;
+  throw InputError(path.string() + ": mode", "is none of trinary, scale and raw", "leave it out for trinary");
+}
+
+void require_scale(const FloorPlan& plan, const fs::path& path) {
+  if (plan.mode != PlanMode::scale || plan.free_threshold < plan.occupied_threshold.value_or(1.0)) return;
+  throw InputError(path.string() + ": free_thresh", "is not below occupied_thresh, as mode scale needs it");
 }
 
 FloorPlan read_map_server_plan(const fs::path& path) {
@@ -108,7 +147,10 @@ FloorPlan read_map_server_plan(const fs::path& path) {
   const double resolution = read_resolution(root, path);
   const auto [corner_in_plan, yaw] = read_origin(root, path);
   plan.occupied_threshold = read_occupied_threshold(root, path);
-  plan.is_negated = read_is_negated(root);
+  plan.free_threshold = read_free_threshold(root, path, plan.free_threshold);
+  plan.is_negated = read_is_negated(root, path);
+  plan.mode = read_mode(root, path);
+  require_scale(plan, path);
   read_image_size(plan);
   const Eigen::Matrix2d plan_from_corner = Eigen::Rotation2Dd(yaw).toRotationMatrix();
   plan.metres_per_pixel = resolution * plan_from_corner * Eigen::Vector2d(1.0, -1.0).asDiagonal();
@@ -135,6 +177,11 @@ void require_sound_pixels(const FloorPlan& plan, const fs::path& world_file) {
     throw InputError(world_file.string(), "has pixels of less than a tenth of a millimetre",
                      "if it is in degrees, reproject the plan to a system in metres, such as UTM");
   }
+  const double farthest = plan.top_left_in_plan.cwiseAbs().maxCoeff();
+  if (plan.metres_per_pixel.cwiseAbs().maxCoeff() > kLargestPixel || farthest > kFarthest) {
+    throw InputError(world_file.string(), "has pixels of more than 100 metres, or lies a million kilometres away",
+                     "give metres");
+  }
   const double turn = plan.metres_per_pixel.determinant();  // rows go down, y goes up
   if (turn >= 0.0) throw InputError(world_file.string(), "mirrors the plan or makes it a line");
 }
@@ -159,10 +206,7 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
 }  // namespace
 
 DrawnFloorPlan read_drawn_floor_plan(const fs::path& path) {
-  FloorPlan plan = read_floor_plan(path);
-  ImageReading<Image> reading = try_image(plan.image);
-  if (!reading.image) throw InputError(plan.image.string(), reading.failure, "draw the floor plan anew");
-  return {std::move(plan), std::move(*reading.image)};
+  return read_plan_pixels(read_floor_plan(path));
 }
 
 std::optional<fs::path> find_world_file(const fs::path& image) {

@@ -89,7 +89,21 @@ TEST_F(FloorPlans, AreRefusedWithTheFieldThatIsWrong) {
   EXPECT_THAT(fault_in_yaml("3\n"), HasSubstr("is not a YAML file of named fields"));
   EXPECT_THAT(fault_in_yaml("resolution: 0.05\norigin: [0, 0, 0]\n"), HasSubstr("plan.yaml: image: is missing"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\norigin: [0, 0, 0]\n"), HasSubstr("resolution: is missing"));
-  EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: -1\n"), HasSubstr("resolution: is not positive"));
+  for (const char* const resolution : {"-1", "0", "-0.05"}) {
+    EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: " + std::string(resolution) + "\n"),
+                HasSubstr("resolution: is not positive"));
+  }
+  for (const char* const resolution : {"1e308", "1e4", "1e-6"}) {
+    EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: " + std::string(resolution) + "\norigin: [0, 0, 0]\n"),
+                HasSubstr("metres per pixel, outside 0.0001 to 100"));
+  }
+  for (const char* const resolution : {".nan", "nan", "-nan", ".inf", "1e999", "five"}) {
+    EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: " + std::string(resolution) + "\norigin: [0, 0, 0]\n"),
+                HasSubstr("resolution: is not a number"));
+  }
+  EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, 0, .nan]\n"), HasSubstr("is not a number"));
+  EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [1e300, 0, 0]\n"),
+              HasSubstr("origin: lies more than a million kilometres away"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, 0]\n"), HasSubstr("no list of three numbers"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, a, 0]\n"), HasSubstr("is not a number"));
   EXPECT_THAT(fault_in_yaml("image: no.png\nresolution: 1\norigin: [0, 0, 0]\n"), HasSubstr("no.png: cannot be read"));
@@ -100,6 +114,7 @@ TEST_F(FloorPlans, AreRefusedWithAWorldFileThatMakesNoSense) {
   EXPECT_THAT(fault_in_world_file("1\n0\n0\n-1\n7\n"), HasSubstr("plan.pgw: has 5 lines instead of six"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\nx\n7\n8\n"), HasSubstr("plan.pgw:4: is not a number"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\n1\n7\n8\n"), HasSubstr("mirrors the plan"));
+  EXPECT_THAT(fault_in_world_file("1e308\n0\n0\n-1e308\n0\n0\n"), HasSubstr("has pixels of more than 100 metres"));
   EXPECT_THAT(fault_in_world_file("1e-6\n0\n0\n-1e-6\n11.2\n48.1\n"), AllOf(HasSubstr("degrees"), HasSubstr("UTM")));
 }
 

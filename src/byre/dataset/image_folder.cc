@@ -85,9 +85,10 @@ RecordingIndex index_images(const fs::path& folder, const OpenOptions& options) 
   ImageFolders folders = folders_of(folder);
   if (options.camera == CameraChoice::left) folders.right.reset();
   const TimedPair images = timed_images(folders, options, folder);
-  RecordingIndex index{calibration_for(folder, options), frames_of(images.left, images.right)};
+  const Timestamp tolerance = pair_tolerance(options);
+  RecordingIndex index{calibration_for(folder, options), frames_of(images.left, images.right, tolerance)};
   if (images.is_rate_guessed) index.warnings.push_back(folder.string() + ": " + kRateWarning);
-  if (folders.right) require_pairs(index.frames, folders.right->string());
+  if (folders.right) require_pairs(index.frames, images.right, tolerance, folders.right->string());
   return index;
 }
 

@@ -1,9 +1,12 @@
+#include "byre/dataset/image_names.h"
 #include "byre/dataset/recording_index.h"
+#include "byre/dataset/timed_files.h"
+#include "byre/evaluation/trajectory_lines.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
-#include "byre/trajectory_file.h"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Core>
 #include <fmt/core.h>
@@ -90,18 +93,39 @@ PlacedCalibration read_projections(const fs::path& file, const Image& image, boo
   return calibration;
 }
 
+// One a line: seconds, or the nanoseconds that begin a line with commas.
+std::vector<Timestamp> read_stamps(const fs::path& file) {
+  std::vector<Timestamp> stamps;
+  for (const TextLine& line : read_lines(file)) stamps.push_back(parse_time(line, place_of(file, line)));
+  if (stamps.empty()) throw InputError(file.string(), "holds no times");
+  return stamps;
+}
+
 }  // namespace
 
 RecordingIndex index_kitti(const fs::path& folder, const OpenOptions& options) {
-  const std::vector<Timestamp> times = read_times(folder / "times.txt");
+  const fs::path times_file = folder / "times.txt";
+  const RecordedStamps recorded{.stamps = read_stamps(times_file), .is_order_certain = true};  // images are numbered
+  RestoredTimes restored = restore_times(recorded);
+  require_times(restored.items.size(), restored.corrections.repeated, times_file.string());
+  const std::vector<Timestamp>& times = recorded.stamps;
   const std::vector<fs::path> left = image_paths(folder / "image_0", times.size());
   const bool stereo = options.camera != CameraChoice::left && fs::is_directory(folder / "image_1");
 
   RecordingIndex index;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    index.frames.push_back({times[i], left[i]});
-    if (stereo) index.frames.back().right = image_path(folder / "image_1", i);
+  for (std::size_t i = 0; i < restored.items.size(); ++i) {
+    const std::size_t number = restored.items[i];
+    index.frames.push_back({restored.times[i], left[number]});
+    if (stereo) index.frames.back().right = image_path(folder / "image_1", number);
   }
+  index.warnings = describe(restored.corrections, {times_file.string(), "image", "frame"});
+  if (const std::size_t images = images_in(folder / "image_0").size(); images > times.size()) {
+    index.warnings.push_back(times_file.string() + ": has " + std::to_string(times.size()) + " times for " +
+                             std::to_string(images) + " images: the last " + std::to_string(images - times.size()) +
+                             " are left out");
+  }
+  index.corrections = std::move(restored.corrections);
+  index.clock = std::move(restored.clock);
   index.calibration = options.calibration ? calibration_for(folder, options)
                                           : read_projections(folder / "calib.txt", first_readable(left), stereo);
   return index;

@@ -1,12 +1,13 @@
 #include "byre/dataset/motion_files.h"
 
 #include "byre/dataset/calibration_fields.h"
+#include "byre/dataset/motion_messages.h"
 #include "byre/dataset/recording_index.h"
+#include "byre/evaluation/trajectory_lines.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
-#include "byre/trajectory_file.h"
 
-#include <array>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -26,7 +27,7 @@ Eigen::Vector3d parse_vector(const std::vector<std::string_view>& fields, std::s
 }
 
 // "time_ns, w_x, w_y, w_z, a_x, a_y, a_z", the last three of which may be missing.
-void parse_line(const TextLine& line, const std::string& place, MotionSamples& samples) {
+ImuSample parse_imu_line(const TextLine& line, const std::string& place) {
   constexpr std::size_t kLeastFields = 4, kAllFields = 7;
   const std::vector<std::string_view> fields = split_fields(line.text);
   if (fields.size() < kLeastFields) {
@@ -34,17 +35,36 @@ void parse_line(const TextLine& line, const std::string& place, MotionSamples& s
   }
   const std::optional<Timestamp> time = parse_nanoseconds(fields[0]);
   if (!time) throw InputError(place, "\"" + std::string(fields[0]) + "\" is not a time in nanoseconds");
-  if (!samples.rates.empty() && *time <= samples.rates.back().time) {
-    throw InputError(place, "the time stamp is not later than the one before it", "sort the lines by time");
-  }
-  samples.rates.push_back({*time, parse_vector(fields, 1, place)});
-  if (fields.size() < kAllFields) return;
+  ImuSample sample{{*time, parse_vector(fields, 1, place)}};
+  if (fields.size() < kAllFields) return sample;
   const Eigen::Vector3d acceleration = parse_vector(fields, kLeastFields, place);
-  if (!acceleration.isZero(0.0)) samples.accelerations.push_back({*time, acceleration});
+  if (!acceleration.isZero(0.0)) sample.acceleration = {*time, acceleration};
+  return sample;
 }
 
-void read_imu(const fs::path& path, MotionSamples& samples) {
-  for (const TextLine& line : read_lines(path)) parse_line(line, place_of(path, line), samples);
+// Continuous times of the lines of a file.
+RestoredTimes restore_lines(std::vector<Timestamp> stamps, const fs::path& path, const SensorClock& images,
+                            std::vector<std::string>& warnings) {
+  RestoredTimes restored = restore_times({std::move(stamps)}, images);
+  const std::vector<std::string> lines = describe(restored.corrections, {path.string(), "line", "line"});
+  warnings.insert(warnings.end(), lines.begin(), lines.end());
+  return restored;
+}
+
+void read_imu(const fs::path& path, const SensorClock& images, FileMotion& motion) {
+  std::vector<ImuSample> listed;
+  std::vector<Timestamp> stamps;
+  for (const TextLine& line : read_lines(path)) {
+    listed.push_back(parse_imu_line(line, place_of(path, line)));
+    stamps.push_back(listed.back().rate.time);
+  }
+  const RestoredTimes restored = restore_lines(std::move(stamps), path, images, motion.warnings);
+  for (std::size_t i = 0; i < restored.items.size(); ++i) {
+    const Timestamp time = restored.times[i];
+    const ImuSample& sample = listed[restored.items[i]];
+    motion.samples.rates.push_back({time, sample.rate.rate});
+    if (sample.acceleration) motion.samples.accelerations.push_back({time, sample.acceleration->acceleration});
+  }
 }
 
 Eigen::Quaterniond read_body_from_imu(const fs::path& path) {
@@ -60,24 +80,37 @@ fs::path rates_of(const fs::path& recording) {
 
 }  // namespace
 
-MotionSamples read_motion(const fs::path& recording, const OpenOptions& options, const Pose& body_from_left) {
-  MotionSamples samples;
+Trajectory read_wheel_file(const fs::path& path, const SensorClock& images, std::vector<std::string>& warnings) {
+  Trajectory wheels = read_trajectory_lines(path);
+  std::vector<Timestamp> stamps;
+  for (const StampedPose& sample : wheels) stamps.push_back(sample.time);
+  const RestoredTimes restored = restore_lines(std::move(stamps), path, images, warnings);
+  Trajectory in_order;
+  for (std::size_t i = 0; i < restored.items.size(); ++i) {
+    in_order.push_back({restored.times[i], wheels[restored.items[i]].world_from_body});
+  }
+  return in_order;
+}
+
+FileMotion read_motion(const fs::path& recording, const OpenOptions& options, const Pose& body_from_left,
+                       const SensorClock& images) {
+  FileMotion motion;
   const fs::path beside = recording / "wheel.txt";
   if (options.wheels) {
-    samples.wheels = read_trajectory(*options.wheels);
+    motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);
   } else if (options.use_wheels && fs::is_regular_file(beside)) {
-    samples.wheels = read_trajectory(beside);
+    motion.samples.wheels = read_wheel_file(beside, images, motion.warnings);
   }
   if (options.use_gyroscope) {
     const fs::path imu = rates_of(recording);
-    read_imu(imu, samples);
+    read_imu(imu, images, motion);
     const fs::path sensor = imu.parent_path() / "sensor.yaml";
-    const bool is_of_same_body = !options.calibration;  // a calibration of somebody else's may have another one
+    const bool is_of_same_body = !options.calibration;  // another calibration may have another body
     if (is_of_same_body && fs::is_regular_file(sensor)) {
-      samples.left_from_gyroscope = body_from_left.rotation.conjugate() * read_body_from_imu(sensor);
+      motion.samples.left_from_gyroscope = body_from_left.rotation.conjugate() * read_body_from_imu(sensor);
     }
   }
-  return samples;
+  return motion;
 }
 
 }  // namespace byre

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "byre/body_motion.h"
+#include "byre/dataset/restored_times.h"
 #include "byre/recording.h"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace byre {
 
@@ -13,9 +16,18 @@ namespace byre {
 //                           where there are some
 //   mav0/imu0/sensor.yaml   EuRoC: how the sensor is turned against the body (T_BS)
 // Wheels are used where the file is there or the options name one; the gyroscope where the options ask for it. Throws
-// InputError naming file and line: a file named is not there, or does not parse, or has times out of order.
-// body_from_left: of the recording's own calibration.
-MotionSamples read_motion(const std::filesystem::path& recording, const OpenOptions& options,
-                          const Pose& body_from_left = {});
+// InputError naming file and line: a file named is not there, or does not parse.
+struct FileMotion {
+  MotionSamples samples;
+  std::vector<std::string> warnings;  // what was corrected in times or left out, with counts
+};
+
+// body_from_left: of the recording's own calibration. images: clock of the left images.
+FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
+                       const Pose& body_from_left = {}, const SensorClock& images = {});
+
+// Poses of a file of wheels, with continuous times (restore_times).
+Trajectory read_wheel_file(const std::filesystem::path& path, const SensorClock& images,
+                           std::vector<std::string>& warnings);
 
 }  // namespace byre

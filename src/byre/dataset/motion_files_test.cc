@@ -15,23 +15,23 @@ constexpr const char* kWheels = "1.0 0 0 0 0 0 0 1\n1.5 0.25 0 0 0 0 0 1\n";
 using MotionFiles = TestFolder;
 
 TEST_F(MotionFiles, AreNoneWhereNothingWasRecorded) {
-  const MotionSamples samples = read_motion(folder_, {});
+  const MotionSamples samples = read_motion(folder_, {}).samples;
   EXPECT_TRUE(samples.wheels.empty());
   EXPECT_TRUE(samples.rates.empty());
 }
 
 TEST_F(MotionFiles, HoldWheelsWhichMayBeLeftOut) {
   write("wheel.txt", kWheels);
-  const MotionSamples samples = read_motion(folder_, {});
+  const MotionSamples samples = read_motion(folder_, {}).samples;
   ASSERT_EQ(samples.wheels.size(), 2u);
   EXPECT_EQ(samples.wheels.back().time, std::chrono::milliseconds(1500));
   EXPECT_EQ(samples.wheels.back().world_from_body.translation.x(), 0.25);
-  EXPECT_TRUE(read_motion(folder_, {.use_wheels = false}).wheels.empty());
+  EXPECT_TRUE(read_motion(folder_, {.use_wheels = false}).samples.wheels.empty());
 }
 
 TEST_F(MotionFiles, MayLieElsewhere) {
   write("other/odometry.txt", kWheels);
-  EXPECT_EQ(read_motion(folder_, {.wheels = folder_ / "other/odometry.txt"}).wheels.size(), 2u);
+  EXPECT_EQ(read_motion(folder_, {.wheels = folder_ / "other/odometry.txt"}).samples.wheels.size(), 2u);
   EXPECT_THROW(read_motion(folder_, {.wheels = folder_ / "none.txt"}), InputError);
 }
 
@@ -39,8 +39,8 @@ TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
   write("mav0/cam0/data.csv", "");
   write("mav0/imu0/data.csv",
         "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n100,0.1,0.2,0.3,0,0,9.8\n200,0.4,0.5,0.6,0,0,9.8\n");
-  EXPECT_TRUE(read_motion(folder_, {}).rates.empty());
-  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true});
+  EXPECT_TRUE(read_motion(folder_, {}).samples.rates.empty());
+  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true}).samples;
   ASSERT_EQ(samples.rates.size(), 2u);
   EXPECT_EQ(samples.rates.back().time, Timestamp(200));
   EXPECT_EQ(samples.rates.back().rate, Eigen::Vector3d(0.4, 0.5, 0.6));
@@ -49,7 +49,7 @@ TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
 TEST_F(MotionFiles, HoldAnAccelerometerBesideTheGyroscope) {
   write("mav0/cam0/data.csv", "");
   write("mav0/imu0/data.csv", "100,0.1,0.2,0.3\n200,0.4,0.5,0.6,1.5,0,9.8\n300,0.4,0.5,0.6,0,0,0\n");
-  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true});
+  const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true}).samples;
   EXPECT_EQ(samples.rates.size(), 3u);
   ASSERT_EQ(samples.accelerations.size(), 1u) << "zeros are none, as of a part without one";
   EXPECT_EQ(samples.accelerations[0].time, Timestamp(200));
@@ -57,11 +57,21 @@ TEST_F(MotionFiles, HoldAnAccelerometerBesideTheGyroscope) {
   EXPECT_FALSE(samples.left_from_gyroscope);
   write("mav0/imu0/sensor.yaml", "sensor_type: imu\nT_BS: {data: [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n");
   const Pose body_from_left{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {}};  // half a turn about x
-  const auto turned = read_motion(folder_, {.use_gyroscope = true}, body_from_left).left_from_gyroscope;
+  const auto turned = read_motion(folder_, {.use_gyroscope = true}, body_from_left).samples.left_from_gyroscope;
   ASSERT_TRUE(turned);
   EXPECT_TRUE((*turned * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitY()));
   const OpenOptions other_body{.calibration = folder_ / "other.yaml", .use_gyroscope = true};
-  EXPECT_FALSE(read_motion(folder_, other_body).left_from_gyroscope);
+  EXPECT_FALSE(read_motion(folder_, other_body).samples.left_from_gyroscope);
+}
+
+TEST_F(MotionFiles, CountLinesThatRepeatATimeOrComeLate) {
+  write("wheel.txt", "1.0 0 0 0 0 0 0 1\n1.2 2 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n1.3 3 0 0 0 0 0 1\n1.3 4 0 0 0 0 0 1\n");
+  const FileMotion motion = read_motion(folder_, {});
+  ASSERT_EQ(motion.samples.wheels.size(), 4u);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(motion.samples.wheels[static_cast<std::size_t>(i)].world_from_body.translation.x(), i);
+  EXPECT_THAT(motion.warnings, testing::ElementsAre(HasSubstr("1 lines were recorded after later ones"),
+                                                    HasSubstr("1 lines have the time stamp of another one")));
 }
 
 TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
@@ -78,7 +88,7 @@ TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
   EXPECT_THAT(failure(""), HasSubstr("is not there"));
   EXPECT_THAT(failure("100,0.1,0.2\n"), HasSubstr("fewer than four fields"));
   EXPECT_THAT(failure("100,0.1,0.2,left\n"), HasSubstr("\"left\" is not a number"));
-  EXPECT_THAT(failure("100,0,0,0\n100,0,0,0\n"), HasSubstr("not later"));
+  EXPECT_THAT(failure("100,0,0,0\n1 s,0,0,0\n"), HasSubstr("data.csv:2: \"1 s\" is not a time in nanoseconds"));
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ class ImageFiles final : public Recording {
   const std::vector<Timestamp>& times() const override { return times_; }
   std::optional<ImageFrame> read(int index) override;
   const MotionSamples& motion() const override { return motion_; }
+  const TimeCorrections& time_corrections() const override { return index_.corrections; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:
@@ -178,6 +179,11 @@ const MotionSamples& Recording::motion() const {
   return none;
 }
 
+const TimeCorrections& Recording::time_corrections() const {
+  static const TimeCorrections none;
+  return none;
+}
+
 std::string_view to_string(RecordingFormat format) {
   switch (format) {
     case RecordingFormat::euroc:
@@ -262,8 +268,9 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   const BesideLeft beside = images_beside_left(whole);
   require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
   RecordingIndex chosen = choose_camera(select(whole, range, path), beside, options.camera, path);
-  MotionSamples motion = read_motion(path, options, chosen.calibration.cameras.body_from_left);
-  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion));
+  FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
+  chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
+  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples));
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {

@@ -173,6 +173,41 @@ void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
   }
 }
 
+void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
+  if (!times.clock_steps.empty()) {
+    const ClockStep& first = times.clock_steps.front();
+    const std::string count =
+        formatted("the clock of the images was set %d time%s while recording",
+                  static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
+    findings.push_back({false,
+                        count + formatted(", first by %.3f s at frame %d; times after it are shifted",
+                                          to_seconds(first.by), first.frame),
+                        "set clocks before recording, and let them be slewed, not stepped, afterwards (chrony without "
+                        "makestep); do not record a bag that is played in a loop"});
+  }
+  if (times.source != TimeSource::stamps) {
+    const char* const used =
+        times.source == TimeSource::receive_times ? "receive times are used" : "images of one stamp are spread evenly";
+    findings.push_back({false, std::string("images have no time stamps, or stamps as coarse as whole seconds; ") + used,
+                        "have the driver stamp each image to the microsecond: speeds, wheels and gyroscopes need it"});
+  }
+  if (times.unstamped > 0) {
+    findings.push_back(
+        {false,
+         formatted("%d images have a time stamp of zero or a wrong one; their times are interpolated", times.unstamped),
+         "begin to record once the driver stamps its images"});
+  }
+  if (times.late > 0) {
+    findings.push_back({false, formatted("%d images were recorded after later ones, and are put in order", times.late),
+                        "check what republishes them, and record the driver's own topic"});
+  }
+  if (times.repeated > 0) {
+    findings.push_back({false,
+                        formatted("%d images have the time stamp of another one, and are left out", times.repeated),
+                        "check for two publishers of one topic, and for a driver that repeats images"});
+  }
+}
+
 void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding>& findings) {
   constexpr std::array<std::string_view, 5> kRemedies = {
       "", "give it more light, a longer exposure or more gain", "expose it for shorter",
@@ -234,6 +269,7 @@ void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
 RecordingCheck check_recording(Recording& recording, int samples, const std::function<bool()>& should_stop) {
   RecordingCheck check;
   check_times(recording.times(), check);
+  check.times = recording.time_corrections();
   FrameSum sum(recording.calibration());
   const Camera& camera = recording.calibration().left;
   check.field_of_view_deg = 2.0 * std::atan(0.5 * camera.width / camera.fx) * 180.0 / std::numbers::pi;
@@ -251,6 +287,7 @@ RecordingCheck check_recording(Recording& recording, int samples, const std::fun
 std::vector<Finding> findings_of(const RecordingCheck& check) {
   std::vector<Finding> findings;
   add_times(check, findings);
+  add_clock(check.times, findings);
   add_camera(check.left, check.right ? "left " : "", findings);
   if (check.right) add_camera(*check.right, "right ", findings);
   add_pair(check, findings);

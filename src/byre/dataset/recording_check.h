@@ -47,6 +47,7 @@ struct RecordingCheck {
   std::optional<PairCheck> pair;
   double field_of_view_deg = 0.0;  // left image's, horizontal
   double baseline_m = 0.0;         // 0 for one camera
+  TimeCorrections times{};         // corrections of the frames' times
 };
 
 // Looks at so many pairs of frames that follow each other, spread over the recording. Throws InputError for a

@@ -228,5 +228,23 @@ TEST(RecordingCheck, ListsGraveFindingsFirst) {
   EXPECT_FALSE(findings[1].is_grave);
 }
 
+TEST(RecordingCheck, NamesWhatWasWrongWithTimesAndARemedy) {
+  RecordingCheck check = check_of();
+  const auto findings_with = [&](const TimeCorrections& times) {
+    check.times = times;
+    std::string text;
+    for (const Finding& finding : findings_of(check)) text += finding.what + ": " + finding.remedy + "\n";
+    return text;
+  };
+  EXPECT_THAT(findings_with({.clock_steps = {{70, std::chrono::milliseconds(-620)}}}),
+              HasSubstr("the clock of the images was set 1 time while recording, first by -0.620 s at frame 70; times "
+                        "after it are shifted: set clocks before recording"));
+  EXPECT_THAT(findings_with({.source = TimeSource::receive_times}), HasSubstr("receive times are used"));
+  EXPECT_THAT(findings_with({.source = TimeSource::even_spacing}), HasSubstr("spread evenly"));
+  EXPECT_THAT(findings_with({.unstamped = 3}), HasSubstr("3 images have a time stamp of zero or a wrong one"));
+  EXPECT_THAT(findings_with({.late = 2}), HasSubstr("2 images were recorded after later ones"));
+  EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another one"));
+}
+
 }  // namespace
 }  // namespace byre

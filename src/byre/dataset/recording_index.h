@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/calibration.h"
+#include "byre/dataset/restored_times.h"
 #include "byre/image.h"
 #include "byre/recording.h"
 
@@ -34,6 +35,8 @@ struct RecordingIndex {
   PlacedCalibration calibration;
   std::vector<FrameFiles> frames;  // strictly increasing in time
   std::vector<std::string> warnings{};
+  TimeCorrections corrections{};  // corrections of the left images
+  SensorClock clock{};            // clock of the left images
 };
 
 // The folder that holds cam0 in an EuRoC recording, given it or the one above; empty when there is none.
@@ -43,8 +46,8 @@ std::optional<std::filesystem::path> find_mav_folder(const std::filesystem::path
 bool holds_images(const std::filesystem::path& folder);
 
 // All throw InputError as open_recording says. Images of two cameras belong together when their time stamps differ by
-// 2 ms at most; KITTI's by their number. The right camera is left out where the left one alone is asked for. A depth
-// image belongs to the frame nearest in time, within 20 ms.
+// the tolerance at most; KITTI's by their number. The right camera is left out where the left one alone is asked for. A
+// depth image belongs to the frame nearest in time, within 20 ms.
 RecordingIndex index_euroc(const std::filesystem::path& folder, const OpenOptions& options);
 RecordingIndex index_kitti(const std::filesystem::path& folder, const OpenOptions& options);
 RecordingIndex index_tum(const std::filesystem::path& folder, const OpenOptions& options);

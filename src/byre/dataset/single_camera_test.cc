@@ -178,7 +178,7 @@ TEST_F(TumRecording, SaysWhichCalibrationIsMissing) {
 
 TEST_F(TumRecording, NamesTheLineOfTheListThatIsWrong) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"#\n2.0 rgb/a.png\n1.0 rgb/b.png\n", "rgb.txt:3: the time stamp is not later"},
+      {"#\n2.0 rgb/a.png\n2.0 rgb/b.png\n", "rgb.txt: all of its 2 images have the same time stamp"},
       {"noon rgb/a.png\n", "rgb.txt:1: \"noon\" is not a time in seconds"},
       {"1.0\n", "rgb.txt:1: names no image file"},
       {"# nothing\n", "rgb.txt: lists no images"},

@@ -1,15 +1,19 @@
 #include "byre/dataset/timed_files.h"
 
+#include "byre/geometry/median.h"
+#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Timestamp kPairTolerance = std::chrono::milliseconds(2);
 constexpr Timestamp kDepthTolerance = std::chrono::milliseconds(20);
 
 Timestamp time_of(Timestamp time) {
@@ -40,23 +44,62 @@ std::vector<Timestamp> times_of_files(const std::vector<TimedFile>& files) {
   return times;
 }
 
+// Median of the times from each image to the nearest one of the other camera.
+Timestamp usual_difference(const std::vector<Timestamp>& left, const std::vector<Timestamp>& right) {
+  std::vector<Timestamp> differences;
+  for (const Timestamp time : left) {
+    differences.push_back(std::chrono::abs(*find_nearest(right, time, Timestamp::max()) - time));
+  }
+  return median(std::move(differences));
+}
+
 }  // namespace
 
+Timestamp pair_tolerance(const OpenOptions& options) {
+  return options.pair_tolerance_s ? from_seconds(*options.pair_tolerance_s) : kUsualPairTolerance;
+}
+
+void require_times(std::size_t kept, int repeated, const std::string& place) {
+  if (kept > 1 || repeated == 0) return;
+  throw InputError(place, "all of its " + std::to_string(repeated + 1) + " images have the same time stamp",
+                   "stamp images by a clock that runs, or extract them into a folder and give their rate (--fps)");
+}
+
+RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::string& place, const SensorClock& other) {
+  RecordedStamps recorded;
+  std::vector<TimedFile> distinct;
+  for (const TimedFile& file : listed) {
+    if (!distinct.empty() && distinct.back().time == file.time && distinct.back().path == file.path) continue;
+    distinct.push_back(file);
+    recorded.stamps.push_back(file.time);
+  }
+  RestoredTimes restored = restore_times(recorded, other);
+  RestoredFiles result{{}, std::move(restored.corrections), std::move(restored.clock), {}};
+  require_times(restored.items.size(), result.corrections.repeated, place);
+  result.corrections.repeated += static_cast<int>(listed.size() - distinct.size());
+  for (std::size_t i = 0; i < restored.items.size(); ++i) {
+    result.files.push_back({restored.times[i], std::move(distinct[restored.items[i]].path)});
+  }
+  result.warnings = describe(result.corrections, {place, "image", "frame"});
+  return result;
+}
+
 std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
-                                                         const std::vector<Timestamp>& others) {
+                                                         const std::vector<Timestamp>& others, Timestamp tolerance) {
   std::vector<std::optional<std::size_t>> partners;
   for (const Timestamp time : times) {
-    const auto partner = find_nearest(others, time, kPairTolerance);
+    const auto partner = find_nearest(others, time, tolerance);
     const auto number = static_cast<std::size_t>(partner - others.begin());
     partners.push_back(partner == others.end() ? std::nullopt : std::optional(number));
   }
   return partners;
 }
 
-std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right) {
+std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
+                                  Timestamp tolerance) {
   std::vector<FrameFiles> frames;
   const std::vector<std::optional<std::size_t>> partners =
-      partners_in_time(times_of_files(left), times_of_files(right));
+      partners_in_time(times_of_files(left), times_of_files(right), tolerance);
   for (std::size_t i = 0; i < left.size(); ++i) {
     frames.push_back({left[i].time, left[i].path, std::nullopt});
     if (partners[i]) frames.back().right = right[*partners[i]].path;
@@ -77,10 +120,29 @@ void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& de
   }
 }
 
-void require_pairs(const std::vector<FrameFiles>& frames, const std::string& place) {
+void require_pairs(const std::vector<FrameFiles>& frames, const std::vector<TimedFile>& right, Timestamp tolerance,
+                   const std::string& place) {
   if (std::ranges::any_of(frames, [](const FrameFiles& frame) { return frame.right.has_value(); })) return;
-  throw InputError(place, "no image was taken within 2 ms of any of the left camera",
-                   "check that both cameras use one clock, or take the left camera alone");
+  std::vector<Timestamp> left;
+  for (const FrameFiles& frame : frames) left.push_back(frame.time);
+  throw no_pairs(place, left, times_of_files(right), tolerance);
+}
+
+InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left, const std::vector<Timestamp>& right,
+                    Timestamp tolerance) {
+  constexpr double kLikelyOnePair = 0.1;  // seconds
+  const double difference = to_seconds(usual_difference(left, right));
+  const std::string reason =
+      formatted("no right image was taken within %g ms of a left one; the median distance is %.3f ms",
+                1e3 * to_seconds(tolerance), 1e3 * difference);
+  if (difference > kLikelyOnePair) {
+    return {place, reason, "check that both cameras use one clock, or use the left one alone: --camera left"};
+  }
+  return {
+      place, reason,
+      formatted("trigger both cameras together; if these are pairs, allow the difference (--pair-tolerance %.3f); or "
+                "use the left camera alone: --camera left",
+                std::ceil(1e3 * difference + 1.0) / 1e3)};
 }
 
 }  // namespace byre

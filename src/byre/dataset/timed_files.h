@@ -1,6 +1,8 @@
 #pragma once
 
 #include "byre/dataset/recording_index.h"
+#include "byre/dataset/restored_times.h"
+#include "byre/input_error.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -16,19 +18,47 @@ struct TimedFile {
   std::filesystem::path path;
 };
 
-// For each time the number of the other one nearest to it, where that is within 2 ms. Precondition: both ascend.
-std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
-                                                         const std::vector<Timestamp>& others);
+inline constexpr Timestamp kUsualPairTolerance = std::chrono::milliseconds(2);
 
-// The frames of the left images, each with the right one taken within 2 ms, where there is one. Precondition: both
-// ascend in time.
-std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right);
+// Most time between the stamps of a pair.
+Timestamp pair_tolerance(const OpenOptions& options);
+
+// Files of a list with their times, as restore_times makes them.
+struct RestoredFiles {
+  std::vector<TimedFile> files;  // strictly increasing in time
+  TimeCorrections corrections;
+  SensorClock clock;
+  std::vector<std::string> warnings;
+};
+
+// place: of the list, in warnings. other: clock of the left images, where these are others. A line that is there twice
+// counts as a repeated stamp. Throws InputError when all files have one time.
+RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::string& place,
+                            const SensorClock& other = {});
+
+// Throws InputError where more than one item was recorded, but only one time is left.
+void require_times(std::size_t kept, int repeated, const std::string& place);
+
+// For each time the number of the other one nearest to it, where that is within the tolerance. Precondition: both
+// ascend.
+std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
+                                                         const std::vector<Timestamp>& others, Timestamp tolerance);
+
+// The frames of the left images, each with the right one taken within the tolerance, where there is one. Precondition:
+// both ascend in time.
+std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
+                                  Timestamp tolerance);
 
 // Gives the frames their depth images: each image belongs to the frame nearest to it, when that is within 20 ms, and a
 // frame takes the nearest of its own. Precondition: both ascend in time.
 void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& depth);
 
 // Throws InputError with this place when no frame has a right image.
-void require_pairs(const std::vector<FrameFiles>& frames, const std::string& place);
+void require_pairs(const std::vector<FrameFiles>& frames, const std::vector<TimedFile>& right, Timestamp tolerance,
+                   const std::string& place);
+
+// Why no right image belongs to a left one. Precondition: both ascend and are not empty.
+InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left, const std::vector<Timestamp>& right,
+                    Timestamp tolerance);
 
 }  // namespace byre

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "byre/bag/bag.h"
+#include "byre/dataset/restored_times.h"
 
 #include <string>
 #include <vector>
 
 namespace byre {
 
-// A message and the time of its header.
 struct TimedMessage {
   Timestamp time{};
   BagMessage message;
@@ -15,17 +15,16 @@ struct TimedMessage {
 
 struct TimedMessages {
   std::vector<TimedMessage> messages;
-  std::vector<std::string> warnings;  // counts of what is out of order or left out
+  TimeCorrections corrections;
+  SensorClock clock;
+  std::vector<std::string> warnings;  // what was corrected or left out, with counts
 };
 
-// How warnings name messages.
-struct MessageNames {
-  std::string place;  // the bag
-  std::string kind;   // what they are, in the plural
-};
-
-// The messages of a topic in the order of the times in their headers, each later than the one before. Where no header
-// has a time, those of the recorder are taken.
-TimedMessages timed_messages(const BagContent& content, std::size_t topic, const MessageNames& names);
+// The messages of a topic in the order of their times, each later than the one before. Times are those of the headers,
+// continued over steps of the clock (restore_times). The order of recording is that of the receive times, or of the
+// file where the recorder's clock was set, too. other: clock of the images, for topics of other sensors.
+// names: place is the bag.
+TimedMessages timed_messages(const BagContent& content, std::size_t topic, const ItemNames& names,
+                             const SensorClock& other = {});
 
 }  // namespace byre

@@ -4,6 +4,7 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -19,18 +20,15 @@ TimedFile parse_tum_line(const TextLine& line, const fs::path& folder, const std
   return {*time, folder / fields[1]};
 }
 
-std::vector<TimedFile> read_list(const fs::path& folder, const char* name) {
+// rgb: clock of the colour images, for the depth images.
+RestoredFiles read_list(const fs::path& folder, const char* name, const SensorClock& rgb = {}) {
   const fs::path list = folder / name;
   std::vector<TimedFile> files;
   for (const TextLine& line : read_lines(list)) {
-    const std::string place = place_of(list, line);
-    files.push_back(parse_tum_line(line, folder, place));
-    if (files.size() > 1 && files.back().time <= files[files.size() - 2].time) {
-      throw InputError(place, "the time stamp is not later than the one before it", "sort the lines by time");
-    }
+    files.push_back(parse_tum_line(line, folder, place_of(list, line)));
   }
   if (files.empty()) throw InputError(list.string(), "lists no images");
-  return files;
+  return restore_files(files, list.string(), rgb);
 }
 
 bool is_there(const FrameFiles& frame) {
@@ -39,7 +37,9 @@ bool is_there(const FrameFiles& frame) {
 
 // Depth images are often left out of copies, whose lists still name them.
 void add_listed_depth(const fs::path& folder, const OpenOptions& options, RecordingIndex& index) {
-  add_depth(index.frames, read_list(folder, "depth.txt"));
+  const RestoredFiles depth_files = read_list(folder, "depth.txt", index.clock);
+  index.warnings.insert(index.warnings.end(), depth_files.warnings.begin(), depth_files.warnings.end());
+  add_depth(index.frames, depth_files.files);
   if (std::ranges::none_of(index.frames, is_there)) {
     index.warnings.push_back((folder / "depth.txt").string() +
                              ": none of its images is there and within 20 ms of a frame, so depth is left out");
@@ -54,7 +54,9 @@ void add_listed_depth(const fs::path& folder, const OpenOptions& options, Record
 }  // namespace
 
 RecordingIndex index_tum(const fs::path& folder, const OpenOptions& options) {
-  RecordingIndex index{calibration_for(folder, options), frames_of(read_list(folder, "rgb.txt"), {})};
+  RestoredFiles images = read_list(folder, "rgb.txt");
+  RecordingIndex index{calibration_for(folder, options), frames_of(images.files, {}, {}), std::move(images.warnings),
+                       std::move(images.corrections), std::move(images.clock)};
   const bool wants_depth = !options.camera || options.camera == CameraChoice::rgbd;
   if (wants_depth && fs::exists(folder / "depth.txt")) add_listed_depth(folder, options, index);
   return index;

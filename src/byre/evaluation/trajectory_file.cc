@@ -1,5 +1,6 @@
 #include "byre/trajectory_file.h"
 
+#include "byre/evaluation/trajectory_lines.h"
 #include "byre/input/output_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
@@ -44,13 +45,6 @@ Timestamp time_of(const std::optional<Timestamp>& parsed, std::string_view field
                   const std::string& place) {
   if (parsed) return *parsed;
   throw InputError(place, "\"" + std::string(field) + "\" is not a time in " + std::string(unit));
-}
-
-// A line with commas begins with whole nanoseconds, any other with seconds.
-Timestamp parse_time(const TextLine& line, const std::string& place) {
-  const std::string_view first = split_fields(line.text).front();
-  if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
-  return time_of(parse_seconds(first), first, "seconds", place);
 }
 
 StampedPose parse_stamped_pose(const TextLine& line, TrajectoryFormat format, const std::string& place) {
@@ -132,7 +126,31 @@ const char* head_of(TrajectoryFormat format) {
   return "";
 }
 
+// With the line that each pose is on.
+template <typename Use>
+void for_each_pose(const fs::path& path, const Use& use) {
+  const TrajectoryFormat format = guess_trajectory_format(path);
+  if (format == TrajectoryFormat::kitti) {
+    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
+  }
+  for (const TextLine& line : read_lines(path)) {
+    const std::string place = place_of(path, line);
+    use(parse_stamped_pose(line, format, place), place);
+  }
+}
+
 }  // namespace
+
+Timestamp parse_time(const TextLine& line, const std::string& place) {
+  const std::string_view first = split_fields(line.text).front();
+  if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
+  // Too large for seconds: ORB-SLAM3 writes nanoseconds, with zeros behind the point.
+  std::optional<Timestamp> time = parse_seconds(first);
+  const std::string_view whole = first.substr(0, first.find('.'));
+  const bool is_whole = first.find_first_not_of(".0", whole.size()) == std::string_view::npos;
+  if (!time && is_whole) time = parse_nanoseconds(whole);
+  return time_of(time, first, "seconds", place);
+}
 
 TrajectoryFormat guess_trajectory_format(const fs::path& path) {
   const std::vector<TextLine> lines = read_lines(path);
@@ -153,17 +171,17 @@ Trajectory read_trajectory(const fs::path& path) {
     if (!truth) throw InputError(path.string(), "holds no ground truth in mav0/state_groundtruth_estimate0/data.csv");
     return read_trajectory(*truth);
   }
-  const TrajectoryFormat format = guess_trajectory_format(path);
-  if (format == TrajectoryFormat::kitti) {
-    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
-  }
   Trajectory trajectory;
-  for (const TextLine& line : read_lines(path)) {
-    const std::string place = place_of(path, line);
-    const StampedPose sample = parse_stamped_pose(line, format, place);
+  for_each_pose(path, [&](const StampedPose& sample, const std::string& place) {
     require_later(sample.time, trajectory.empty() ? std::nullopt : std::optional(trajectory.back().time), place);
     trajectory.push_back(sample);
-  }
+  });
+  return trajectory;
+}
+
+Trajectory read_trajectory_lines(const fs::path& path) {
+  Trajectory trajectory;
+  for_each_pose(path, [&](const StampedPose& sample, const std::string&) { trajectory.push_back(sample); });
   return trajectory;
 }
 

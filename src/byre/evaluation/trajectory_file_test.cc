@@ -88,6 +88,14 @@ TEST_F(TrajectoryFile, OfTumHasTheScalarOfTheQuaternionLast) {
   expect_near(read[0].world_from_body, {Eigen::Quaterniond(0.8, 0.0, 0.0, 0.6), {1.0, 2.0, 3.0}}, 1e-12);
 }
 
+TEST_F(TrajectoryFile, OfTumMayHaveNanosecondsAsOrbSlamWritesThem) {
+  const fs::path path =
+      write("orb.txt", "1403636579763555584.000000 1 2 3 0 0 0 1\n1403636579813555456 1 2 3 0 0 0 1\n");
+  const Trajectory read = read_trajectory(path);
+  EXPECT_EQ(read[0].time, Timestamp(1403636579763555584));
+  EXPECT_EQ(read[1].time, Timestamp(1403636579813555456));
+}
+
 TEST_F(TrajectoryFile, OfEurocHasTheScalarOfTheQuaternionFirst) {
   const fs::path path = write("data.csv", "#timestamp, p\n1500000000, 1, 2, 3, 0.8, 0, 0, 0.6, 9, 9, 9\r\n");
   const Trajectory read = read_trajectory(path);

@@ -10,8 +10,6 @@
 namespace byre {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets begin UTF-8 with it
-
 std::vector<std::string> cells_of(std::string_view line) {
   const std::vector<std::string_view> fields = split_fields(line);
   return {fields.begin(), fields.end()};
@@ -67,7 +65,7 @@ CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std
   CsvTable table{path, {}, {}};
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
-    if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+    if (number == 1) skip_byte_order_mark(line);
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     if (table.columns.empty()) {
       table.columns = names_of_columns(line);

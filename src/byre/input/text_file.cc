@@ -62,11 +62,17 @@ std::vector<TextLine> read_lines(const std::filesystem::path& path) {
   std::vector<TextLine> lines;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {
+    if (number == 1) skip_byte_order_mark(text);
     const std::string_view content = trimmed(text);
     if (!content.empty() && content.front() != '#') lines.push_back({number, std::string(content)});
   }
   if (file.bad()) throw InputError(path.string(), "cannot be read", "check the disk");
   return lines;
+}
+
+void skip_byte_order_mark(std::string& first_line) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (first_line.starts_with(kByteOrderMark)) first_line.erase(0, kByteOrderMark.size());
 }
 
 std::string place_of(const std::filesystem::path& path, const TextLine& line) {

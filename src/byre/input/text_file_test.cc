@@ -69,6 +69,16 @@ TEST(ReadLines, SkipsCommentsAndBlankLinesButCountsThem) {
   EXPECT_EQ(lines[1].text, "3");
 }
 
+TEST(ReadLines, SkipsAByteOrderMark) {
+  EXPECT_EQ(read_lines(written("marked.txt",
+                               "\xEF\xBB\xBF"
+                               "1 2\n3\n"))
+                .front()
+                .text,
+            "1 2");
+  EXPECT_EQ(read_lines(written("marked.txt", "\xEF\xBB\xBF# head\n3\n")).front().text, "3");
+}
+
 TEST(ReadLines, NamesAFileThatIsNotThere) {
   try {
     read_lines("/nowhere/poses.txt");

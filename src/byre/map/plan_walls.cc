@@ -36,8 +36,8 @@ constexpr std::array<std::pair<int, int>, 8> kNeighbours = {
 
 }  // namespace
 
-PlanWalls::PlanWalls(const FloorPlan& plan, const Image& image) {
-  assert(plan.occupied_threshold && image.width == plan.width && image.height == plan.height);
+PlanWalls::PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy) {
+  assert(occupancy.size() == static_cast<std::size_t>(plan.width) * static_cast<std::size_t>(plan.height));
   // Pixels of a line lie a diagonal apart at most, so that no cell between two of them stays open.
   cell_ = std::max(kLeastCell, plan.metres_per_pixel.colwise().norm().maxCoeff() * std::numbers::sqrt2);
   const PlanBox box = box_of_image(plan);
@@ -47,12 +47,10 @@ PlanWalls::PlanWalls(const FloorPlan& plan, const Image& image) {
   rows_ = static_cast<int>(std::ceil(size.y())) + 2;
   is_wall_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
   is_reached_.assign(is_wall_.size(), 0);
-  for (int row = 0; row < image.height; ++row) {
-    for (int column = 0; column < image.width; ++column) {
-      const int grey = image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                                    static_cast<std::size_t>(column)];
-      const double darkness = (plan.is_negated ? grey : 255 - grey) / 255.0;
-      if (darkness > *plan.occupied_threshold) is_wall_[index(cell_at(plan.point_at({column, row})))] = 1;
+  std::size_t pixel = 0;
+  for (int row = 0; row < plan.height; ++row) {
+    for (int column = 0; column < plan.width; ++column) {
+      if (occupancy[pixel++] == kOccupiedPixel) is_wall_[index(cell_at(plan.point_at({column, row})))] = 1;
     }
   }
 }

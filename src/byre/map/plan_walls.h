@@ -1,7 +1,6 @@
 #pragma once
 
 #include "byre/floor_plan.h"
-#include "byre/image.h"
 
 #include <cstdint>
 #include <optional>
@@ -22,9 +21,9 @@ struct PlanDisc {
 // is a point, so every gap is a door; what lies beyond the plan's image is open.
 class PlanWalls {
  public:
-  // A wall is in each cell that a dark pixel lies in. Cells are 0.1 m wide, and wide enough that a line of pixels is
-  // one of cells. Precondition: the plan says how dark a wall is, and the image is its image.
-  PlanWalls(const FloorPlan& plan, const Image& image);
+  // A wall is in each cell that an occupied pixel (100) lies in. Cells are 0.1 m wide, and wide enough that a line of
+  // pixels is one of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
+  PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy);
 
   // Opens the walls along ways that were driven, which may lead through a door that is drawn shut. All that free cells
   // connect with them can be driven to.

@@ -16,15 +16,14 @@ class PlanOfRooms {
     plan_.metres_per_pixel = kPixel * Eigen::Vector2d(1.0, -1.0).asDiagonal();
     plan_.top_left_in_plan = {0.5 * kPixel, 6.0 - 0.5 * kPixel};
     plan_.occupied_threshold = 0.65;
-    image_ = {200, 120, std::vector<std::uint8_t>(200 * 120, 254)};
   }
 
-  void draw(double x0, double y0, double x1, double y1, std::uint8_t grey = 0) {
+  void draw(double x0, double y0, double x1, double y1, std::int8_t occupancy = kOccupiedPixel) {
     for (int row = 0; row < 120; ++row) {
       for (int column = 0; column < 200; ++column) {
         const Eigen::Vector2d point = plan_.point_at({column, row});
         if (point.x() < x0 || point.x() > x1 || point.y() < y0 || point.y() > y1) continue;
-        image_.pixels[static_cast<std::size_t>(row * 200 + column)] = grey;
+        occupancy_[static_cast<std::size_t>(row * 200 + column)] = occupancy;
       }
     }
   }
@@ -34,13 +33,13 @@ class PlanOfRooms {
     draw(1.0, 4.8, 9.0, 5.0);
     for (const double x : {1.0, 4.9, 8.8}) draw(x, 1.0, x + 0.2, 5.0);
   }
-  void draw_door(double low = 1.2) { draw(4.8, low, 5.2, low + 0.9, 254); }
+  void draw_door(double low = 1.2) { draw(4.8, low, 5.2, low + 0.9, kFreePixel); }
 
-  PlanWalls walls() const { return {plan_, image_}; }
+  PlanWalls walls() const { return {plan_, occupancy_}; }
 
  private:
   FloorPlan plan_;
-  Image image_;
+  std::vector<std::int8_t> occupancy_ = std::vector<std::int8_t>(200 * 120, kFreePixel);
 };
 
 const Eigen::Vector2d kWest(3.0, 3.0), kEast(7.0, 3.0);
@@ -112,9 +111,10 @@ TEST(PlanWalls, OpenWhereSomebodyDroveThrough) {
   EXPECT_NEAR(*way, 4.0, 0.3);
 }
 
-TEST(PlanWalls, AreDarkerThanThePlanSaysAWallIs) {
+TEST(PlanWalls, AreOccupiedPixelsAlone) {
   PlanOfRooms rooms;
-  rooms.draw(4.9, 0.0, 5.1, 6.0, 205);  // what map_server leaves unknown
+  rooms.draw(4.9, 0.0, 5.0, 6.0, kUnknownPixel);
+  rooms.draw(5.0, 0.0, 5.1, 6.0, 99);
   EXPECT_TRUE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 5.0));
 }
 

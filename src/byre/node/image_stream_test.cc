@@ -1,8 +1,7 @@
-// Images as they come: pairs, stamps that jump, and what is said of the cameras.
+// Images as they come: pairs, and what is said of the cameras.
 
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_pairs.h"
-#include "byre/node/stamp_clock.h"
 
 #include <gmock/gmock.h>
 
@@ -10,7 +9,6 @@ namespace byre {
 namespace {
 
 using testing::HasSubstr;
-using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
@@ -79,30 +77,6 @@ TEST(ImagePairs, KeepFewImagesThatNobodyAsksFor) {
   Pairs pairs({true, 0ms, 1s});
   for (int i = 0; i < 100; ++i) pairs.add_left(Timestamp(i * 50ms), i, 0ms);
   EXPECT_EQ(pairs.counts().passed_over, 92);
-}
-
-TEST(StampClock, LeavesStampsAloneThatGoOn) {
-  StampClock clock;
-  for (int i = 0; i < 5; ++i) {
-    const auto reading = clock.read(Timestamp(100s + i * 50ms), Timestamp(i * 900ms));
-    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "however late they come";
-    EXPECT_FALSE(reading.jump);
-  }
-  EXPECT_FALSE(clock.read(100s + 100ms, 5s).jump) << "an image of before";
-  EXPECT_FALSE(clock.read(160s, 65s).jump) << "a pause of a minute";
-}
-
-TEST(StampClock, TakesJumpsOut) {
-  StampClock clock;
-  clock.read(1000s, 10s);
-  const auto back = clock.read(400s, 10s + 50ms);
-  ASSERT_TRUE(back.jump);
-  EXPECT_EQ(*back.jump, Timestamp(-600s - 50ms));
-  EXPECT_EQ(back.time, Timestamp(1000s + 50ms));
-  EXPECT_EQ(clock.read(400s + 50ms, 10s + 100ms).time, Timestamp(1000s + 100ms));
-  const auto forward = clock.read(4000s, 10s + 150ms);
-  ASSERT_TRUE(forward.jump);
-  EXPECT_EQ(forward.time, Timestamp(1000s + 150ms));
 }
 
 class Watch : public testing::Test {

@@ -1,7 +1,6 @@
 #include "byre/node/map_messages.h"
 
 #include "byre/assessment/pose_messages.h"
-#include "byre/dataset/image_file.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
 
@@ -11,13 +10,6 @@
 
 namespace byre {
 namespace {
-
-// Limits of map_server's trinary mode, of darkness from 0 (white) to 1.
-std::int8_t occupancy_of(std::uint8_t grey) {
-  const double darkness = (255.0 - grey) / 255.0;
-  if (darkness > 0.65) return 100;
-  return darkness < 0.196 ? 0 : -1;
-}
 
 // From pixels to metres by one number, without a mirror: then only a turn is left, which the grid's origin tells.
 double side_of_pixel(const FloorPlan& plan) {
@@ -34,20 +26,19 @@ double side_of_pixel(const FloorPlan& plan) {
 }  // namespace
 
 ros::OccupancyGrid grid_of(const FloorPlan& plan) {
-  const auto image = read_image(plan.image);
-  if (!image) throw InputError(plan.image.string(), "cannot be read as an image", "check that it exists");
+  const std::vector<std::int8_t> occupancy = read_plan_pixels(plan).occupancy;
   ros::OccupancyGrid grid;
   grid.info.resolution = static_cast<float>(side_of_pixel(plan));
-  grid.info.width = static_cast<std::uint32_t>(image->width);
-  grid.info.height = static_cast<std::uint32_t>(image->height);
-  const Eigen::Vector2d corner = plan.point_at({-0.5, image->height - 0.5});
+  grid.info.width = static_cast<std::uint32_t>(plan.width);
+  grid.info.height = static_cast<std::uint32_t>(plan.height);
+  const Eigen::Vector2d corner = plan.point_at({-0.5, plan.height - 0.5});
   const Eigen::Vector2d right = plan.metres_per_pixel.col(0);
   const Eigen::AngleAxisd turn(std::atan2(right.y(), right.x()), Eigen::Vector3d::UnitZ());
   grid.info.origin = ros_pose({Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
-  grid.data.reserve(image->pixels.size());
-  for (int row = image->height - 1; row >= 0; --row) {  // from the lowest up
-    const auto begin = image->pixels.begin() + static_cast<std::ptrdiff_t>(row) * image->width;
-    std::transform(begin, begin + image->width, std::back_inserter(grid.data), occupancy_of);
+  grid.data.reserve(occupancy.size());
+  for (int row = plan.height - 1; row >= 0; --row) {  // from the lowest up
+    const auto begin = occupancy.begin() + static_cast<std::ptrdiff_t>(row) * plan.width;
+    grid.data.insert(grid.data.end(), begin, begin + plan.width);
   }
   return grid;
 }

@@ -36,6 +36,18 @@ TEST_F(PlanFile, BecomesAGridFromTheLowestRowUp) {
   EXPECT_THAT(grid.data, ElementsAre(-1, 0, 100, 0, 100, 0));
 }
 
+TEST_F(PlanFile, IsPublishedAsItsYamlReadsIt) {
+  const std::string lies = "image: plan.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
+  const auto grid = [&](const std::string& fields) {
+    std::ofstream(folder_ / "plan.yaml") << lies + fields;
+    return grid_of(read_floor_plan(folder_ / "plan.yaml")).data;
+  };
+  EXPECT_THAT(grid("negate: 1\n"), ElementsAre(-1, 100, 0, 100, 0, 100));
+  EXPECT_THAT(grid("negate: True\n"), ElementsAre(-1, 100, 0, 100, 0, 100));
+  EXPECT_THAT(grid("occupied_thresh: 0.4\n"), ElementsAre(100, 0, 100, 0, 100, 0));
+  EXPECT_THAT(grid("mode: raw\n"), ElementsAre(-1, -1, 0, -1, 0, -1));
+}
+
 TEST_F(PlanFile, IsRefusedWithPixelsThatAreNoSquares) {
   std::ofstream(folder_ / "plan.wld") << "0.5\n0\n0\n-0.6\n0\n0\n";
   EXPECT_THROW(grid_of(read_floor_plan(folder_ / "plan.pgm")), InputError);

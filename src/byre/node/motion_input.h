@@ -1,10 +1,10 @@
 #pragma once
 
+#include "byre/dataset/stamp_clock.h"
 #include "byre/dataset/wheel_stream.h"
 #include "byre/dds/ros_graph.h"
 #include "byre/node/node_config.h"
 #include "byre/node/slam_runner.h"
-#include "byre/node/stamp_clock.h"
 
 #include <deque>
 #include <optional>

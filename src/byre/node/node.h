@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/dataset/stamp_clock.h"
 #include "byre/dds/participant.h"
 #include "byre/dds/ros_graph.h"
 #include "byre/fleet/fleet_link.h"
@@ -15,7 +16,6 @@
 #include "byre/node/pose_frames.h"
 #include "byre/node/service_manager.h"
 #include "byre/node/slam_runner.h"
-#include "byre/node/stamp_clock.h"
 #include "byre/viewer/live_topics.h"
 #include "byre/viewer/status_site.h"
 #include "byre/viewer/web_server.h"

@@ -17,6 +17,7 @@ class OfCamera final : public Recording {
   const std::vector<Timestamp>& times() const override { return recording_->times(); }
   std::optional<ImageFrame> read(int index) override { return recording_->read(index); }
   const MotionSamples& motion() const override { return recording_->motion(); }
+  const TimeCorrections& time_corrections() const override { return recording_->time_corrections(); }
   const std::vector<std::string>& warnings() const override { return recording_->warnings(); }
 
  private:

@@ -47,20 +47,20 @@ PlanWalls wall_across(double door = 0.0) {
   plan.metres_per_pixel = kPixel * Eigen::Vector2d(1.0, -1.0).asDiagonal();
   plan.top_left_in_plan = {-9.95, 9.95};
   plan.occupied_threshold = 0.65;
-  Image image{kSide, kSide, std::vector<std::uint8_t>(kSide * kSide, 254)};
+  std::vector<std::int8_t> occupancy(kSide * kSide, kFreePixel);
   for (int row = 0; row < kSide; ++row) {
     const bool is_door = std::abs(plan.point_at({0, row}).y()) < 0.5 * door;
     if (is_door) continue;
-    for (const int column : {99, 100}) image.pixels[static_cast<std::size_t>(row * kSide + column)] = 0;
+    for (const int column : {99, 100}) occupancy[static_cast<std::size_t>(row * kSide + column)] = kOccupiedPixel;
   }
   // Walls around all of it, as the ends of the wall would be open else.
   for (int i = 0; i < kSide; ++i) {
     for (const int edge : {0, kSide - 1}) {
-      image.pixels[static_cast<std::size_t>(i * kSide + edge)] = 0;
-      image.pixels[static_cast<std::size_t>(edge * kSide + i)] = 0;
+      occupancy[static_cast<std::size_t>(i * kSide + edge)] = kOccupiedPixel;
+      occupancy[static_cast<std::size_t>(edge * kSide + i)] = kOccupiedPixel;
     }
   }
-  return {plan, image};
+  return {plan, occupancy};
 }
 
 std::shared_ptr<const OfflineMap> map_with(const SimulatedMission& visit, std::optional<PlanWalls> walls = {}) {

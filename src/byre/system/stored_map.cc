@@ -23,7 +23,7 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
                      "name that one, or register the map on this one");
   }
   if (!plan.occupied_threshold) return std::nullopt;
-  return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.image));
+  return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.occupancy));
 }
 
 // Throws for a map that nothing can be measured on, and adds words.

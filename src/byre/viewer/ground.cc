@@ -1,8 +1,6 @@
 #include "byre/viewer/ground.h"
 
-#include "byre/dataset/image_file.h"
 #include "byre/geometry/decompositions.h"
-#include "byre/input_error.h"
 #include "byre/map/driving_plane.h"
 
 #include <cassert>
@@ -44,12 +42,6 @@ Similarity ground_from(const DrivingPlane& plane) {
   return {1.0, {ground_from_map, -(ground_from_map * plane.point_in_map)}};
 }
 
-std::shared_ptr<const Image> read_plan_image(const FloorPlan& plan) {
-  std::optional<Image> image = read_image(plan.image);
-  if (!image) throw InputError(plan.image.string(), "is no image that can be read", "check the file of the floor plan");
-  return std::make_shared<const Image>(std::move(*image));
-}
-
 }  // namespace
 
 Ground ground_of(const StoredMap& stored, const std::optional<FloorPlan>& plan) {
@@ -61,7 +53,7 @@ Ground ground_of(const StoredMap& stored, const std::optional<FloorPlan>& plan) 
   ground.ground_from_map = stored.plan ? stored.plan->plan_from_map : ground_from(plane);
   ground.is_metric = stored.plan || stored.scale == MapScale::metric;
   ground.plan = plan;
-  if (plan) ground.image = read_plan_image(*plan);
+  if (plan) ground.image = std::make_shared<const Image>(read_plan_pixels(*plan).image);
   return ground;
 }
 

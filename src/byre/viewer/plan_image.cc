@@ -1,18 +1,18 @@
 #include "byre/viewer/plan_image.h"
 
 #include "byre/dataset/image_codec.h"
+#include "byre/dataset/plan_pixels.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace byre {
 
 std::string plan_png(const FloorPlan& plan, int max_side) {
-  cv::Mat image = decode_image_file(plan.image, cv::IMREAD_COLOR);
+  cv::Mat image = shown_plan(plan);
   if (image.empty()) throw InputError(plan.image.string(), "is no image that can be read", "name a PNG, JPEG or PGM");
   const int longest = std::max(image.cols, image.rows);
   if (longest > max_side) {

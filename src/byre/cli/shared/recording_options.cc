@@ -58,6 +58,11 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
   add_text(command, "--left", options.left_topic, "Topic of a bag's left images, or of its only camera's")
       ->type_name("TOPIC");
   add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");
+  command
+      .add_option("--pair-tolerance", options.pair_tolerance_s,
+                  "Most time between the stamps of a left and a right image of one pair (0.002)")
+      ->type_name("SECONDS")
+      ->check(between(0.0, 0.5));
 }
 
 void declare_frame_range(CLI::App& command, FrameRange& range) {

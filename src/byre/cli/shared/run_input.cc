@@ -37,7 +37,7 @@ void declare_live_options(CLI::App& command, LiveOptions& options) {
                                 ->type_name("DEVICE");
   for (const char* const name :
        {"RECORDING", "--camera", "--fps", "--left", "--right", "--start", "--end", "--frames", "--stride", "--wheels",
-        "--no-wheels", "--gyroscope", "--wheels-topic", "--imu-topic"}) {
+        "--no-wheels", "--gyroscope", "--wheels-topic", "--imu-topic", "--pair-tolerance"}) {
     live->excludes(command.get_option(name));
   }
   command.add_option("--duration", options.duration_s, "End so long after the first frame (Ctrl-C)")
@@ -96,6 +96,7 @@ void RunInput::describe(MapProtocol& protocol) const {
   protocol.camera = camera_of(*scaled_.recording, choice_.open);
   protocol.range = choice_.range;
   protocol.frames_in_range = scaled_.recording->size();
+  protocol.times = scaled_.recording->time_corrections();
 }
 
 SourceRecording RunInput::source() const {

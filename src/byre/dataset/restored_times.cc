@@ -1,0 +1,562 @@
+#include "byre/dataset/restored_times.h"
+
+#include "byre/dataset/stamp_clock.h"
+#include "byre/geometry/median.h"
+#include "byre/input/formatted.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace byre {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+using Times = std::vector<Timestamp>;
+
+constexpr std::size_t kFew = 10;        // most items in a row that are late, or have a wrong stamp
+constexpr std::size_t kWindow = 20;     // items that a delay of reception is taken from
+constexpr double kContinuous = 1.5;     // intervals between two items of one setting of the clock
+constexpr Timestamp kLeastStep = 20ms;  // shorter steps look like jitter
+
+// Stamps beyond are nonsense; the difference of two of them is still a Timestamp.
+constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);
+
+// Which items have a stamp. Zero is one in recordings whose clock starts there.
+std::vector<bool> which_are_stamped(const Times& stamps) {
+  static constexpr Timestamp kNearZero = 10s;
+  const bool is_zero_time = std::ranges::any_of(
+      stamps, [](Timestamp stamp) { return stamp != Timestamp{} && std::chrono::abs(stamp) < kNearZero; });
+  std::vector<bool> are_stamped;
+  for (const Timestamp stamp : stamps) {
+    are_stamped.push_back(std::chrono::abs(stamp) <= kLastStamp && (is_zero_time || stamp != Timestamp{}));
+  }
+  return are_stamped;
+}
+
+Timestamp scaled(double factor, Timestamp interval) {
+  return Timestamp(std::llround(factor * static_cast<double>(interval.count())));
+}
+
+// Groups of neighbours with one value.
+std::size_t count_runs(const Times& values) {
+  std::size_t runs = values.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < values.size(); ++i) runs += values[i] != values[i - 1] ? 1 : 0;
+  return runs;
+}
+
+// Most items have the stamp of a neighbour.
+bool is_coarse(const Times& stamps) {
+  constexpr std::size_t kLeast = 6;  // fewer may be repeated by chance
+  return stamps.size() >= kLeast && 2 * stamps.size() >= 3 * count_runs(stamps);
+}
+
+bool can_replace_stamps(const Times& received, std::size_t items) {
+  return received.size() == items && 2 * items < 3 * count_runs(received);
+}
+
+// Median of the differences that are positive; zero without one.
+Timestamp usual_interval(const Times& stamps) {
+  Times intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] > stamps[i - 1]) intervals.push_back(stamps[i] - stamps[i - 1]);
+  }
+  return median_or(std::move(intervals), Timestamp{});
+}
+
+// Items of one stamp are received together: a sender repeats them. Items of a coarse stamp come at the usual rate.
+bool is_each_repeated(const Times& stamps, const Times& received) {
+  if (received.size() != stamps.size()) return false;
+  Times within, between;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    (stamps[i] == stamps[i - 1] ? within : between).push_back(received[i] - received[i - 1]);
+  }
+  return !within.empty() && !between.empty() && 4 * median(within) < median(between);
+}
+
+struct StampRun {
+  std::size_t begin = 0;
+  Timestamp::rep size = 0;
+};
+
+std::vector<StampRun> runs_of(const Times& stamps) {
+  std::vector<StampRun> runs;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (i > 0 && stamps[i] == stamps[i - 1]) {
+      ++runs.back().size;
+    } else {
+      runs.push_back({i, 1});
+    }
+  }
+  return runs;
+}
+
+// The items of each stamp, spread evenly until the next one. The first and the last run may be incomplete.
+Times spread_evenly(const Times& stamps) {
+  const std::vector<StampRun> runs = runs_of(stamps);
+  Times starts;
+  for (const StampRun& run : runs) starts.push_back(stamps[run.begin]);
+  const Timestamp resolution = usual_interval(starts);
+  const auto step_after = [&](std::size_t run) { return starts[run + 1] - starts[run]; };
+  const auto is_whole = [&](std::size_t run) {
+    return run > 0 && run + 1 < runs.size() && step_after(run) > Timestamp{} &&
+           step_after(run) <= scaled(1.5, resolution);
+  };
+  Times intervals;
+  Timestamp::rep largest = 1;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    largest = std::max(largest, runs[run].size);
+    if (is_whole(run)) intervals.push_back(step_after(run) / runs[run].size);
+  }
+  const Timestamp usual = median_or(std::move(intervals), resolution / largest);
+  Times spread;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    const Timestamp::rep size = runs[run].size;
+    const Timestamp interval = is_whole(run) ? step_after(run) / size : usual;
+    const bool ends_with_next = run == 0 && runs.size() > 1 && step_after(0) > Timestamp{};
+    const Timestamp begin = ends_with_next ? starts[1] - size * interval : starts[run];
+    for (Timestamp::rep i = 0; i < size; ++i) spread.push_back(begin + i * interval);
+  }
+  return spread;
+}
+
+// Stamps as one continuous line: clock steps are taken out, wrong stamps marked.
+class ContinuousLine {
+ public:
+  struct Step {
+    std::size_t item = 0;
+    Timestamp by{};
+  };
+
+  // received: empty where reception says nothing about the rate of the stamps. Precondition: stamps are not empty.
+  ContinuousLine(const Times& stamps, const Times& received, Timestamp interval, bool is_order_certain)
+      : stamps_(stamps),
+        received_(received),
+        interval_(interval),
+        is_order_certain_(is_order_certain),
+        times_(stamps),
+        is_wrong_(stamps.size(), false),
+        latest_from_(stamps) {
+    for (std::size_t i = stamps_.size() - 1; i > 0; --i) {
+      latest_from_[i - 1] = std::max(latest_from_[i - 1], latest_from_[i]);
+    }
+    constexpr std::size_t kFewSteps = 3;
+    place(0);
+    if (is_order_certain_ || 4 * times_set_back() <= stamps_.size()) {
+      for (std::size_t i = 1; i < stamps_.size();) i = advance(i);
+      if (steps_.size() <= std::max(kFewSteps, stamps_.size() / 10)) return;
+    }
+    give_up();
+  }
+
+  const Times& times() const { return times_; }
+  const std::vector<bool>& is_wrong() const { return is_wrong_; }
+  const std::vector<Step>& steps() const { return steps_; }
+  int late() const { return late_; }
+
+ private:
+  // Deals with item i, and returns the next one.
+  std::size_t advance(std::size_t i) {
+    if (end_of_setting_ && *end_of_setting_ == i) {
+      return set_clock(i, stamps_[i] - shift_before_);
+    }
+    if (stamps_[i] >= front()) {
+      if (const std::size_t wrong = wrong_ahead(i); wrong > 0) return mark_wrong(i, i + wrong);
+      if (is_step_forward(i)) return set_clock(i, expected_at(i));
+      return place(i);
+    }
+    const std::size_t end = return_after(i);
+    const bool returns = end < stamps_.size() && is_jump(end);
+    if (is_order_certain_) {
+      if (returns && end - i <= kFew) return mark_wrong(i, end);
+      return is_step_back(i) ? set_clock(i, expected_at(i)) : mark_wrong(i, i + 1);
+    }
+    if (are_late(i, end)) return place_late(i, end);
+    if (returns && goes_on(stamps_[end], end - i)) {
+      if (end - i <= kFew) return mark_wrong(i, end);
+      shift_before_ = shift_;
+      end_of_setting_ = end;
+      return set_clock(i, expected_at(i));
+    }
+    return is_step_back(i) ? set_clock(i, expected_at(i)) : place_late(i, i + 1);
+  }
+
+  Timestamp front() const { return stamps_[front_]; }
+
+  // First item after i whose stamp is later than all before i; the end without one.
+  std::size_t return_after(std::size_t i) const {
+    if (latest_from_[i] <= front()) return stamps_.size();
+    const auto after = stamps_.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto end = std::find_if(after, stamps_.end(), [this](Timestamp stamp) { return stamp > front(); });
+    return static_cast<std::size_t>(end - stamps_.begin());
+  }
+
+  bool is_jump(std::size_t i) const { return stamps_[i] - stamps_[i - 1] > scaled(kContinuous, interval_); }
+
+  // Whether the clock has advanced to this stamp in the time of so many items with other stamps.
+  bool goes_on(Timestamp stamp, std::size_t without) const {
+    const Timestamp passed = stamp - front(), usual = static_cast<Timestamp::rep>(without + 1) * interval_;
+    return passed >= scaled(0.3, usual) && passed <= scaled(3.0, usual);
+  }
+
+  // Items from i on that are far ahead, before the stamps come back.
+  std::size_t wrong_ahead(std::size_t i) const {
+    if (stamps_[i] - front() <= std::max<Timestamp>(static_cast<Timestamp::rep>(kFew) * interval_, kLeastForward))
+      return 0;
+    for (std::size_t count = 1; count <= kFew && i + count < stamps_.size(); ++count) {
+      const Timestamp next = stamps_[i + count];
+      if (next < stamps_[i] && goes_on(next, count)) return count;
+    }
+    return 0;
+  }
+
+  // Delays of reception from item i on, and before it, the least of them. Preconditions: received_ is not empty.
+  Timestamp delay(std::size_t i) const { return received_[i] - stamps_[i]; }
+  Times delays_from(std::size_t i) const {
+    Times delays;
+    for (std::size_t k = i; k < std::min(i + kWindow, stamps_.size()); ++k) delays.push_back(delay(k));
+    return delays;
+  }
+  Timestamp least_delay_before() const {
+    const std::size_t count = std::min(kWindow, placed_.size());
+    Timestamp least = Timestamp::max();
+    for (const std::size_t k : std::span(placed_).last(count)) least = std::min(least, delay(k));
+    return least;
+  }
+
+  Timestamp step_back_at(std::size_t i) const { return front() + interval_ - stamps_[i]; }
+
+  // Whether delays from item `from` on are longer by the step.
+  bool is_delayed_from(std::size_t from, Timestamp step) const {
+    return std::ranges::min(delays_from(from)) - least_delay_before() > step / 2;
+  }
+
+  // A burst after a stall is received faster than it was stamped, too, but its items are delayed; those after a step
+  // are early.
+  bool is_step_forward(std::size_t i) const {
+    if (received_.empty()) return false;
+    const Timestamp stamped = stamps_[i] - front(), waited = received_[i] - received_[front_];
+    return is_set_forward(stamped, waited) && median(delays_from(i)) - least_delay_before() < (waited - stamped) / 2;
+  }
+
+  bool is_step_back(std::size_t i) const {
+    constexpr std::size_t kConfirming = 5;
+    const Timestamp step = step_back_at(i);
+    if (step < kLeastStep || i + kConfirming > stamps_.size()) return false;
+    const auto begin = stamps_.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!std::is_sorted(begin, begin + kConfirming)) return false;
+    return received_.empty() ? step >= scaled(kContinuous, interval_) : is_delayed_from(i, step);
+  }
+
+  // Items from i to `end` were overtaken: the clock goes on at `end`, and they fill gaps or are few and not very late;
+  // or they are the piece before the first one.
+  bool are_late(std::size_t i, std::size_t end) const {
+    const Timestamp to_first = seen_.front() - stamps_[end - 1];
+    const Timestamp near = static_cast<Timestamp::rep>(kFew) * interval_;
+    if (end == stamps_.size()) return to_first > Timestamp{} && to_first <= near;
+    const bool goes_on = received_.empty() ? is_jump(end) : !is_delayed_from(end, step_back_at(i));
+    if (!goes_on) return false;
+    if (end - i <= kFew && step_back_at(i) <= kMostLate) return true;
+    if (to_first > near) return false;
+    std::size_t filling = 0;
+    for (std::size_t k = i; k < end; ++k) filling += fills_gap(stamps_[k]) ? 1 : 0;
+    return 2 * filling >= end - i;
+  }
+
+  bool fills_gap(Timestamp stamp) const {
+    constexpr double kOwnPlace = 0.7;  // intervals
+    const auto after = std::ranges::lower_bound(seen_, stamp);
+    Timestamp nearest = Timestamp::max();
+    if (after != seen_.end()) nearest = *after - stamp;
+    if (after != seen_.begin()) nearest = std::min(nearest, stamp - *std::prev(after));
+    return nearest == Timestamp{} || nearest >= scaled(kOwnPlace, interval_);
+  }
+
+  // Continuous time of item i if the clock was set just before it.
+  Timestamp expected_at(std::size_t i) const {
+    Timestamp passed = static_cast<Timestamp::rep>(i - front_) * interval_;
+    if (!received_.empty()) {
+      const Timestamp waited = received_[i] - received_[front_];
+      const double intervals =
+          std::max(1.0, std::round(static_cast<double>(waited.count()) / static_cast<double>(interval_.count())));
+      passed = intervals <= static_cast<double>(kFew) ? scaled(intervals, interval_) : waited;
+    }
+    return times_[front_] + passed;
+  }
+
+  std::size_t place(std::size_t i) {
+    times_[i] = stamps_[i] - shift_;
+    front_ = i;
+    placed_.push_back(i);
+    seen_.push_back(stamps_[i]);
+    return i + 1;
+  }
+
+  std::size_t place_late(std::size_t i, std::size_t end) {
+    for (std::size_t k = i; k < end; ++k) {
+      times_[k] = stamps_[k] - shift_;
+      seen_.insert(std::ranges::upper_bound(seen_, stamps_[k]), stamps_[k]);
+      ++late_;
+    }
+    return end;
+  }
+
+  std::size_t mark_wrong(std::size_t i, std::size_t end) {
+    for (std::size_t k = i; k < end; ++k) is_wrong_[k] = true;
+    return end;
+  }
+
+  std::size_t set_clock(std::size_t i, Timestamp time) {
+    if (end_of_setting_ && *end_of_setting_ <= i) end_of_setting_.reset();
+    const Timestamp shift = stamps_[i] - time;
+    steps_.push_back({i, shift - shift_});
+    shift_ = shift;
+    placed_.clear();
+    seen_.clear();
+    return place(i);
+  }
+
+  std::size_t times_set_back() const {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < stamps_.size(); ++i) count += stamps_[i] < stamps_[i - 1] ? 1 : 0;
+    return count;
+  }
+
+  // So many steps are not those of a clock: the list is in no order.
+  void give_up() {
+    times_ = stamps_;
+    is_wrong_.assign(stamps_.size(), false);
+    steps_.clear();
+    late_ = static_cast<int>(times_set_back());
+  }
+
+  const Times& stamps_;
+  const Times& received_;
+  Timestamp interval_;
+  bool is_order_certain_;
+
+  Times times_;
+  std::vector<bool> is_wrong_;
+  Times latest_from_;  // latest stamp of the items from each one on
+  std::vector<Step> steps_;
+  int late_ = 0;
+
+  Timestamp shift_{};                          // sum of the steps so far
+  std::size_t front_ = 0;                      // item with the latest stamp since the last step
+  std::vector<std::size_t> placed_;            // items since the last step, without late ones
+  Times seen_;                                 // their stamps and those of late ones, in order
+  std::optional<std::size_t> end_of_setting_;  // where the clock is set back to shift_before_
+  Timestamp shift_before_{};
+};
+
+// Whether items were received about as fast as they were stamped.
+bool is_at_same_rate(const Times& received, Timestamp interval) {
+  const Timestamp other = usual_interval(received);
+  return other > scaled(0.8, interval) && other < scaled(1.25, interval) && std::ranges::is_sorted(received);
+}
+
+// Evenly between the neighbours whose time is known; at the usual interval before the first and after the last of them.
+void fill_in(Times& times, const std::vector<bool>& is_known, Timestamp interval) {
+  const std::size_t size = times.size();
+  for (std::size_t begin = 0; begin < size;) {
+    if (is_known[begin]) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin;
+    while (end < size && !is_known[end]) ++end;
+    const auto count = static_cast<Timestamp::rep>(end - begin);
+    const bool is_between = begin > 0 && end < size;
+    const Timestamp step = is_between ? (times[end] - times[begin - 1]) / (count + 1) : interval;
+    const Timestamp before = begin > 0 ? times[begin - 1] : times[end] - (count + 1) * step;
+    for (std::size_t i = begin; i < end; ++i) times[i] = before + static_cast<Timestamp::rep>(i - begin + 1) * step;
+    begin = end;
+  }
+}
+
+Timestamp median_of_delays(const RecordedStamps& recorded, std::size_t begin, std::size_t end) {
+  Times delays;
+  for (std::size_t i = begin; i < end; ++i) delays.push_back(recorded.received[i] - recorded.stamps[i]);
+  return median(std::move(delays));
+}
+
+// Takes over the steps of the other sensor's clock where this is the same clock.
+class StepAdoption {
+ public:
+  StepAdoption(const RecordedStamps& recorded, Timestamp interval, bool has_reception, const SensorClock& other)
+      : recorded_(recorded), interval_(interval), has_reception_(has_reception), other_(other) {}
+
+  void adopt(Times& times, std::vector<ContinuousLine::Step>& steps) const {
+    std::vector<bool> is_taken(steps.size(), false);
+    std::vector<ContinuousLine::Step> added;
+    for (const SharedClockStep& shared : other_.steps) {
+      std::size_t own = 0;
+      while (own < steps.size() && (is_taken[own] || !is_same(steps[own], shared))) ++own;
+      if (own < steps.size()) {
+        shift_from(steps[own].item, shared.by - steps[own].by, times);
+        steps[own].by = shared.by;
+        is_taken[own] = true;
+      } else if (const auto item = first_item_after(shared)) {
+        shift_from(*item, shared.by, times);
+        added.push_back({*item, shared.by});
+      }
+    }
+    steps.insert(steps.end(), added.begin(), added.end());
+    std::ranges::sort(steps, {}, &ContinuousLine::Step::item);
+  }
+
+ private:
+  static void shift_from(std::size_t item, Timestamp by, Times& times) {
+    for (std::size_t i = item; i < times.size(); ++i) times[i] -= by;
+  }
+
+  bool is_same(const ContinuousLine::Step& own, const SharedClockStep& shared) const {
+    const Timestamp tolerance = 2 * (interval_ + other_.interval) + 50ms;
+    if (std::chrono::abs(own.by - shared.by) > tolerance) return false;
+    return !shared.received || recorded_.received.empty() ||
+           std::chrono::abs(recorded_.received[own.item] - *shared.received) <= 2s;
+  }
+
+  // A step too short for the interval of these items shows in the delays of reception.
+  std::optional<std::size_t> first_item_after(const SharedClockStep& shared) const {
+    constexpr std::size_t kLeast = 5;
+    if (!has_reception_ || !shared.received) return std::nullopt;
+    const Times& received = recorded_.received;
+    auto item = static_cast<std::size_t>(std::ranges::lower_bound(received, *shared.received) - received.begin());
+    if (item < kLeast || received.size() - item < kLeast) return std::nullopt;
+    const Timestamp before = median_of_delays(recorded_, item - std::min(item, kWindow), item);
+    const Timestamp after = median_of_delays(recorded_, item, std::min(item + kWindow, received.size()));
+    if (std::chrono::abs(after - before + shared.by) >= std::chrono::abs(shared.by) / 2) return std::nullopt;
+    while (item > 1) {  // the other sensor's first item after the step came later
+      const Timestamp delay = received[item - 1] - recorded_.stamps[item - 1];
+      if (std::chrono::abs(delay - after) > std::chrono::abs(delay - before)) break;
+      --item;
+    }
+    return item;
+  }
+
+  const RecordedStamps& recorded_;
+  Timestamp interval_;
+  bool has_reception_;
+  const SensorClock& other_;
+};
+
+// Sorts by time and keeps the first item of each time.
+void keep_in_order(const Times& times, RestoredTimes& result) {
+  result.times_of_all = times;
+  std::vector<std::size_t> items(times.size());
+  std::iota(items.begin(), items.end(), std::size_t{0});
+  std::ranges::stable_sort(items, {}, [&](std::size_t item) { return times[item]; });
+  const auto repeated = std::ranges::unique(items, {}, [&](std::size_t item) { return times[item]; });
+  result.corrections.repeated = static_cast<int>(repeated.size());
+  items.erase(repeated.begin(), repeated.end());
+  for (const std::size_t item : items) result.times.push_back(times[item]);
+  result.items = std::move(items);
+}
+
+RestoredTimes by_reception(const RecordedStamps& recorded) {
+  RestoredTimes result;
+  result.corrections.source = result.clock.source = TimeSource::receive_times;
+  result.clock.interval = usual_interval(recorded.received);
+  keep_in_order(recorded.received, result);
+  return result;
+}
+
+}  // namespace
+
+RestoredTimes restore_times(const RecordedStamps& recorded, const SensorClock& other) {
+  const std::size_t size = recorded.stamps.size();
+  const bool can_use_reception = can_replace_stamps(recorded.received, size);
+  std::vector<std::size_t> stamped;
+  Times stamps, received;
+  const std::vector<bool> are_stamped = which_are_stamped(recorded.stamps);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!are_stamped[i]) continue;
+    stamped.push_back(i);
+    stamps.push_back(recorded.stamps[i]);
+    if (!recorded.received.empty()) received.push_back(recorded.received[i]);
+  }
+  const bool are_coarse = is_coarse(stamps) && !(can_use_reception && is_each_repeated(stamps, received));
+  const bool are_unusable = are_coarse || 2 * stamped.size() < size || other.source == TimeSource::receive_times;
+  if (can_use_reception && are_unusable) return by_reception(recorded);
+
+  RestoredTimes result;
+  Times times = recorded.stamps;
+  std::vector<ContinuousLine::Step> steps;
+  if (!stamps.empty()) {
+    if (are_coarse) {
+      stamps = spread_evenly(stamps);
+      result.corrections.source = result.clock.source = TimeSource::even_spacing;
+    }
+    const Timestamp interval = result.clock.interval = usual_interval(stamps);
+    const bool has_reception = can_use_reception && is_at_same_rate(received, interval);
+    if (!has_reception) received.clear();
+    const ContinuousLine line(stamps, received, interval, recorded.is_order_certain);
+    std::vector<bool> is_known(size, false);
+    for (std::size_t i = 0; i < stamped.size(); ++i) {
+      times[stamped[i]] = line.times()[i];
+      is_known[stamped[i]] = !line.is_wrong()[i];
+    }
+    for (const ContinuousLine::Step& step : line.steps()) steps.push_back({stamped[step.item], step.by});
+    result.corrections.late = line.late();
+    result.corrections.unstamped = static_cast<int>(std::ranges::count(is_known, false));
+    fill_in(times, is_known, interval);
+    StepAdoption(recorded, interval, has_reception, other).adopt(times, steps);
+  }
+  keep_in_order(times, result);
+  for (const auto& [item, by] : steps) {
+    const auto first = std::ranges::lower_bound(result.times, times[item]);
+    result.corrections.clock_steps.push_back({static_cast<int>(first - result.times.begin()), by});
+    const auto when = recorded.received.empty() ? std::nullopt : std::optional(recorded.received[item]);
+    result.clock.steps.push_back({by, when});
+  }
+  return result;
+}
+
+std::string_view to_string(TimeSource source) {
+  switch (source) {
+    case TimeSource::stamps:
+      return "stamps";
+    case TimeSource::receive_times:
+      return "receive times";
+    case TimeSource::even_spacing:
+      return "even spacing";
+  }
+  return "";
+}
+
+std::vector<std::string> describe(const TimeCorrections& corrections, const ItemNames& names) {
+  std::vector<std::string> lines;
+  const std::string items = names.kind + "s";
+  const auto add = [&](const std::string& text) { lines.push_back(names.place + ": " + text); };
+  if (corrections.source == TimeSource::receive_times) {
+    add("time stamps are zero, or as coarse as whole seconds: receive times are used for all " + items);
+  } else if (corrections.source == TimeSource::even_spacing) {
+    add("time stamps are as coarse as whole seconds: the " + items + " of a stamp are spread evenly");
+  }
+  constexpr std::size_t kMostListed = 10;
+  const auto& steps = corrections.clock_steps;
+  for (std::size_t i = 0; i < std::min(steps.size(), kMostListed); ++i) {
+    const double by = to_seconds(steps[i].by);
+    add(formatted("clock set %s by %.3f s at %s %d: times after it are shifted to continue",
+                  by < 0.0 ? "back" : "forward", std::abs(by), names.counted.c_str(), steps[i].frame));
+  }
+  if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
+  if (corrections.unstamped > 0) {
+    add(std::to_string(corrections.unstamped) + " " + items +
+        " have a time stamp of zero or a wrong one: timed between their neighbours");
+  }
+  if (corrections.late > 0) {
+    add(std::to_string(corrections.late) + " " + items + " were recorded after later ones: put in order");
+  }
+  if (corrections.repeated > 0) {
+    add(std::to_string(corrections.repeated) + " " + items + " have the time stamp of another one and are left out");
+  }
+  return lines;
+}
+
+}  // namespace byre
