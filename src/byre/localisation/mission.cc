@@ -42,12 +42,7 @@ void Mission::append_candidates(std::span<const PointId> around, ReusedVector<Po
 }
 
 void Mission::note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence) {
-  constexpr int kFewExpected = 200;  // points
   view_ = view_of_offline(evidence, options_.view);
-  seen_share_.reset();
-  if (evidence.expected >= kFewExpected && !evidence.image_is_faulty) {
-    seen_share_ = static_cast<double>(evidence.inliers) / evidence.expected;
-  }
   ++frames_;
   const bool held = view_ == OfflineView::held;
   if (held) {

@@ -36,9 +36,6 @@ class Mission {
   const MovedPoints& moved_points() const { return moved_points_; }
   OfflineView view() const { return view_; }
   double distance_since_offline() const { return distance_since_offline_; }
-  // Share of the offline points in view that the last frame saw; empty where hardly any should be, or images are
-  // faulty.
-  std::optional<double> seen_share() const { return seen_share_; }
   std::optional<Timestamp> last_offline_time() const { return last_offline_time_; }
   DriftBound drift() const;
   // How far offline points may put a camera that was last tracked so many seconds ago, at a place that was proven.
@@ -71,7 +68,6 @@ class Mission {
   MovedPoints moved_points_;
   OfflineView view_ = OfflineView::off_the_map;
   double distance_since_offline_ = 0.0;  // metres
-  std::optional<double> seen_share_;
   std::optional<Timestamp> last_offline_time_;
   int frames_ = 0;                       // noted
   std::optional<KeyframeId> reference_;  // offline keyframe that showed most of the last frame's points

@@ -7,10 +7,9 @@
 namespace byre {
 namespace {
 
-// Where a tenth of what should be in view is seen there is nothing to doubt; nor where hardly anything should be.
-bool sees_enough(const Mission& mission) {
-  constexpr double kEnough = 0.1;
-  return mission.seen_share().value_or(1.0) >= kEnough;
+// The cells of the map in view speak for the pose, or there are none.
+bool is_beyond_doubt(const Whereabouts& whereabouts) {
+  return whereabouts.place().is_accepted() && whereabouts.place().log_odds() >= 0.0;
 }
 
 }  // namespace
@@ -43,13 +42,25 @@ PlaceSearch OfflineTracker::collect_place() {
   return finished ? finished->result : PlaceSearch{};
 }
 
+PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
+                                  const HiddenCells& hidden) const {
+  const Map nothing_online(Origin::online);
+  const MapView map(&offline_->map(), nothing_online);
+  const Pose& pose = track.tracked.camera_from_world;
+  auto reference = track.offline_reference;
+  if (!reference) reference = mission_.keyframe_near(pose);
+  const auto around = reference ? local_points(map, *reference, options_.local_keyframes) : ReusedVector<PointId>{};
+  return view_of_place({*offline_, rig, frame, track.tracked, around, hidden,
+                        [this](PointId id) { return mission_.moved_points().is_suspended(id); }});
+}
+
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,
                                                  const Mapper& mapper) {
   Consequence consequence{.events = note_view(seen, mapper)};
-  const Confirmation& confirmation = whereabouts.confirmation();
-  if (!confirmation.is_believed()) return consequence;
+  if (is_beyond_doubt(whereabouts)) rival_.forget();
+  if (!whereabouts.place().is_believed()) return consequence;
   if (!mapper.has_correction()) consequence.correction = correction_by(seen.track, mapper);
-  if (calibrator_ && confirmation.is_proven() && !seen.track.maps_disagree) {
+  if (calibrator_ && whereabouts.place().is_accepted() && !seen.track.maps_disagree) {
     calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
   }
   return consequence;
@@ -63,7 +74,6 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   const OfflineView now = mission_.view();
   const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
   if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
-  if (sees_enough(mission_)) rival_.forget();
   const ReusedVector<PointId> due = mission_.due_again(seen.offline_around);
   if (!due.empty()) {
     TrackOptions options = options_.track;
@@ -84,27 +94,27 @@ void OfflineTracker::lose() {
 
 void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper) {
   constexpr double kDoubtsEvery = 1.0;  // seconds
-  if (!search_.idle() || mapper.has_correction() || !whereabouts.confirmation().is_believed()) return;
+  if (!search_.idle() || mapper.has_correction() || !whereabouts.place().is_believed()) return;
   const bool is_due = !last_search_ || to_seconds(sought.frame.time - *last_search_) >= kDoubtsEvery;
   is_search_by_doubt_ = !is_search_needed(whereabouts, mapper);
-  if (is_search_by_doubt_ && (sees_enough(mission_) || !is_due)) return;
+  if (is_search_by_doubt_ && (is_beyond_doubt(whereabouts) || !is_due)) return;
   last_search_ = sought.frame.time;
-  const bool is_hint_to_be_checked = whereabouts.confirmation().is_by_hint && mapper.submaps().is_registered();
+  const bool is_hint_to_be_checked = whereabouts.is_by_hint() && mapper.submaps().is_registered();
   // Where a pose was trusted all the while, a find elsewhere says that it was wrong, so the way from there tells
   // nothing.
-  const bool is_way_in_doubt = whereabouts.confirmation().is_proven() && mapper.submaps().is_registered();
+  const bool is_way_in_doubt = whereabouts.place().is_accepted() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
                  way = is_way_in_doubt ? std::nullopt : sought.way, hidden = sought.hidden, offline = offline_,
                  options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds},
-                 tracked_share = mission_.seen_share()] {
+                 tracked_log_odds = whereabouts.place().log_odds()] {
     PlaceSearch search = search_place(*offline, {frame, rig, hint, way, hidden}, options);
-    if (search.found) search.found->tracked_share = tracked_share;
+    if (search.found) search.found->tracked_log_odds = tracked_log_odds;
     return search;
   });
 }
 
 bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const {
-  return !mapper.submaps().is_registered() || !whereabouts.confirmation().is_proven() ||
+  return !mapper.submaps().is_registered() || !whereabouts.place().is_accepted() ||
          mission_.distance_since_offline() > options_.mission.search_after;
 }
 
@@ -114,22 +124,22 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
 OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
                                                      const Mapper& mapper) {
   constexpr double kElsewhere = 0.5;  // metres
-  const Confirmation& confirmation = whereabouts.confirmation();
+  const PlaceHypothesis& place = whereabouts.place();
   const Submaps& submaps = mapper.submaps();
-  if (!whereabouts.has_pose() || !confirmation.is_believed() || mapper.has_correction()) return {};
+  if (!whereabouts.has_pose() || !place.is_believed() || mapper.has_correction()) return {};
   const AnchoredPose* const then = whereabouts.trajectory().find(found.time);
   if (then == nullptr || submaps.frame(then->submap) != submaps.frame()) return {};
   const Pose camera_from_online = camera_from_world(mapper.map(), *then);
   const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
   const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
-  if (is_in_place && (confirmation.is_proven() || confirmation.is_by_hint)) {
+  if (is_in_place && (place.is_accepted() || whereabouts.is_by_hint())) {
     if (rival_.note(found, camera_from_online, options_.mission.registration)) {
       return {.events = {}, .refutes_pose = true, .refutes_way = true};
     }
-    if (confirmation.is_by_hint && agreement.translation <= kElsewhere) return {.events = {}, .agrees_with_hint = true};
+    if (whereabouts.is_by_hint() && agreement.translation <= kElsewhere)
+      return {.events = {}, .agrees_with_hint = true};
     if (is_search_by_doubt_) return {};
-  } else if (is_in_place && agreement.translation > kElsewhere &&
-             found.seen_share >= options_.mission.registration.proving_share) {
+  } else if (is_in_place && agreement.translation > kElsewhere && found.log_odds > place.log_odds()) {
     return {.events = {}, .refutes_pose = true};
   }
   return {.events = {}, .correction = correction_by(found, camera_from_online, submaps.frame())};

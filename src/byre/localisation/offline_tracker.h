@@ -20,6 +20,7 @@ struct OfflineTrackerOptions {
   MissionOptions mission;
   TrackOptions track;
   LocaliseOptions relocalise;  // where places are looked for beside tracking
+  int local_keyframes = 15;    // see SessionOptions
   bool is_planar = false;      // the body is held to the ground that the map was driven on
 };
 
@@ -69,6 +70,8 @@ class OfflineTracker {
     bool agrees_with_hint = false;                 // it is where a hint had led, and nowhere else
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
+  // What a frame that was tracked in the map's frame shows of it.
+  PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden) const;
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
   Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }

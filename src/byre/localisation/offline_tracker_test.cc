@@ -1,6 +1,7 @@
 #include "byre/localisation/offline_tracker.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/localisation/place_view_scene.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/place_scene.h"
 
@@ -31,14 +32,14 @@ class OnAnOfflineMap : public ::testing::Test {
     track.offline_by_region.fill({expected, inliers});
     return track;
   }
-  void note_found(std::size_t frame, int inliers = 100) {
+  void note_found(std::size_t frame, const PlaceView& view = view_of_room(10, 0, 2)) {
     mapper_.begin_where_found(track_of(frame));
     for (const bool from_nothing : {true, false, false, false}) {
-      whereabouts_.note({mission_.frames[frame], track_of(frame, inliers), from_nothing, true, 0}, mission_.rig,
+      whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0, false, &view}, mission_.rig,
                         mapper_.map());
       ++frame;
     }
-    ASSERT_TRUE(whereabouts_.confirmation().is_believed());
+    ASSERT_TRUE(whereabouts_.place().is_believed());
   }
   OfflineTracker::Consequence note(std::size_t frame, int inliers) {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
@@ -46,29 +47,29 @@ class OnAnOfflineMap : public ::testing::Test {
   }
   struct Way {
     std::size_t begin = 0;    // its first frame
-    int inliers = 0;          // points seen in each frame, where 1000 should be
-    bool is_by_hint = false;  // a hint led to where it begins; else it was proven before
+    bool is_by_hint = false;  // a hint led to where it begins; else it was accepted before
   };
   // The first frame of a way in which a place 5 m away, which shows much more in each, refutes where tracking is; zero
   // where none does.
   std::size_t frame_that_refutes(const Way& way) {
     for (std::size_t i = way.begin; i < mission_.frames.size(); ++i) {
-      const HybridTrack track = track_of(i, way.inliers, 1000);
+      const HybridTrack track = track_of(i, 50, 1000);
+      const PlaceView view = view_of_room(2, 8);
       const bool is_find = way.is_by_hint && i == way.begin;
-      whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find}, mission_.rig, mapper_.map());
+      whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find, &view}, mission_.rig, mapper_.map());
       tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}}, whereabouts_, mapper_);
-      EXPECT_NE(whereabouts_.confirmation().is_proven(), way.is_by_hint) << i;
-      FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 0.3};
+      EXPECT_NE(whereabouts_.place().is_accepted(), way.is_by_hint) << i;
+      FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 8.0};
       rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
-      rival.tracked_share = way.inliers / 1000.0;
+      rival.tracked_log_odds = whereabouts_.place().log_odds();
       if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) return i;
     }
     return 0;
   }
   // A place so many metres beside where the first frame was believed to be.
-  FoundPlace place_beside(double metres, double seen_share) const {
+  FoundPlace place_beside(double metres, double log_odds) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
-    return {mission_.frames[0].time, beside * true_camera_from_world(mission_, 0), 3.0, seen_share};
+    return {mission_.frames[0].time, beside * true_camera_from_world(mission_, 0), 3.0, log_odds};
   }
 };
 
@@ -96,38 +97,37 @@ TEST_F(OnAnOfflineMap, LetsItsPointsPutTheCameraTheFartherOffTheLongerTheyDidNot
 }
 
 TEST_F(OnAnOfflineMap, GivesAnUnprovenFindUpForAPlaceElsewhereThatShowsMore) {
-  note_found(0, 1);
-  ASSERT_FALSE(whereabouts_.confirmation().is_proven());
-  EXPECT_FALSE(tracker_.consider(place_beside(2.0, 0.01), whereabouts_, mapper_).refutes_pose);
-  EXPECT_FALSE(tracker_.consider(place_beside(0.1, 0.5), whereabouts_, mapper_).refutes_pose);
-  EXPECT_TRUE(tracker_.consider(place_beside(2.0, 0.5), whereabouts_, mapper_).refutes_pose);
+  note_found(0, view_of_room(2, 8));
+  ASSERT_FALSE(whereabouts_.place().is_accepted());
+  EXPECT_FALSE(tracker_.consider(place_beside(2.0, -5.0), whereabouts_, mapper_).refutes_pose);
+  EXPECT_FALSE(tracker_.consider(place_beside(0.1, 5.0), whereabouts_, mapper_).refutes_pose);
+  EXPECT_TRUE(tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_).refutes_pose);
 }
 
 TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
   note_found(0);
-  ASSERT_TRUE(whereabouts_.confirmation().is_proven());
-  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0, 0.5), whereabouts_, mapper_);
+  ASSERT_TRUE(whereabouts_.place().is_accepted());
+  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_);
   EXPECT_FALSE(consequence.refutes_pose);
   EXPECT_FALSE(consequence.correction);
 }
 
 TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
   note_found(0);
-  ASSERT_TRUE(whereabouts_.confirmation().is_proven());
-  EXPECT_GT(frame_that_refutes({.begin = 4, .inliers = 50, .is_by_hint = false}), 8U) << "not by one find";
+  ASSERT_TRUE(whereabouts_.place().is_accepted());
+  EXPECT_GT(frame_that_refutes({.begin = 4, .is_by_hint = false}), 8U) << "not by one find";
 }
 
 TEST_F(OnAnOfflineMap, BelievesWhatAHintLedToUntilARivalIsFoundAllAlongTheWay) {
   mapper_.begin_where_found(track_of(0));
-  EXPECT_GT(frame_that_refutes({.begin = 0, .inliers = 90, .is_by_hint = true}), 8U) << "not by one find";
-  EXPECT_FALSE(whereabouts_.confirmation().is_proven()) << "as much would prove another find";
+  EXPECT_GT(frame_that_refutes({.begin = 0, .is_by_hint = true}), 8U) << "not by one find";
 }
 
 TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
   mapper_.begin_where_found(track_of(0));
   for (std::size_t i = 0; i < 4; ++i) {
-    const HybridTrack track = track_of(i, 70, 1000);
-    whereabouts_.note({mission_.frames[i], track, i == 0, true, 0, true}, mission_.rig, mapper_.map());
+    const PlaceView view = view_of_room(2, 4);
+    whereabouts_.note({mission_.frames[i], track_of(i), i == 0, true, 0, true, &view}, mission_.rig, mapper_.map());
   }
   tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place().found;
@@ -139,9 +139,9 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;
   for (int i = 1; i < confirmations; ++i) {
-    EXPECT_FALSE(tracker_.consider(place_beside(0.005, 0.5), whereabouts_, mapper_).correction);
+    EXPECT_FALSE(tracker_.consider(place_beside(0.005, 5.0), whereabouts_, mapper_).correction);
   }
-  const auto correction = tracker_.consider(place_beside(0.005, 0.5), whereabouts_, mapper_).correction;
+  const auto correction = tracker_.consider(place_beside(0.005, 5.0), whereabouts_, mapper_).correction;
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->shape, CorrectionShape::spread);
   EXPECT_EQ(correction->frame, Submaps::kMapFrame);
@@ -149,7 +149,7 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
 }
 
 TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) {
-  note_found(0, 1);
+  note_found(0, view_of_room(2, 8));
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found);
@@ -159,12 +159,16 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
 
 TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   note_found(0);
-  const HybridTrack track = track_of(4, 70, 1000);
-  tracker_.note({mission_.frames[4], track, mission_.rig, 0.1, false, {}, {}}, whereabouts_, mapper_);
+  const PlaceView view = view_of_room(3, 7);
+  for (int i = 0; i < 6; ++i) {
+    whereabouts_.note({mission_.frames[4], track_of(4), false, true, 0, false, &view}, mission_.rig, mapper_.map());
+  }
+  ASSERT_TRUE(whereabouts_.place().is_accepted());
+  note(4, 70);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const auto found = tracker_.collect_place().found;
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->tracked_share, 0.07);
+  EXPECT_EQ(found->tracked_log_odds, whereabouts_.place().log_odds());
   tracker_.search_beside({mission_.frames[5], mission_.rig}, whereabouts_, mapper_);
   EXPECT_FALSE(tracker_.collect_place().found);
 }

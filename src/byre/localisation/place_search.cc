@@ -1,5 +1,6 @@
 #include "byre/localisation/place_search.h"
 
+#include "byre/localisation/place_hypothesis.h"
 #include "byre/localisation/standing_hint.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
@@ -61,8 +62,11 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
   if (!found.tracked) return {std::nullopt, refused};
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
-  const double seen = static_cast<double>(found.tracked->features.size()) / std::max(1, found.tracked->expected);
-  return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, seen}, Doubt::none};
+  PlaceHypothesis place(0.0, 0);
+  const ReusedVector<PointId> around =
+      local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
+  place.observe(view_of_place({offline, sought.rig, sought.frame, *found.tracked, around, sought.hidden}), true);
+  return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, place.log_odds()}, Doubt::none};
 }
 
 }  // namespace byre

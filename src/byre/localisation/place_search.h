@@ -37,11 +37,9 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
 struct FoundPlace {
   Timestamp time{};  // when the frame was taken that was found
   Pose camera_from_offline;
-  double median_depth = 0.0;  // metres, of the points that say so
-  double seen_share = 0.0;    // share of the points that should be in view there
-  // Share that tracking saw, in the same frame, of those that should be in view where it had the camera; empty where
-  // that cannot be judged.
-  std::optional<double> tracked_share{};
+  double median_depth = 0.0;      // metres, of the points that say so
+  double log_odds = 0.0;          // of the place by this frame alone, see PlaceHypothesis
+  double tracked_log_odds = 0.0;  // log-odds of the pose tracked in the same frame
 };
 
 // What came of looking for a frame in the offline map without a guess.

@@ -3,21 +3,20 @@
 #include "byre/slam/hybrid_tracking.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace byre {
 
 bool RivalPlace::note(const FoundPlace& found, const Pose& camera_from_tracked, const RegistrationOptions& options) {
-  constexpr double kElsewhere = 0.5;  // metres
-  constexpr double kOutdoing = 1.5;   // times the share that tracking saw
-  constexpr double kProving = 2.0;    // times the share that proves a find where there is nothing to doubt it
+  constexpr double kElsewhere = 0.5;       // metres
+  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to where tracking has the robot
   constexpr int kFinds = 5;
   constexpr double kWay = 2.0;  // metres, for what looks alike from one spot need not do so from the next
-  if (!found.tracked_share) return false;
   if (agreement_of(found.camera_from_offline, camera_from_tracked).translation <= kElsewhere) {
     forget();
     return false;
   }
-  if (found.seen_share < std::max(kOutdoing * *found.tracked_share, kProving * options.proving_share)) {
+  if (found.log_odds < 0.0 || found.log_odds < found.tracked_log_odds + of_rival) {
     if (rival_ && ++rival_->outdone > options.max_misses) forget();
     return false;
   }

@@ -5,6 +5,7 @@
 #include "byre/slam/planar_prior.h"
 
 #include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -102,18 +103,28 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
-FindEvidence Whereabouts::evidence_of_find(Timestamp time, const Pose& body) const {
-  FindEvidence find;
-  if (trajectory_.empty()) return find;
-  if (last_believed_) find.seconds_since_believed = to_seconds(time - *last_believed_);
-  if (last_proven_) find.seconds_since_proven = to_seconds(time - *last_proven_);
-  if (bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted) {  // no time went by without a pose
-    const double seconds = to_seconds(time - trajectory_.back().time);
-    if (last_believed_) find.seconds_since_believed = seconds;
-    if (last_proven_) find.seconds_since_proven = seconds;
+// The test of a pose found without a prediction. It starts anew, and farther away than the robot can have moved with
+// more to prove; near where an accepted pose was shortly before it goes on.
+PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body) const {
+  constexpr double kSlack = 0.5;            // metres: error of poses
+  constexpr double kShortly = 1.0;          // seconds
+  const double of_jump = -std::log(100.0);  // one find in a hundred is of a robot that was carried
+  const int frames = registration_.confirmations;
+  if (trajectory_.empty() || !last_believed_) return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
+  // A well-known motion leaves no time without a pose.
+  const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
+  const auto seconds_since = [&](Timestamp then) {
+    return to_seconds(time - (is_bridged ? trajectory_.back().time : then));
+  };
+  const double shift = (body.translation - odometry_.map_from_body().translation).norm();
+  if (shift > kSlack + registration_.max_speed * seconds_since(*last_believed_)) {
+    return PlaceHypothesis(of_jump, kConfirmationsOfJump, registration_.accept_log_odds);
   }
-  find.shift = (body.translation - odometry_.map_from_body().translation).norm();
-  return find;
+  if (!last_accepted_ || seconds_since(*last_accepted_) > kShortly)
+    return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
+  PlaceHypothesis found_again = place_before_;
+  found_again.find_again(frames);
+  return found_again;
 }
 
 // The metres that the body went.
@@ -133,14 +144,13 @@ double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig
 Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig, const MapView& map) {
   const HybridTrack& track = seen.track;
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
-  Progress progress{0.0, confirmation_.is_proven(), last_believed_.has_value()};
-  if (!seen.from_nothing) {
-    confirmation_ = confirmed_further(confirmation_, track.offline_by_region, registration_);
-  } else if (on_offline_map_) {
-    FindEvidence find = evidence_of_find(seen.frame.time, body);
-    find.is_by_hint = seen.is_by_hint;
-    confirmation_ = confirmation_of(find, registration_);
+  Progress progress{0.0, place_.is_accepted(), last_believed_.has_value()};
+  if (seen.from_nothing && on_offline_map_) {
+    place_ = hypothesis_of_find(seen.frame.time, body);
+    is_by_hint_ = seen.is_by_hint;
   }
+  if (on_offline_map_) place_.observe(seen.view != nullptr ? *seen.view : PlaceView{}, !seen.from_nothing);
+  is_by_hint_ = is_by_hint_ && !place_.is_accepted();
   if (seen.from_nothing && seen.is_registered) note_end_of_bridge(rig, map);
   progress.step = move_to(seen, body, rig, map);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
@@ -150,12 +160,12 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   if (on_offline_map_) trajectory_.keep_sightings(rig, *seen.frame.features, track.tracked);
   has_pose_ = true;
   last_seen_ = seen.frame.time;
-  if (!confirmation_.is_believed()) return progress;
+  if (!place_.is_believed()) return progress;
   if (bridge_end_) trajectory_.bend(bridge_end_->first, bridge_end_->second, bridge_end_->told, map);
   believe();
   if (!seen.is_registered) return progress;
   last_believed_ = seen.frame.time;
-  if (confirmation_.is_proven()) last_proven_ = seen.frame.time;
+  if (place_.is_accepted()) last_accepted_ = seen.frame.time;
   return progress;
 }
 
@@ -171,14 +181,16 @@ void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t su
   }
   believe();
   motion_.reach(Vector6::Zero());
-  confirmation_ = {};
+  place_ = {};
+  is_by_hint_ = false;
   has_pose_ = true;
   last_seen_ = trajectory_.back().time;
 }
 
 void Whereabouts::lose() {
+  if (has_pose_) place_before_ = std::exchange(place_, {});
   has_pose_ = false;
-  confirmation_ = {};
+  is_by_hint_ = false;
   motion_.lose();
   if (trajectory_.ends_in_doubt()) motion_.go_back_to(since_believed_);
   trajectory_.drop_doubtful();

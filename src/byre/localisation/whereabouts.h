@@ -2,8 +2,8 @@
 
 #include "byre/features/rolling_shutter.h"
 #include "byre/health.h"
-#include "byre/localisation/confirmation.h"
 #include "byre/localisation/odometry.h"
+#include "byre/localisation/place_hypothesis.h"
 #include "byre/map/driven_ground.h"
 #include "byre/mapping/anchored_trajectory.h"
 #include "byre/slam/hybrid_tracking.h"
@@ -40,7 +40,10 @@ class Whereabouts {
   void hear(TellReach reach) { reach_ = std::move(reach); }
 
   bool has_pose() const { return has_pose_; }  // in the last frame
-  const Confirmation& confirmation() const { return confirmation_; }
+  // Whether the pose lies where the offline map has it.
+  const PlaceHypothesis& place() const { return place_; }
+  // The pose was searched for near a hint alone, and is not accepted yet.
+  bool is_by_hint() const { return is_by_hint_; }
   const AnchoredTrajectory& trajectory() const { return trajectory_; }
   const MotionModel& motion() const { return motion_; }
   const Odometry& odometry() const { return odometry_; }
@@ -77,7 +80,8 @@ class Whereabouts {
     bool from_nothing = false;
     bool is_registered = false;
     std::size_t submap = 0;
-    bool is_by_hint = false;  // where it was found from nothing: it was looked for near a hint alone
+    bool is_by_hint = false;          // where it was found from nothing: it was looked for near a hint alone
+    const PlaceView* view = nullptr;  // what it shows of the offline map; nullptr without one
   };
   // What a tracked frame changed.
   struct Progress {
@@ -105,9 +109,12 @@ class Whereabouts {
   void turn_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.remember_offset({}); }
   // The submap was found to lie in the offline map, which is still to be proven.
-  void note_registration(bool is_by_hint) { confirmation_ = {0, registration_.confirmations, is_by_hint}; }
+  void note_registration(bool is_by_hint) {
+    place_ = PlaceHypothesis(0.0, 0, registration_.accept_log_odds);
+    is_by_hint_ = is_by_hint;
+  }
   // It was looked for in the whole map too, and found where the hint had led.
-  void note_agreement() { confirmation_.is_by_hint = false; }
+  void note_agreement() { is_by_hint_ = false; }
   // By what the map moved the last pose, after_from_before; empty where there is none.
   std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
 
@@ -116,7 +123,7 @@ class Whereabouts {
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:
-  FindEvidence evidence_of_find(Timestamp time, const Pose& body) const;
+  PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body) const;
   void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
@@ -158,9 +165,11 @@ class Whereabouts {
   };
   std::optional<Carried> carried_;
   Odometry odometry_;
-  Confirmation confirmation_;
+  PlaceHypothesis place_;
+  PlaceHypothesis place_before_;  // before the pose was lost
+  bool is_by_hint_ = false;
   std::optional<Timestamp> last_believed_;  // in the reports' frame
-  std::optional<Timestamp> last_proven_;    // in the reports' frame
+  std::optional<Timestamp> last_accepted_;  // in the reports' frame
   bool has_pose_ = false;
   bool is_way_known_ = true;  // from the last pose that was believed
   double scene_depth_ = 1.0;  // metres, median of the points in the last frame

@@ -1,6 +1,7 @@
 #include "byre/localisation/whereabouts.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/localisation/place_view_scene.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/mission_scene.h"
 
@@ -15,6 +16,7 @@ class TrueWhereabouts : public ::testing::Test {
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
   Map map_ = true_map(mission_, 4, Origin::online);
   Whereabouts whereabouts_{{}, {}, {}, true};
+  const PlaceView view_ = view_of_room(10, 0);
 
   HybridTrack track_of(std::size_t frame) const {
     HybridTrack track;
@@ -27,22 +29,22 @@ class TrueWhereabouts : public ::testing::Test {
   }
   Whereabouts::Progress note(std::size_t frame, bool from_nothing = false) {
     whereabouts_.tell({});
-    return whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0}, mission_.rig, map_);
+    return whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0, false, &view_},
+                             mission_.rig, map_);
   }
   // Found at a frame, and tracked until it is believed.
   void find_and_believe(std::size_t frame) {
     note(frame, true);
-    while (!whereabouts_.confirmation().is_believed()) note(++frame);
+    while (!whereabouts_.place().is_believed()) note(++frame);
   }
-  const Confirmation& confirmation() const { return whereabouts_.confirmation(); }
+  const PlaceHypothesis& place() const { return whereabouts_.place(); }
 };
 
 TEST_F(TrueWhereabouts, BelievesAFindAfterTheFramesThatOptionsSay) {
   EXPECT_FALSE(whereabouts_.has_pose());
   note(0, true);
   EXPECT_TRUE(whereabouts_.has_pose());
-  const int frames = confirmation().frames_to_believe;
-  EXPECT_EQ(frames, RegistrationOptions{}.confirmations);
+  const int frames = RegistrationOptions{}.confirmations;
   for (int i = 1; i <= frames; ++i) {
     EXPECT_FALSE(whereabouts_.last_believed());
     EXPECT_FALSE(note(static_cast<std::size_t>(i)).was_ever_believed);
@@ -79,8 +81,8 @@ TEST_F(TrueWhereabouts, NeedNoProofAgainWhereThePoseWasProvenAMomentAgo) {
   find_and_believe(0);
   whereabouts_.lose();
   note(6, true);
-  EXPECT_FALSE(confirmation().is_believed());
-  EXPECT_TRUE(confirmation().is_proven());
+  EXPECT_FALSE(place().is_believed());
+  EXPECT_TRUE(place().is_accepted());
 }
 
 TEST_F(TrueWhereabouts, GoOnAsTheRobotMoved) {
@@ -191,7 +193,7 @@ TEST_F(TrueWhereabouts, AreNotFoundElsewhereOnAMissionForAMoment) {
   whereabouts_.lose();
   whereabouts_.note({mission_.frames[39], track_of(39), true, true, 0}, mission_.rig, map_);
   whereabouts_.tell(Pose{});
-  ASSERT_FALSE(confirmation().is_believed());
+  ASSERT_FALSE(place().is_believed());
   EXPECT_TRUE(is_out_of_reach(39)) << "a place that is not believed yet proves nothing";
   EXPECT_FALSE(is_out_of_reach(here));
   BodyMotion far = Pose{};
@@ -244,7 +246,7 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
 TEST_F(TrueWhereabouts, BelieveASubmapThatBeginsAtOnce) {
   whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
   EXPECT_TRUE(whereabouts_.has_pose());
-  EXPECT_TRUE(confirmation().is_believed());
+  EXPECT_TRUE(place().is_believed());
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(Pose{}, 1e-12, 1e-12));
   whereabouts_.lose();
   EXPECT_EQ(whereabouts_.trajectory().size(), 1u);

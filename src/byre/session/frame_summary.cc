@@ -73,9 +73,9 @@ FrameReport bridged(FrameReport report, const FrameSummary& summary) {
 }
 
 HealthEvidence evidence_of(const FrameSummary& summary) {
-  const Confirmation& confirmation = summary.whereabouts.confirmation();
+  const PlaceHypothesis& place = summary.whereabouts.place();
   HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
-                          confirmation.is_believed() && confirmation.is_proven()};
+                          place.is_believed() && place.is_accepted()};
   if (summary.is_bridged_in_map()) evidence.bridged_from = summary.whereabouts.quality_before().verdict;
   evidence.refused_place = summary.refused_place;
   evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;

@@ -31,7 +31,8 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
       trusted_place_(options.mission.registration.max_speed) {
   if (offline) {
     mission_.emplace(std::move(offline),
-                     OfflineTrackerOptions{options.mission, options.track, options.relocalise, options.is_planar},
+                     OfflineTrackerOptions{options.mission, options.track, options.relocalise, options.local_keyframes,
+                                           options.is_planar},
                      OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
   } else {
     options_.map_online = true;  // there is nothing else to track
@@ -98,7 +99,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   if (budget != nullptr && (!located.track || keyframe_watch_.is_short())) budget->keep_next_whole();
 
   const double seconds_without = to_seconds(rectified.time - whereabouts_.last_believed().value_or(*first_frame_));
-  const bool is_believed = whereabouts_.confirmation().is_believed();
+  const bool is_believed = whereabouts_.place().is_believed();
   const FrameSummary summary{input,
                              located.track ? &*located.track : nullptr,
                              rig_,
@@ -129,7 +130,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
 
 // A pose that goes on from a believed one is as good as that was.
 void Session::note_quality(const FrameReport& report) {
-  if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.confirmation().is_believed()) return;
+  if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.place().is_believed()) return;
   whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
   if (mission_ && report.health.verdict == Verdict::trusted) trusted_place_.note({report.time, *report.map_from_body});
 }
@@ -166,7 +167,7 @@ void Session::take_over_place(FrameReport& report) {
   if (consequence.correction) mapper_.correct_later(*consequence.correction);
   if (consequence.agrees_with_hint) whereabouts_.note_agreement();
   if (consequence.refutes_pose) {
-    if (whereabouts_.confirmation().is_by_hint) hint_.withdraw();
+    if (whereabouts_.is_by_hint()) hint_.withdraw();
     mapper_.leave_map_frame();
     lose_pose(ImageFault::none, report);
   }
@@ -215,7 +216,7 @@ Session::Located Session::locate(const InputFrame& input) {
                              mission_ ? &mission_->mission() : nullptr,
                              mission_ && mission_->ask_for_focal_length(),
                              hint_.get(),
-                             whereabouts_.confirmation().is_proven(),
+                             whereabouts_.place().is_accepted(),
                              trusted_place_.way_from_there(),
                              mission_ ? mission_->ground_under(whereabouts_, mapper_) : nullptr,
                              input.cuts.online_points,
@@ -230,7 +231,7 @@ Session::Located Session::locate(const InputFrame& input) {
   }
   if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
   const auto is_out_of_reach = [&] { return whereabouts_.is_out_of_reach(frame, *located.track, rig_, map()); };
-  const bool is_sure = whereabouts_.confirmation().is_believed();
+  const bool is_sure = whereabouts_.place().is_believed();
   if (located.track && (is_out_of_reach() || (!is_sure && tracker_.is_doubtful(*located.track, scene)))) {
     located.track.reset();
   }
@@ -278,9 +279,12 @@ Session::Located Session::begin_submap(const Frame& frame) {
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
   const HybridTrack& track = *located.track;
   if (located.from_nothing && !mission_ && whereabouts_.motion().told()) keyframe_watch_.note_found();
+  const bool is_on_map = mission_ && is_registered(mapper_);
+  const std::optional<PlaceView> view =
+      is_on_map ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden())) : std::nullopt;
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
-                         located.is_by_hint},
+                         located.is_by_hint, view ? &*view : nullptr},
                         rig_, map());
   tracker_.note(track);
   if (!input.cuts.online_points) {
@@ -289,7 +293,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   if (progress.was_proven && !located.from_nothing) {
     shutter_.note(input.frame, rig_, track.tracked, map(), whereabouts_.motion().velocity());
   }
-  if (mission_ && is_registered(mapper_)) {
+  if (is_on_map) {
     const OfflineTracker::Consequence consequence =
         mission_->note({input.frame, track, rig_, progress.step, input.fault != ImageFault::none,
                         tracker_.offline_points(), lens_watch_.hidden()},
@@ -297,7 +301,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
     report.events.insert(report.events.end(), consequence.events.begin(), consequence.events.end());
     if (consequence.correction) mapper_.correct_later(*consequence.correction);
   }
-  if (!whereabouts_.confirmation().is_believed() || !is_registered(mapper_)) return;
+  if (!whereabouts_.place().is_believed() || !is_registered(mapper_)) return;
   if (mission_ && !progress.was_ever_believed) {
     report.events.push_back(SessionEvent::localised);
   } else if (has_lost_its_way(state_)) {
@@ -307,7 +311,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
 
 // Where the pose is known by what is seen all over the image.
 void Session::look_for_dirt(const InputFrame& input, const Located& located, FrameReport& report) {
-  const bool is_known = whereabouts_.confirmation().is_believed();
+  const bool is_known = whereabouts_.place().is_believed();
   if (located.from_nothing || !is_known || input.fault != ImageFault::none || located.track->maps_disagree) return;
   lens_watch_.note(input.frame, located.track->tracked, rig_, map());
   mapper_.note_hidden(lens_watch_.hidden());
@@ -332,7 +336,7 @@ void Session::extend_map(const InputFrame& input, const HybridTrack& track, Fram
 
 bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track) {
   if (!options_.map_online || is_mapping_paused_ || mapper_.is_read()) return false;
-  if (!whereabouts_.confirmation().is_believed() || input.fault != ImageFault::none) return false;
+  if (!whereabouts_.place().is_believed() || input.fault != ImageFault::none) return false;
   const KeyframeEvidence evidence = keyframe_watch_.evidence(track, map(), mapper_.pending());
   return keyframe_watch_.asks_for_keyframe(track, evidence, input.cuts, options_.keyframes);
 }

@@ -9,15 +9,13 @@
 namespace byre {
 
 struct RegistrationOptions {
-  int confirmations = 3;  // frames that must say the same before it is believed
-  // Share of offline points in view that frames must see before a pose found from nothing is trusted: rooms repeat.
-  double proving_share = 0.06;
+  int confirmations = 3;   // frames that must say the same before it is believed
+  double accept_log_odds = 2.5;  // log-odds from which a place found is trusted, nats; see PlaceHypothesis
   double max_speed = 3.0;  // metres a second, highest speed of the robot
   int max_misses = 2;      // frames that say something else, before it is given up
 };
 
 inline constexpr int kConfirmationsOfJump = 10;  // frames, where the robot was carried or went faster than it can
-inline constexpr double kWithoutProof = 1.0;     // seconds after a pose beyond doubt in which none needs proof
 
 // Where the online map lies in the offline one, as several frames have it.
 struct RegistrationHypothesis {

@@ -292,9 +292,9 @@ void add_mission(Table& table) {
       [](auto& o) -> auto& { return o.session.mission.registration.max_misses; },
       "frames that say something else before such a place is given up"));
   table.push_back(number(
-      "mission.proving_share", "share of the offline points in view", 0, 1,
-      [](auto& o) -> auto& { return o.session.mission.registration.proving_share; },
-      "points seen before a pose found from nothing is trusted"));
+      "mission.accept_log_odds", "nats", 0, 1e3,
+      [](auto& o) -> auto& { return o.session.mission.registration.accept_log_odds; },
+      "log-odds of a place found, by which cells of the map are seen, from which it is trusted"));
   table.push_back(number(
       "mission.plane_margin_m", "metres", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin; },

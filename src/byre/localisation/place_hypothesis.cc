@@ -1,0 +1,105 @@
+#include "byre/localisation/place_hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+namespace byre {
+namespace {
+
+// Measured on real and simulated missions, by day, at dusk and with half of the things moved: shares of the cells that
+// show their points, where the pose is right and where it is wrong.
+constexpr double kAgreeingWhereRight = 0.55;
+constexpr double kAgreeingWhereWrong = 0.18;
+const double kOfAgreement = std::log(kAgreeingWhereRight / kAgreeingWhereWrong);
+const double kOfDisagreement = std::log((1.0 - kAgreeingWhereRight) / (1.0 - kAgreeingWhereWrong));
+constexpr double kMinExpected = 8.0;  // points in view with which a cell counts
+constexpr double kMinShare = 0.03;    // share of them that are seen where a cell agrees; chance gives a tenth of it
+
+// One find in ten is of a thing that was moved.
+const double kOfMovedThing = std::log(10.0);
+
+constexpr double kReject = -4.0;  // log-odds from which an accepted place is rejected
+
+constexpr int kLengthOfMean = 6;     // frames over which a cell's points are averaged
+constexpr int kFramesToForget = 50;  // frames without a cell in view after which it counts no more
+
+std::vector<Eigen::Vector3d> places_around(const Eigen::Vector3d& middle, const std::vector<Eigen::Vector3d>& places) {
+  constexpr double kReach = 2.0;  // metres from the middle of a thing to its edge
+  std::vector<Eigen::Vector3d> around;
+  for (const Eigen::Vector3d& place : places) {
+    if ((place - middle).norm() <= kReach) around.push_back(place);
+  }
+  return around;
+}
+
+Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& places) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& place : places) sum += place;
+  return sum / static_cast<double>(places.size());
+}
+
+// How many of the places lie on one plane.
+int count_on_plane(const std::vector<Eigen::Vector3d>& places) {
+  constexpr double kThickness = 0.6;    // metres from the plane
+  constexpr std::size_t kAnyPlane = 3;  // places through which a plane can be laid
+  if (places.size() <= kAnyPlane) return static_cast<int>(places.size());
+  const Eigen::Vector3d mean = mean_of(places);
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& place : places) scatter += (place - mean) * (place - mean).transpose();
+  const Eigen::Vector3d normal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(scatter).eigenvectors().col(0);
+  const auto on_plane = std::ranges::count_if(
+      places, [&](const Eigen::Vector3d& place) { return std::abs(normal.dot(place - mean)) <= kThickness; });
+  return std::max(static_cast<int>(kAnyPlane), static_cast<int>(on_plane));
+}
+
+// How many of the places one moved thing can hold: those on a plane, no farther apart than a large thing is wide.
+int most_on_one_thing(const std::vector<Eigen::Vector3d>& places) {
+  int most = 0;
+  for (const Eigen::Vector3d& place : places) {
+    const std::vector<Eigen::Vector3d> thing = places_around(mean_of(places_around(place, places)), places);
+    if (static_cast<int>(thing.size()) > most) most = std::max(most, count_on_plane(thing));
+  }
+  return most;
+}
+
+}  // namespace
+
+double PlaceHypothesis::evidence() const {
+  double all = 0.0;
+  std::vector<Eigen::Vector3d> agreeing;
+  for (const Cell& cell : cells_) {
+    if (cell.expected < kMinExpected) continue;
+    const bool agrees = cell.seen >= std::max(1.0, kMinShare * cell.expected);
+    all += agrees ? kOfAgreement : kOfDisagreement;
+    if (agrees) agreeing.push_back(cell.centre_of_seen);
+  }
+  return std::min(all, all - most_on_one_thing(agreeing) * kOfAgreement + kOfMovedThing);
+}
+
+void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
+  if (is_tracked) frames_to_believe_ = std::max(0, frames_to_believe_ - 1);
+  ++frame_;
+  // Where no keyframe has seen the map from about here, walls may hide what is expected: that speaks against a find,
+  // but not against a pose that tracking has led to.
+  if (is_accepted_ && !view.is_near_keyframe) return;
+  for (const CellInView& seen : view.cells) {
+    auto cell = std::ranges::lower_bound(cells_, seen.cell, {}, &Cell::index);
+    if (cell == cells_.end() || cell->index != seen.cell) cell = cells_.insert(cell, Cell{.index = seen.cell});
+    const double weight = 1.0 / (cell->frames + 1);
+    cell->expected += weight * (seen.expected - cell->expected);
+    cell->seen += weight * (seen.seen - cell->seen);
+    if (seen.seen > 0) cell->centre_of_seen = seen.centre_of_seen;
+    cell->frames = std::min(cell->frames + 1, kLengthOfMean - 1);
+    cell->last_frame = frame_;
+  }
+  std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
+  log_odds_ = prior_ + evidence();
+  if (log_odds_ >= accept_) is_accepted_ = true;
+  if (log_odds_ <= kReject) is_accepted_ = false;
+}
+
+}  // namespace byre

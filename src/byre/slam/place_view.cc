@@ -1,0 +1,70 @@
+#include "byre/slam/place_view.h"
+
+#include "byre/slam/tracking_steps.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace byre {
+namespace {
+
+// Points that keyframes saw from about where the camera is.
+ReusedVector<PointId> points_seen_nearby(const OfflineMap& offline, const Pose& camera_from_world) {
+  constexpr double kNear = 1.0;     // metres, with a metre for each radian between viewing directions
+  constexpr double kMaxTurn = 0.6;  // radians
+  constexpr int kKeyframes = 3;
+  ReusedVector<PointId> points;
+  for (const KeyframeId id : offline.keyframes_near(camera_from_world, kNear, kKeyframes)) {
+    const Keyframe& keyframe = *offline.map().find_keyframe(id);
+    if (angle_between(keyframe.camera_from_world.rotation, camera_from_world.rotation) > kMaxTurn) continue;
+    for (const Sighting& sighting : keyframe.sightings) {
+      if (sighting.point) points.push_back(*sighting.point);
+    }
+  }
+  std::ranges::sort(points);
+  points.erase(std::ranges::unique(points).begin(), points.end());
+  return points;
+}
+
+ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& features) {
+  ReusedVector<PointId> shown;
+  for (const TrackedFeature& feature : tracked.features) {
+    if (feature.point.origin == Origin::offline && shows_patch(feature, features)) shown.push_back(feature.point);
+  }
+  std::ranges::sort(shown);
+  return shown;
+}
+
+}  // namespace
+
+PlaceView view_of_place(const PlaceViewQuery& query) {
+  constexpr std::size_t kEnough = 60;  // points seen by keyframes nearby
+  const Map nothing_online(Origin::online);
+  const MapView map(&query.offline.map(), nothing_online);
+  const Pose& pose = query.tracked.camera_from_world;
+  PlaceView view;
+  std::vector<ExpectedPoint> expected;
+  project_visible(map, points_seen_nearby(query.offline, pose), pose, query.rig, query.hidden, expected);
+  view.is_near_keyframe = expected.size() >= kEnough;
+  if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
+  const ReusedVector<PointId> shown = points_shown(query.tracked, *query.frame.features);
+  const MapCells& cells = query.offline.cells();
+  ReusedVector<std::pair<std::uint32_t, PointId>> points;  // by cell
+  for (const ExpectedPoint& point : expected) {
+    if (query.is_left_out && query.is_left_out(point.id)) continue;
+    points.emplace_back(cells.cell_of(point.id), point.id);
+  }
+  std::ranges::sort(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({cells.index(points[i].first)});
+    CellInView& cell = view.cells.back();
+    ++cell.expected;
+    if (!std::ranges::binary_search(shown, points[i].second)) continue;
+    ++cell.seen;
+    cell.centre_of_seen += (map.find_point(points[i].second)->position_in_world - cell.centre_of_seen) / cell.seen;
+  }
+  return view;
+}
+
+}  // namespace byre

@@ -1,0 +1,90 @@
+#include "byre/slam/place_view.h"
+
+#include "byre/slam/place_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+struct Counts {
+  int expected = 0;
+  int seen = 0;
+};
+
+Counts counts_of(const PlaceView& view) {
+  Counts counts;
+  for (const CellInView& cell : view.cells) counts = {counts.expected + cell.expected, counts.seen + cell.seen};
+  return counts;
+}
+
+// Frame 10 of a mission, tracked at its true pose on a true map of every fourth frame.
+class ViewOfAPlace : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kFrame = 10;
+
+  TrackedFrame tracked_at(const Pose& camera_from_world) const {
+    TrackedFrame tracked;
+    tracked.camera_from_world = camera_from_world;
+    const Keyframe& keyframe = *offline_->map().find_keyframe(offline_->map().keyframe_ids()[kFrame / 4]);
+    for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
+      const Sighting& sighting = keyframe.sightings[i];
+      if (sighting.point) tracked.features.push_back({0, *sighting.point, sighting.pixel, 1.0f});
+    }
+    return tracked;
+  }
+  PlaceViewQuery query(const TrackedFrame& tracked, std::span<const PointId> candidates = {}) const {
+    return {*offline_, mission_.rig, mission_.frames[kFrame], tracked, candidates};
+  }
+
+  const SimulatedMission mission_ = quarter_circle({});
+  const std::shared_ptr<const OfflineMap> offline_ = offline_map_of(mission_);
+  const Pose pose_ = true_camera_from_world(mission_, kFrame);
+};
+
+TEST_F(ViewOfAPlace, ExpectsWhatKeyframesNearbySaw) {
+  const TrackedFrame tracked = tracked_at(pose_);
+  const PlaceView view = view_of_place(query(tracked));
+  EXPECT_TRUE(view.is_near_keyframe);
+  const Counts counts = counts_of(view);
+  EXPECT_GT(counts.expected, 60);
+  EXPECT_GT(counts.seen, counts.expected / 3);
+  EXPECT_LE(counts.seen, counts.expected);
+  EXPECT_TRUE(std::ranges::is_sorted(view.cells, {}, &CellInView::cell));
+}
+
+TEST_F(ViewOfAPlace, ExpectsTheCandidatesWhereNoKeyframeWasNear) {
+  const Pose ten_metres_up = pose_ * Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, -10.0}};
+  const TrackedFrame tracked = tracked_at(ten_metres_up);
+  EXPECT_TRUE(view_of_place(query(tracked)).cells.empty());
+  const std::vector<PointId> all = offline_->map().point_ids();
+  EXPECT_FALSE(view_of_place(query(tracked, all)).is_near_keyframe);
+}
+
+TEST_F(ViewOfAPlace, SeesNothingOfAFrameThatMatchedNothing) {
+  TrackedFrame tracked = tracked_at(pose_);
+  tracked.features.clear();
+  EXPECT_EQ(counts_of(view_of_place(query(tracked))).seen, 0);
+}
+
+TEST_F(ViewOfAPlace, LeavesPointsOutThatAreNotExpectedAnywhere) {
+  const TrackedFrame tracked = tracked_at(pose_);
+  PlaceViewQuery all_moved = query(tracked);
+  all_moved.is_left_out = [](PointId) { return true; };
+  EXPECT_TRUE(view_of_place(all_moved).cells.empty());
+}
+
+TEST(CellsOfAMap, HoldThePointsByTheirPosition) {
+  const auto offline = offline_map_of(quarter_circle({}));
+  for (const PointId id : offline->map().point_ids()) {
+    const Eigen::Vector3d& position = offline->map().find_point(id)->position_in_world;
+    const std::array<int, 3>& cell = offline->cells().index(offline->cells().cell_of(id));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_LE(2.0 * cell[static_cast<std::size_t>(axis)], position[axis]);
+      EXPECT_GT(2.0 * cell[static_cast<std::size_t>(axis)] + 2.0, position[axis]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace byre
