@@ -3,10 +3,11 @@
 #include "byre/dataset/bag_image.h"
 #include "byre/dataset/timed_files.h"
 #include "byre/dataset/timed_messages.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -18,7 +19,7 @@ std::vector<Timestamp> times_of(const std::vector<TimedMessage>& messages) {
 }
 
 std::string in_ms(Timestamp time) {
-  return formatted("%g ms", 1e3 * to_seconds(time));
+  return fmt::format("{:g} ms", 1e3 * to_seconds(time));
 }
 
 // Gives the frames their right images; warns of images without a partner. Preconditions: frames are those of the left

@@ -2,7 +2,6 @@
 
 #include "byre/dataset/image_file.h"
 #include "byre/dataset/image_size.h"
-#include "byre/input/formatted.h"
 #include "byre/input/regular_file.h"
 #include "byre/input/text_file.h"
 #include "byre/input_error.h"
@@ -15,6 +14,8 @@
 
 #include <Eigen/Geometry>
 #include <yaml-cpp/yaml.h>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -66,7 +67,7 @@ double read_resolution(const YAML::Node& root, const fs::path& path) {
   const double resolution = to_number(root["resolution"], place);
   if (resolution <= 0.0) throw InputError(place, "is not positive", "give metres per pixel, such as 0.05");
   if (resolution < kSmallestPixel || resolution > kLargestPixel) {
-    throw InputError(place, formatted("is %g metres per pixel, outside 0.0001 to 100", resolution),
+    throw InputError(place, fmt::format("is {:g} metres per pixel, outside 0.0001 to 100", resolution),
                      "give metres per pixel, such as 0.05");
   }
   return resolution;

@@ -177,11 +177,11 @@ void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
   if (!times.clock_steps.empty()) {
     const ClockStep& first = times.clock_steps.front();
     const std::string count =
-        formatted("the clock of the images was set %d time%s while recording",
-                  static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
+        fmt::format("the clock of the images was set {} time{} while recording",
+                    static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
     findings.push_back({false,
-                        count + formatted(", first by %.3f s at frame %d; times after it are shifted",
-                                          to_seconds(first.by), first.frame),
+                        count + fmt::format(", first by {:.3f} s at frame {}; times after it are shifted",
+                                            to_seconds(first.by), first.frame),
                         "set clocks before recording, and let them be slewed, not stepped, afterwards (chrony without "
                         "makestep); do not record a bag that is played in a loop"});
   }
@@ -192,18 +192,19 @@ void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
                         "have the driver stamp each image to the microsecond: speeds, wheels and gyroscopes need it"});
   }
   if (times.unstamped > 0) {
-    findings.push_back(
-        {false,
-         formatted("%d images have a time stamp of zero or a wrong one; their times are interpolated", times.unstamped),
-         "begin to record once the driver stamps its images"});
+    findings.push_back({false,
+                        fmt::format("{} images have a time stamp of zero or a wrong one; their times are interpolated",
+                                    times.unstamped),
+                        "begin to record once the driver stamps its images"});
   }
   if (times.late > 0) {
-    findings.push_back({false, formatted("%d images were recorded after later ones, and are put in order", times.late),
+    findings.push_back({false,
+                        fmt::format("{} images were recorded after later ones, and are put in order", times.late),
                         "check what republishes them, and record the driver's own topic"});
   }
   if (times.repeated > 0) {
     findings.push_back({false,
-                        formatted("%d images have the time stamp of another one, and are left out", times.repeated),
+                        fmt::format("{} images have the time stamp of another one, and are left out", times.repeated),
                         "check for two publishers of one topic, and for a driver that repeats images"});
   }
 }

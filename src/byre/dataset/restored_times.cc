@@ -2,7 +2,6 @@
 
 #include "byre/dataset/stamp_clock.h"
 #include "byre/geometry/median.h"
-#include "byre/input/formatted.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +9,8 @@
 #include <numeric>
 #include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -542,8 +543,8 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
   const auto& steps = corrections.clock_steps;
   for (std::size_t i = 0; i < std::min(steps.size(), kMostListed); ++i) {
     const double by = to_seconds(steps[i].by);
-    add(formatted("clock set %s by %.3f s at %s %d: times after it are shifted to continue",
-                  by < 0.0 ? "back" : "forward", std::abs(by), names.counted.c_str(), steps[i].frame));
+    add(fmt::format("clock set {} by {:.3f} s at {} {}: times after it are shifted to continue",
+                    by < 0.0 ? "back" : "forward", std::abs(by), names.counted.c_str(), steps[i].frame));
   }
   if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
   if (corrections.unstamped > 0) {

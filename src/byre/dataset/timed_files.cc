@@ -1,13 +1,14 @@
 #include "byre/dataset/timed_files.h"
 
 #include "byre/geometry/median.h"
-#include "byre/input/formatted.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -133,16 +134,16 @@ InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left
   constexpr double kLikelyOnePair = 0.1;  // seconds
   const double difference = to_seconds(usual_difference(left, right));
   const std::string reason =
-      formatted("no right image was taken within %g ms of a left one; the median distance is %.3f ms",
-                1e3 * to_seconds(tolerance), 1e3 * difference);
+      fmt::format("no right image was taken within {:g} ms of a left one; the median distance is {:.3f} ms",
+                  1e3 * to_seconds(tolerance), 1e3 * difference);
   if (difference > kLikelyOnePair) {
     return {place, reason, "check that both cameras use one clock, or use the left one alone: --camera left"};
   }
-  return {
-      place, reason,
-      formatted("trigger both cameras together; if these are pairs, allow the difference (--pair-tolerance %.3f); or "
-                "use the left camera alone: --camera left",
-                std::ceil(1e3 * difference + 1.0) / 1e3)};
+  return {place, reason,
+          fmt::format(
+              "trigger both cameras together; if these are pairs, allow the difference (--pair-tolerance {:.3f}); or "
+              "use the left camera alone: --camera left",
+              std::ceil(1e3 * difference + 1.0) / 1e3)};
 }
 
 }  // namespace byre
