@@ -29,7 +29,6 @@ class OnAnOfflineMap : public ::testing::Test {
     track.offline_reference = track.tracked.reference;
     track.offline_expected = expected;
     track.offline_inliers = inliers;
-    track.offline_by_region.fill({expected, inliers});
     return track;
   }
   void note_found(std::size_t frame, const PlaceView& view = view_of_room(10, 0, 2)) {

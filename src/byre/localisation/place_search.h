@@ -38,7 +38,7 @@ struct FoundPlace {
   Timestamp time{};  // when the frame was taken that was found
   Pose camera_from_offline;
   double median_depth = 0.0;      // metres, of the points that say so
-  double log_odds = 0.0;          // of the place by this frame alone, see PlaceHypothesis
+  double log_odds = 0.0;          // log-odds of the place by this frame alone, see PlaceHypothesis
   double tracked_log_odds = 0.0;  // log-odds of the pose tracked in the same frame
 };
 

@@ -24,7 +24,6 @@ class TrueWhereabouts : public ::testing::Test {
     track.tracked.reference = map_.keyframe_ids()[frame / 4];
     track.offline_expected = 100;
     track.offline_inliers = 50;
-    track.offline_by_region.fill({100, 50});
     return track;
   }
   Whereabouts::Progress note(std::size_t frame, bool from_nothing = false) {

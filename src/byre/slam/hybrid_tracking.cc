@@ -307,21 +307,6 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
   }
 }
 
-ByImageRegion<PointsInView> by_region(const std::vector<ExpectedPoint>& expected,
-                                      std::span<const TrackedFeature> inliers, const Rig& rig) {
-  ByImageRegion<PointsInView> regions{};
-  for (const ExpectedPoint& point : expected) {
-    const StereoPixel& pixel = point.projection.predicted;
-    ++regions[image_region_of(pixel.x(), pixel.y(), rig)].expected;
-  }
-  for (const TrackedFeature& feature : inliers) {
-    if (feature.point.origin == Origin::offline) {
-      ++regions[image_region_of(feature.pixel.x(), feature.pixel.y(), rig)].seen;
-    }
-  }
-  return regions;
-}
-
 HybridTrack told(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
   HybridTrack result;
   if (opinions.offline) result.from_offline = opinions.offline->camera_from_world;
@@ -349,7 +334,6 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
   result.tracked.expected = result.offline_expected + static_cast<int>(found.expected.online.size());
   result.tracked.matches = result.offline_matches + static_cast<int>(found.measured.online.features.size());
   tell_offline_points(query, found.measured, result);
-  result.offline_by_region = by_region(found.expected.offline, result.tracked.features, query.rig);
   return result;
 }
 

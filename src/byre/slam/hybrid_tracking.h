@@ -1,6 +1,5 @@
 #pragma once
 
-#include "byre/geometry/image_regions.h"
 #include "byre/slam/focal_check.h"
 #include "byre/slam/health.h"
 #include "byre/slam/tracking.h"
@@ -23,12 +22,6 @@ Agreement agreement_of(const Pose& one, const Pose& other);
 
 bool is_within(const Agreement& agreement, const DriftBound& drift);
 
-// Points that should be in view, and those of them that are where they should be.
-struct PointsInView {
-  int expected = 0;
-  int seen = 0;
-};
-
 // A frame tracked on the points of an offline and an online map.
 struct HybridTrack {
   TrackedFrame tracked;
@@ -37,7 +30,6 @@ struct HybridTrack {
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
-  ByImageRegion<PointsInView> offline_by_region{};   // where the image shows them, or should
   std::optional<Pose> from_offline;                  // camera_from_world, as offline points alone have it
   std::optional<Pose> from_online;                   // camera_from_world, as online points alone have it
   Matrix6 from_online_covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * from_online

@@ -238,22 +238,6 @@ TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
   EXPECT_GT(count_shelf(track->offline_moved), 0.8 * static_cast<double>(track->offline_moved.size()));
 }
 
-TEST_F(TrackHybrid, TellsInWhichPartsOfTheImageOfflinePointsAreSeen) {
-  move_left_part(0.5, {0.0, 0.3, 0.0});
-  const auto track = track_frame();
-  ASSERT_TRUE(track);
-  PointsInView left, right;
-  for (std::size_t i = 0; i < track->offline_by_region.size(); ++i) {
-    PointsInView& half = i % kImageRegionColumns < kImageRegionColumns / 2 ? left : right;
-    half.expected += track->offline_by_region[i].expected;
-    half.seen += track->offline_by_region[i].seen;
-  }
-  EXPECT_EQ(left.expected + right.expected, track->offline_expected);
-  EXPECT_EQ(left.seen + right.seen, track->offline_inliers);
-  EXPECT_GT(right.seen, 0.3 * right.expected);
-  EXPECT_LT(left.seen, 0.05 * left.expected);
-}
-
 TEST_F(TrackHybrid, TracksOnOnlinePointsAloneOffTheMap) {
   offline_ = Map(Origin::offline);
   const auto track = track_frame();
