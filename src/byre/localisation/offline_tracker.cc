@@ -43,14 +43,22 @@ PlaceSearch OfflineTracker::collect_place() {
 }
 
 PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
-                                  const HiddenCells& hidden) const {
-  const Map nothing_online(Origin::online);
-  const MapView map(&offline_->map(), nothing_online);
+                                  const HiddenCells& hidden) {
   const Pose& pose = track.tracked.camera_from_world;
-  auto reference = track.offline_reference;
-  if (!reference) reference = mission_.keyframe_near(pose);
-  const auto around = reference ? local_points(map, *reference, options_.local_keyframes) : ReusedVector<PointId>{};
-  return view_of_place({*offline_, rig, frame, track.tracked, around, hidden,
+  std::vector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
+  if (keyframes != nearby_keyframes_) {
+    nearby_points_ = points_of_place(*offline_, keyframes);
+    nearby_keyframes_ = std::move(keyframes);
+  }
+  ReusedVector<PointId> around;
+  constexpr std::size_t kFew = 200;  // points seen by keyframes nearby, of which too few may be in view
+  if (nearby_points_.size() < kFew) {
+    const Map nothing_online(Origin::online);
+    auto reference = track.offline_reference;
+    if (!reference) reference = mission_.keyframe_near(pose);
+    if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
+  }
+  return view_of_place({*offline_, rig, frame, track.tracked, nearby_points_, around, hidden,
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); }});
 }
 

@@ -71,7 +71,7 @@ class OfflineTracker {
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
   // What a frame that was tracked in the map's frame shows of it.
-  PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden) const;
+  PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
   Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
@@ -100,6 +100,8 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
+  std::vector<KeyframeId> nearby_keyframes_;  // of the last view
+  std::vector<PointId> nearby_points_;        // points that these saw
   RivalPlace rival_;
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need

@@ -65,7 +65,10 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
   PlaceHypothesis place(0.0, 0);
   const ReusedVector<PointId> around =
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
-  place.observe(view_of_place({offline, sought.rig, sought.frame, *found.tracked, around, sought.hidden}), true);
+  const std::vector<PointId> nearby =
+      points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
+  place.observe(view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden}),
+                true);
   return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, place.log_odds()}, Doubt::none};
 }
 

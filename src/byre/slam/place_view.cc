@@ -9,24 +9,6 @@
 namespace byre {
 namespace {
 
-// Points that keyframes saw from about where the camera is.
-ReusedVector<PointId> points_seen_nearby(const OfflineMap& offline, const Pose& camera_from_world) {
-  constexpr double kNear = 1.0;     // metres, with a metre for each radian between viewing directions
-  constexpr double kMaxTurn = 0.6;  // radians
-  constexpr int kKeyframes = 3;
-  ReusedVector<PointId> points;
-  for (const KeyframeId id : offline.keyframes_near(camera_from_world, kNear, kKeyframes)) {
-    const Keyframe& keyframe = *offline.map().find_keyframe(id);
-    if (angle_between(keyframe.camera_from_world.rotation, camera_from_world.rotation) > kMaxTurn) continue;
-    for (const Sighting& sighting : keyframe.sightings) {
-      if (sighting.point) points.push_back(*sighting.point);
-    }
-  }
-  std::ranges::sort(points);
-  points.erase(std::ranges::unique(points).begin(), points.end());
-  return points;
-}
-
 ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& features) {
   ReusedVector<PointId> shown;
   for (const TrackedFeature& feature : tracked.features) {
@@ -38,6 +20,31 @@ ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& 
 
 }  // namespace
 
+std::vector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
+  constexpr double kNear = 1.0;     // metres, with a metre for each radian between viewing directions
+  constexpr double kMaxTurn = 0.6;  // radians
+  constexpr int kKeyframes = 3;
+  std::vector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
+  std::erase_if(keyframes, [&](KeyframeId id) {
+    const Pose& pose = offline.map().find_bare_keyframe(id)->camera_from_world;
+    return angle_between(pose.rotation, camera_from_world.rotation) > kMaxTurn;
+  });
+  std::ranges::sort(keyframes);
+  return keyframes;
+}
+
+std::vector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
+  std::vector<PointId> points;
+  for (const KeyframeId id : keyframes) {
+    for (const Sighting& sighting : offline.map().find_keyframe(id)->sightings) {
+      if (sighting.point) points.push_back(*sighting.point);
+    }
+  }
+  std::ranges::sort(points);
+  points.erase(std::ranges::unique(points).begin(), points.end());
+  return points;
+}
+
 PlaceView view_of_place(const PlaceViewQuery& query) {
   constexpr std::size_t kEnough = 60;  // points seen by keyframes nearby
   const Map nothing_online(Origin::online);
@@ -45,7 +52,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   const Pose& pose = query.tracked.camera_from_world;
   PlaceView view;
   std::vector<ExpectedPoint> expected;
-  project_visible(map, points_seen_nearby(query.offline, pose), pose, query.rig, query.hidden, expected);
+  project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
   const ReusedVector<PointId> shown = points_shown(query.tracked, *query.frame.features);

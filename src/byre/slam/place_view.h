@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace byre {
 
@@ -26,12 +27,17 @@ struct PlaceView {
   ReusedVector<CellInView> cells;  // ascending
 };
 
+// Keyframes that looked at the map from about a pose, ascending, and the points that they saw, ascending.
+std::vector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
+std::vector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
+
 struct PlaceViewQuery {
   const OfflineMap& offline;
   const Rig& rig;
   const Frame& frame;
   const TrackedFrame& tracked;                 // its camera_from_world is the pose, in the offline map's frame
-  std::span<const PointId> candidates;         // offline points around
+  std::span<const PointId> nearby;             // points_of_place of the pose
+  std::span<const PointId> candidates;         // offline points around, where those are too few
   HiddenCells hidden{};                        // where no points are expected
   std::function<bool(PointId)> is_left_out{};  // points not expected anywhere; empty: none
 };

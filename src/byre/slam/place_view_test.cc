@@ -34,12 +34,13 @@ class ViewOfAPlace : public ::testing::Test {
     return tracked;
   }
   PlaceViewQuery query(const TrackedFrame& tracked, std::span<const PointId> candidates = {}) const {
-    return {*offline_, mission_.rig, mission_.frames[kFrame], tracked, candidates};
+    return {*offline_, mission_.rig, mission_.frames[kFrame], tracked, nearby_, candidates};
   }
 
   const SimulatedMission mission_ = quarter_circle({});
   const std::shared_ptr<const OfflineMap> offline_ = offline_map_of(mission_);
   const Pose pose_ = true_camera_from_world(mission_, kFrame);
+  const std::vector<PointId> nearby_ = points_of_place(*offline_, keyframes_of_place(*offline_, pose_));
 };
 
 TEST_F(ViewOfAPlace, ExpectsWhatKeyframesNearbySaw) {
@@ -55,10 +56,13 @@ TEST_F(ViewOfAPlace, ExpectsWhatKeyframesNearbySaw) {
 
 TEST_F(ViewOfAPlace, ExpectsTheCandidatesWhereNoKeyframeWasNear) {
   const Pose ten_metres_up = pose_ * Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, -10.0}};
-  const TrackedFrame tracked = tracked_at(ten_metres_up);
-  EXPECT_TRUE(view_of_place(query(tracked)).cells.empty());
-  const std::vector<PointId> all = offline_->map().point_ids();
-  EXPECT_FALSE(view_of_place(query(tracked, all)).is_near_keyframe);
+  EXPECT_TRUE(keyframes_of_place(*offline_, ten_metres_up).empty());
+  const TrackedFrame tracked = tracked_at(pose_);
+  PlaceViewQuery far = query(tracked, nearby_);
+  far.nearby = {};
+  const PlaceView view = view_of_place(far);
+  EXPECT_FALSE(view.is_near_keyframe);
+  EXPECT_EQ(counts_of(view).expected, counts_of(view_of_place(query(tracked))).expected);
 }
 
 TEST_F(ViewOfAPlace, SeesNothingOfAFrameThatMatchedNothing) {
