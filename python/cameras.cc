@@ -132,15 +132,16 @@ std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const s
                                       std::optional<double> frame_rate_hz, std::optional<double> start_s,
                                       std::optional<double> end_s, int stride,
                                       const std::optional<std::string>& left_topic,
-                                      const std::optional<std::string>& right_topic) {
+                                      const std::optional<std::string>& right_topic, std::optional<double> baseline) {
   FrameRange range;
   range.start_s = start_s;
   range.end_s = end_s;
   range.stride = stride;
   if (stride < 1) throw py::value_error("stride is at least one");
   const py::gil_scoped_release release;
-  return std::make_shared<SharedRecording>(
-      open_recording(path, range, {camera, calibration, frame_rate_hz, left_topic, right_topic}));
+  OpenOptions options{camera, calibration, frame_rate_hz, left_topic, right_topic};
+  options.baseline = baseline;
+  return std::make_shared<SharedRecording>(open_recording(path, range, options));
 }
 
 std::optional<ImageFrame> frame_of(SharedRecording& recording, int index) {
@@ -212,7 +213,7 @@ void bind_recording(py::module_& module) {
       .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("camera") = py::none(),
            py::arg("calibration") = py::none(), py::arg("frame_rate_hz") = py::none(), py::arg("start_s") = py::none(),
            py::arg("end_s") = py::none(), py::arg("stride") = 1, py::arg("left_topic") = py::none(),
-           py::arg("right_topic") = py::none(),
+           py::arg("right_topic") = py::none(), py::arg("baseline") = py::none(),
            "EuRoC, KITTI, TUM RGB-D, a folder of images, a video or a bag of ROS. Raises InputError.")
       .def_property_readonly("calibration",
                              [](const SharedRecording& recording) { return recording.constant().calibration(); })

@@ -201,6 +201,8 @@ void bind_options(py::module_& module) {
       .def_readwrite("max_gap", &SlamOptions::max_gap, "Seconds.")
       .def_readwrite("max_features", &SlamOptions::max_features)
       .def_readwrite("image_threads", &SlamOptions::image_threads)
+      .def_readwrite("baseline", &SlamOptions::baseline,
+                     "Metres, in place of the calibration's; confirms one beyond 1 m.")
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
       .def_readwrite("vocabulary", &SlamOptions::vocabulary)

@@ -78,6 +78,9 @@ struct OpenOptions {
   std::optional<std::string> wheels_topic{};  // topic of a bag's wheels, nav_msgs/Odometry or twists; empty: none
   std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
   std::optional<double> pair_tolerance_s{};   // most seconds between the stamps of a pair; empty: 0.002
+  // Baseline of a stereo pair in metres, in place of the calibration's length. One beyond 1 m is refused unless it is
+  // confirmed here: extrinsics in centimetres or millimetres are likelier.
+  std::optional<double> baseline{};
 };
 
 // A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
@@ -114,8 +117,9 @@ bool is_video_file(const std::filesystem::path& path);
 // those of a steady frame rate, 30 Hz with a warning where nothing says which. Bags tell their calibration in camera
 // info and /tf_static. Of a recording of one camera with the
 // calibration of a pair, the choice of camera says which of the two that was. Throws InputError, naming the file and
-// what is wrong with it: missing files, a calibration that does not parse, makes no sense or is of another image size,
-// a camera that is not there, images that all have one time stamp, no frame in range.
+// what is wrong with it: missing files, a calibration that does not parse, makes no sense, has an absurd
+// baseline (see OpenOptions) or is of another image size, a camera that is not there, images that all have one
+// time stamp, no frame in range.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& path, const FrameRange& range,
                                           const OpenOptions& options = {});
 

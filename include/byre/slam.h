@@ -37,6 +37,9 @@ struct SlamOptions {
   double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
   int max_features = 1000;             // most features a frame
   int image_threads = 2;               // threads that work on the images of a frame; poses do not depend on them
+  // Baseline of a stereo pair in metres, in place of the calibration's length. One beyond 1 m needs to be confirmed so:
+  // it is refused otherwise, since extrinsics in centimetres or millimetres are likelier.
+  std::optional<double> baseline{};
   std::string recording = "live";      // name of the frames in a kept map
   std::string site;                    // place where the map was made, noted in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre

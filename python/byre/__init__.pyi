@@ -204,6 +204,7 @@ class Recording:
         stride: int = 1,
         left_topic: Optional[str] = None,
         right_topic: Optional[str] = None,
+        baseline: Optional[float] = None,
     ) -> None: ...
     @property
     def calibration(self) -> Calibration: ...
@@ -297,6 +298,7 @@ class SlamOptions:
     max_gap: float
     max_features: int
     image_threads: int
+    baseline: Optional[float]
     recording: str
     site: str
     vocabulary: Optional[_Path]
@@ -312,6 +314,7 @@ class SlamOptions:
         max_gap: float = 1.0,
         max_features: int = 1000,
         image_threads: int = 2,
+        baseline: Optional[float] = None,
         recording: str = "live",
         site: str = "",
         vocabulary: Optional[_Path] = None,

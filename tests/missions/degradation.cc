@@ -251,6 +251,29 @@ Image flipped(const Image& image, int code) {
   return to_image(result);
 }
 
+Image with_noise(const Image& image, double sigma, std::uint64_t seed) {
+  cv::Mat grey;
+  as_matrix(image).convertTo(grey, CV_32F);
+  return to_image(grey + white_noise(grey.size(), sigma, seed));
+}
+
+// The image of so many steps before; the first one until then. Step 0 begins anew.
+class Delay {
+ public:
+  explicit Delay(int steps) : steps_(steps) {}
+
+  Image pass(const Image& image, int step) {
+    if (step == 0) waiting_.clear();
+    waiting_.push_back(image);
+    if (std::cmp_greater(waiting_.size(), steps_ + 1)) waiting_.pop_front();
+    return waiting_.front();
+  }
+
+ private:
+  int steps_;
+  std::deque<Image> waiting_;
+};
+
 // Changes the right image alone.
 template <typename Change>
 ImageFrame change_right(const ImageFrame& images, Change change) {
@@ -261,11 +284,14 @@ ImageFrame change_right(const ImageFrame& images, Change change) {
 
 }  // namespace
 
-Degradation frozen() {
+Degradation frozen(double sigma) {
   const auto shown = std::make_shared<std::optional<ImageFrame>>();
-  return [shown](const ImageFrame& images, int step) {
+  return [shown, sigma](const ImageFrame& images, int step) {
     if (step == 0) *shown = images;
-    return ImageFrame{images.time, (*shown)->left, (*shown)->right};
+    const ImageFrame repeated{images.time, (*shown)->left, (*shown)->right};
+    if (sigma == 0.0) return repeated;
+    return change_each(repeated,
+                       [&](const Image& image, int camera) { return with_noise(image, sigma, seed_of(step, camera)); });
   };
 }
 
@@ -279,22 +305,23 @@ Degradation right_exposed(double times) {
 
 Degradation right_noisy(double sigma) {
   return [sigma](const ImageFrame& images, int step) {
-    return change_right(images, [&](const Image& right) {
-      cv::Mat grey;
-      as_matrix(right).convertTo(grey, CV_32F);
-      return to_image(grey + white_noise(grey.size(), sigma, seed_of(step, 1)));
-    });
+    return change_right(images, [&](const Image& right) { return with_noise(right, sigma, seed_of(step, 1)); });
   };
 }
 
 Degradation right_late(int steps) {
-  const auto waiting = std::make_shared<std::deque<Image>>();
-  return [steps, waiting](const ImageFrame& images, int) {
-    return change_right(images, [&](const Image& right) {
-      waiting->push_back(right);
-      if (std::cmp_greater(waiting->size(), steps + 1)) waiting->pop_front();
-      return waiting->front();
-    });
+  const auto delay = std::make_shared<Delay>(steps);
+  return [delay](const ImageFrame& images, int step) {
+    return change_right(images, [&](const Image& right) { return delay->pass(right, step); });
+  };
+}
+
+Degradation left_late(int steps) {
+  const auto delay = std::make_shared<Delay>(steps);
+  return [delay](const ImageFrame& images, int step) {
+    ImageFrame changed = images;
+    changed.left = delay->pass(images.left, step);
+    return changed;
   };
 }
 

@@ -1,5 +1,6 @@
 #include "byre/assessment/calibration_report.h"
 
+#include "byre/features/stereo_fit.h"
 #include "byre/input/report_row.h"
 
 #include <cmath>
@@ -18,8 +19,10 @@ struct Row {
   double sigma_before = 0.0;
   double sigma_after = 0.0;
 
-  // The images have told it at least twice as well as it was known.
+  // The images determine it at least twice as well as it was known.
   bool is_determined() const { return sigma_after < 0.5 * sigma_before; }
+  // Its value differs from the one given by more than a twentieth of the error that it was known to before.
+  bool is_changed() const { return std::abs(change) > 0.05 * sigma_before; }
 };
 
 std::vector<Row> rows_of(const RefinedCalibration& refined) {
@@ -33,10 +36,10 @@ std::vector<Row> rows_of(const RefinedCalibration& refined) {
   return rows;
 }
 
-std::string left_as_given(const std::vector<Row>& rows) {
+std::string names_of_changed(const std::vector<Row>& rows) {
   std::string names;
   for (const Row& row : rows) {
-    if (!row.is_determined()) names += (names.empty() ? "" : ", ") + std::string(row.parameter.name);
+    if (row.is_changed()) names += (names.empty() ? "" : ", ") + std::string(row.parameter.name);
   }
   return names;
 }
@@ -49,9 +52,9 @@ std::string describe_optics(const RefinedCalibration& refined) {
   }
   if (refined.change.isZero(0.0))
     return fmt::format("as given, which explains what {} keyframes saw", refined.keyframes);
-  const std::string open = left_as_given(rows_of(refined));
+  const std::string changed = names_of_changed(rows_of(refined));
   return fmt::format("refined from {} keyframes, by {:.2f} px on the whole", refined.keyframes, refined.shift) +
-         (open.empty() ? "" : "; left as given: " + open);
+         (changed.empty() ? "" : ": " + changed);
 }
 
 }  // namespace
@@ -64,8 +67,11 @@ std::string describe_calibration(const RefinedCalibration& refined) {
                               : fmt::format("; rolling shutter, {:.1f} ms an image", kMilliseconds * readout_time));
 }
 
-std::string calibration_row(const std::optional<RefinedCalibration>& refined) {
-  return refined ? row("calibration", describe_calibration(*refined)) : std::string();
+std::string calibration_row(const std::optional<RefinedCalibration>& refined, const std::optional<double>& row_error) {
+  if (!refined) return "";
+  const std::string by_rows =
+      row_error ? fmt::format("off by about {:.2f} px, by the rows of the pair; ", *row_error) : "";
+  return row("calibration", by_rows + describe_calibration(*refined));
 }
 
 std::string calibration_table(const RefinedCalibration& refined) {
@@ -74,23 +80,24 @@ std::string calibration_table(const RefinedCalibration& refined) {
   for (const Row& row : rows_of(refined)) {
     text += fmt::format("  {:28} {:+11.5f} {:3}  known to {:.5f} before, {:.5f} now{}\n",
                         std::string(row.parameter.name), row.change, std::string(row.parameter.unit), row.sigma_before,
-                        row.sigma_after, row.is_determined() ? "" : " (left as given)");
+                        row.sigma_after, row.is_changed() ? "" : " (as given)");
   }
   return text;
 }
 
-std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined) {
-  if (!refined || refined->shift < kFarOffPixels) return std::nullopt;
-  if (refined->was_refused()) {
+std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined,
+                                               const std::optional<double>& row_error) {
+  if (refined && refined->is_implausible()) {
     return fmt::format(
-        "the calibration given is off by {:.2f} px on the whole, too far to be mended: it is used as it is; calibrate "
-        "the cameras anew",
-        refined->shift);
+        "the calibration is not of these cameras: what {} keyframes saw is off it by {:.2f} px on the whole, more than "
+        "calibrations err; it is used as it is. Check resolution and focal length, and calibrate the cameras anew",
+        refined->keyframes, refined->shift);
   }
-  return fmt::format(
-      "the calibration given is off by {:.2f} px on the whole: calibrate the cameras anew, or go on with what "
-      "byre calibrate writes",
-      refined->shift);
+  if (!row_error || *row_error <= kFarOffCalibration) return std::nullopt;
+  const bool is_refined = refined && !refined->was_refused();
+  return fmt::format("the calibration is off by about {:.2f} px, by the rows of the pair: ", *row_error) +
+         (is_refined ? "calibrate the cameras anew, or go on with what \"byre calibrate\" writes"
+                     : "calibrate the cameras anew");
 }
 
 nlohmann::ordered_json calibration_json(const RefinedCalibration& refined) {

@@ -9,20 +9,19 @@
 
 namespace byre {
 
-// From so many pixels on a calibration is so far off that its camera should be looked at.
-inline constexpr double kFarOffPixels = 0.5;
-
-// In a sentence.
+// The refinement in a sentence.
 std::string describe_calibration(const RefinedCalibration& refined);
 
-// What a run says of the calibration it was given: one row of a report, or nothing where it was not refined.
-std::string calibration_row(const std::optional<RefinedCalibration>& refined);
+// One row of a report on the calibration that a run was given; nothing where it was not refined. row_error: by
+// CommonRowError, where there are pairs.
+std::string calibration_row(const std::optional<RefinedCalibration>& refined, const std::optional<double>& row_error);
 
-// A row for each parameter: by how much it was changed, and how well it was known before and is now.
+// A row for each parameter: its change, and its standard errors before and after.
 std::string calibration_table(const RefinedCalibration& refined);
 
-// A warning with the number where the calibration given is far off.
-std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined);
+// A warning where the calibration given is off: by rows as in "byre check", or by a change that is implausible.
+std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined,
+                                               const std::optional<double>& row_error);
 
 nlohmann::ordered_json calibration_json(const RefinedCalibration& refined);
 

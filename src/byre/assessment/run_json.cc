@@ -175,6 +175,7 @@ Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse&
                {"counts", counts_json(run)},
                {"extension", extension_json(run, protocol)},
                {"calibration", run.calibration ? calibration_json(*run.calibration) : Json()},
+               {"calibration_row_error_px", run.row_error ? Json(*run.row_error) : Json()},
                {"finishing", run.finishing ? byre::to_json(*run.finishing) : Json()},
                {"frame_thread_ms", to_json(summarise_stage(run.frames, &StageSeconds::total))},
                {"stages_ms", stages_json(run.frames)},

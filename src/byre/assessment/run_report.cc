@@ -147,7 +147,7 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 }
 
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
-  if (run.finishing) return calibration_row(run.calibration) + to_text(*run.finishing);
+  if (run.finishing) return calibration_row(run.calibration, run.row_error) + to_text(*run.finishing);
   if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
   if (run.final.empty()) return row("finishing", "left out, as there is no map");
   return row("finishing", "left out; \"byre refine\" does it");

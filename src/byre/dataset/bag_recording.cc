@@ -9,6 +9,7 @@
 #include "byre/dataset/camera_info.h"
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/timed_files.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
 #include "byre/ros/message_reader.h"
 
@@ -231,6 +232,8 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
     warnings.push_back(place + ": is calibrated for one camera only, so its right images are left out");
   }
   calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
+  calibration.cameras =
+      with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(path, options), "--baseline ");
   frames = frames_of_choice(std::move(frames), calibration, options.camera);
   require_calibrated_sizes(*bag, frames, calibration, path);
   auto [motion, motion_warnings] = read_bag_motion(*bag, options, place, clock);

@@ -8,6 +8,7 @@
 #include "byre/dataset/motion_files.h"
 #include "byre/dataset/recording_index.h"
 #include "byre/dataset/video.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
 #include "byre/trajectory_file.h"
 
@@ -161,6 +162,10 @@ Image first_readable(const std::vector<fs::path>& files) {
                    "check that the folder is complete");
 }
 
+std::string place_of_calibration(const fs::path& recording, const OpenOptions& options) {
+  return options.calibration.value_or(recording).string();
+}
+
 PlacedCalibration calibration_for(const fs::path& folder, const OpenOptions& options) {
   const fs::path file = calibration_file_for(folder, options);
   return {read_calibration(file), file.string(), file.string()};
@@ -268,6 +273,8 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   const BesideLeft beside = images_beside_left(whole);
   require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
   RecordingIndex chosen = choose_camera(select(whole, range, path), beside, options.camera, path);
+  chosen.calibration.cameras = with_checked_baseline(chosen.calibration.cameras, options.baseline,
+                                                     place_of_calibration(path, options), "--baseline ");
   FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
   chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples));

@@ -2,7 +2,6 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/stereo_fit.h"
-#include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
 
 #include <algorithm>
@@ -52,37 +51,25 @@ class PairSum {
     for (const Keypoint& keypoint : features.keypoints()) {
       if (!keypoint.has_disparity()) continue;
       errors.push_back(std::abs(keypoint.row_offset));
-      by_region_[image_region_of(keypoint.pixel.x(), keypoint.pixel.y(), rig_)].push_back(keypoint.row_offset);
     }
     ++pairs_;
     by_part_.note(features, rig_);
+    common_error_.note(features, rig_);
     if (features.size() > 0) matched_.push_back(static_cast<double>(errors.size()) / features.size());
     if (!errors.empty()) row_errors_.push_back(median(std::move(errors)));
   }
 
   PairCheck result() const {
-    return {pairs_, median_or_zero(matched_), by_part_.at_best(), median_or_zero(row_errors_), common_error()};
+    return {pairs_, median_or_zero(matched_), by_part_.at_best(), median_or_zero(row_errors_),
+            common_error_.pixels().value_or(0.0)};
   }
 
  private:
-  // Medians, as what is matched wrong lies anywhere.
-  double common_error() const {
-    constexpr std::size_t kEnough = 30;  // features of a region, over all pairs
-    double sum = 0.0;
-    int regions = 0;
-    for (const std::vector<double>& offsets : by_region_) {
-      if (offsets.size() < kEnough) continue;
-      sum += std::pow(median(offsets), 2);
-      ++regions;
-    }
-    return regions == 0 ? 0.0 : std::sqrt(sum / regions);
-  }
-
   Rig rig_;
   int pairs_ = 0;
   std::vector<double> matched_, row_errors_;
   MatchedByPart by_part_{1.0};
-  ByImageRegion<std::vector<double>> by_region_;
+  CommonRowError common_error_;
 };
 
 void check_times(const std::vector<Timestamp>& times, RecordingCheck& check) {
@@ -223,7 +210,6 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
 }
 
 void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
-  constexpr double kFarOffCalibration = 0.5;  // pixels
   if (check.without_right > check.looked_at / 20) {
     findings.push_back({false, fmt::format("{} frames have no right image", check.without_right),
                         "look for what drops them, or use one camera with --camera left"});

@@ -248,6 +248,21 @@ constexpr const char* kCalib =
     "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\nP1: 20 0 15.5 -10 0 20 11.5 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
 
 // Three stereo pairs, 100 ms apart, in the layout of KITTI odometry.
+TEST_F(EurocRecording, RefusesABaselineInCentimetresUnlessItIsCorrectedOrConfirmed) {
+  write("mav0/cam1/sensor.yaml", sensor_yaml(7.6));
+  EXPECT_THAT(open_error(), testing::AllOf(HasSubstr(folder_.string()), HasSubstr("baseline of 7.5 m"),
+                                           HasSubstr("--baseline 0.075")));
+  OpenOptions options;
+  for (const double baseline : {0.075, 7.5}) {
+    options.baseline = baseline;
+    const Calibration calibration = open_recording(folder_, {}, options)->calibration();
+    EXPECT_NEAR(calibration.right->right_from_left.translation.norm(), baseline, 1e-9);
+  }
+  options = {};
+  options.camera = CameraChoice::left;
+  EXPECT_FALSE(open_recording(folder_, {}, options)->calibration().right);
+}
+
 class KittiRecording : public TestFolder {
  protected:
   KittiRecording() {

@@ -3,6 +3,7 @@
 #include "byre/dataset/frame_selection.h"
 #include "byre/dataset/image_names.h"
 #include "byre/dataset/video_codec.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
@@ -134,6 +135,7 @@ std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& ra
   std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
   const PlacedCalibration calibration =
       choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
+  with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(file, options), "--baseline ");
   require_calibrated_size(static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
                           static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
                           calibration.left_size);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <numeric>
 #include <span>
 
 namespace byre {
@@ -40,6 +42,31 @@ double MatchedByPart::at_best() const {
   const auto tenth = shares.begin() + static_cast<std::ptrdiff_t>(count / 10);
   std::ranges::nth_element(shares, tenth, std::greater<>());
   return *tenth;
+}
+
+void CommonRowError::note(const Features& features, const Rig& rig) {
+  for (const Keypoint& keypoint : features.keypoints()) {
+    if (!keypoint.has_disparity()) continue;
+    const auto bin = static_cast<int>(std::floor(kBinsPerPixel * keypoint.row_offset)) + kBins / 2;
+    const std::size_t region = image_region_of(keypoint.pixel.x(), keypoint.pixel.y(), rig);
+    ++counts_[region * kBins + static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))];
+  }
+}
+
+std::optional<double> CommonRowError::pixels() const {
+  constexpr int kEnough = 30;  // features of a region
+  double sum = 0.0;
+  int regions = 0;
+  for (std::size_t region = 0; region < static_cast<std::size_t>(kImageRegions); ++region) {
+    const std::span<const int> counts = std::span(counts_).subspan(region * kBins, kBins);
+    const int all = std::accumulate(counts.begin(), counts.end(), 0);
+    if (all < kEnough) continue;
+    int bin = 0;
+    for (int below = counts[0]; 2 * below < all; below += counts[static_cast<std::size_t>(bin)]) ++bin;
+    sum += std::pow((bin + 0.5 - kBins / 2) / kBinsPerPixel, 2);
+    ++regions;
+  }
+  return regions == 0 ? std::nullopt : std::optional(std::sqrt(sum / regions));
 }
 
 }  // namespace byre

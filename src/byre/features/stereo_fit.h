@@ -1,10 +1,13 @@
 #pragma once
 
 #include "byre/features.h"
+#include "byre/geometry/image_regions.h"
 #include "byre/rig.h"
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 namespace byre {
 
@@ -45,6 +48,25 @@ class MatchedByPart {
 
   double memory_;  // constant after construction
   std::array<Part, kParts> parts_{};
+};
+
+// From so many pixels of CommonRowError on, a calibration is reported as off.
+inline constexpr double kFarOffCalibration = 0.5;
+
+// How far a calibration is off by the rows of a pair: pixels by which features lie off their row that all of a region
+// of the image have in common, root mean square over the regions. Medians, as wrong matches lie anywhere.
+class CommonRowError {
+ public:
+  CommonRowError() : counts_(static_cast<std::size_t>(kImageRegions * kBins)) {}
+
+  void note(const Features& features, const Rig& rig);
+  std::optional<double> pixels() const;  // empty where no region has enough features
+
+ private:
+  static constexpr int kBinsPerPixel = 50;
+  static constexpr int kBins = 9 * kBinsPerPixel;  // no match lies 4.5 pixels off its row
+
+  std::vector<int> counts_;  // features by region, then by row offset
 };
 
 }  // namespace byre

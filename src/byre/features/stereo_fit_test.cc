@@ -1,5 +1,7 @@
 #include "byre/features/stereo_fit.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -64,6 +66,37 @@ TEST(MatchedByPart, ForgetsWhatWasBefore) {
   }
   EXPECT_NEAR(remembers.at_best(), 1.0 / 4.0, 1e-9);
   EXPECT_NEAR(forgets.at_best(), 0.125 / 1.875, 1e-9);
+}
+
+// Features all over an image of 800 x 600 pixels, the right ones off their row by so much in its upper and lower part.
+Features off_their_row(float above, float below) {
+  std::vector<Keypoint> keypoints;
+  for (float v = 10.0f; v < 600.0f; v += 20.0f) {
+    for (float u = 10.0f; u < 800.0f; u += 20.0f) {
+      Keypoint& keypoint = keypoints.emplace_back(Keypoint{{u, v}});
+      keypoint.disparity = 10.0f;
+      keypoint.disparity_sigma = 0.2f;
+      keypoint.row_offset = v < 400.0f ? above : below;
+    }
+  }
+  const std::vector<Descriptor> descriptors(keypoints.size());
+  return {800, 600, std::move(keypoints), descriptors, {}};
+}
+
+TEST(CommonRowError, IsTheRootMeanSquareOverRegions) {
+  CommonRowError error;
+  EXPECT_FALSE(error.pixels());
+  const Rig rig = image_of(800, 600);
+  error.note(off_their_row(0.0f, 0.0f), rig);
+  EXPECT_NEAR(error.pixels().value(), 0.0, 0.011);
+  for (int i = 0; i < 3; ++i) error.note(off_their_row(-0.3f, 0.6f), rig);
+  EXPECT_NEAR(error.pixels().value(), std::sqrt((2.0 * 0.09 + 0.36) / 3.0), 0.02) << "by the median of each region";
+}
+
+TEST(CommonRowError, IsEmptyWithoutMatches) {
+  CommonRowError error;
+  error.note(found_left_of(0.0f), image_of(800, 600));
+  EXPECT_FALSE(error.pixels());
 }
 
 }  // namespace

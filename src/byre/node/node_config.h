@@ -67,6 +67,7 @@ struct NodeConfig {
   std::string gyroscope;  // empty: none
 
   std::optional<std::filesystem::path> calibration;  // empty: by camera info
+  std::optional<double> baseline;                    // metres; empty: the calibration's
   std::string left_info = "/left/camera_info";
   std::string right_info = "/right/camera_info";
 

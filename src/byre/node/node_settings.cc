@@ -97,6 +97,17 @@ NodeSetting choice(const char* name, Names<Value> names, Place place, const char
   return {name, range, meaning, get, set};
 }
 
+NodeSetting baseline() {
+  return {
+      "calibration.baseline", "metres or empty",
+      "distance of left and right camera, in place of the calibration's; confirms one beyond 1 m",
+      [](const NodeConfig& config) { return config.baseline ? fmt::format("{:g}", *config.baseline) : std::string(); },
+      [](NodeConfig& config, std::string_view value) {
+        config.baseline = parse_number(value);
+        return value.empty() || (config.baseline && *config.baseline > 0.0);
+      }};
+}
+
 void add_slam(Table& table) {
   table.push_back(text(
       "node.name", [](auto& c) -> auto& { return c.name; }, "name of the node"));
@@ -149,6 +160,7 @@ void add_images(Table& table) {
       "time that a left image waits for its right one"));
   table.push_back(file(
       "calibration.file", [](auto& c) -> auto& { return c.calibration; }, "calibration file; empty: by camera info"));
+  table.push_back(baseline());
   table.push_back(topic(
       "calibration.left_info", [](auto& c) -> auto& { return c.left_info; }, "camera info of the left or only camera"));
   table.push_back(topic(

@@ -3,6 +3,7 @@
 #include "byre/dataset/file_safety.h"
 #include "byre/dataset/settings_file.h"
 #include "byre/floor_plan.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input/output_file.h"
 #include "byre/input/printable.h"
 #include "byre/map/map_file.h"
@@ -27,6 +28,7 @@ SlamOptions slam_options(const NodeConfig& config) {
   options.settings.emplace_back("trajectory.max_poses", kMostPoses);
   options.workers = config.workers;
   options.vocabulary = config.vocabulary;
+  options.baseline = config.baseline;
   options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);
   if (!config.options) return options;
   EngineOptions checked;
@@ -120,7 +122,7 @@ Slam SlamRunner::make(const fs::path* map) const {
 }
 
 std::string SlamRunner::start(const Calibration& calibration) {
-  calibration_ = calibration;
+  calibration_ = with_checked_baseline(calibration, config_.baseline, "the calibration", "calibration.baseline: ");
   std::string said;
   try {
     replace(make(map_ ? &*map_ : nullptr));

@@ -85,6 +85,7 @@ void take_over_result(Engine& engine, MapRun& run) {
   const Trajectory seen = engine.session().final_trajectory();
   run.final = engine.prior().completed(seen);
   run.calibration = engine.calibration();
+  run.row_error = engine.row_error().pixels();
   run.told = told_motion(engine.prior(), engine.session());
   run.is_metric = engine.is_metric();
   run.map = engine.take_kept_map();

@@ -44,7 +44,9 @@ struct MapRun {
   Trajectory odometry;              // the smooth poses as published, in a frame of their own
   Map map{Origin::offline};         // map as it is kept; of the keyframes made, others were found redundant
   std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
-  std::optional<Finishing> finishing;             // empty when it was left out: stopped before, or without a vocabulary
+  std::optional<double>
+      row_error;  // pixels by which the calibration in use is off by the rows of pairs, CommonRowError
+  std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;

@@ -49,11 +49,10 @@ Health measured(const HybridTrack& track, const Rig& rig) {
 
 // Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
 HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) {
-  constexpr double kFarOff = 3.0;  // pixels; the real calibrations that were refused are off by 0.6 to 2.4
   const auto& result = calibrator.result();
   evidence.is_calibration_open = calibrator.is_open();
   evidence.is_calibration_doubtful = result && result->was_refused();
-  if (evidence.is_calibration_doubtful && result->shift >= kFarOff) evidence.is_miscalibrated = true;
+  if (result && result->is_implausible()) evidence.is_miscalibrated = true;
   return evidence;
 }
 
@@ -72,6 +71,8 @@ FrameReport bridged(FrameReport report, const FrameSummary& summary) {
   return report;
 }
 
+}  // namespace
+
 HealthEvidence evidence_of(const FrameSummary& summary) {
   const PlaceHypothesis& place = summary.whereabouts.place();
   HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
@@ -81,12 +82,11 @@ HealthEvidence evidence_of(const FrameSummary& summary) {
   evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;
   evidence.image_fault = summary.input.fault;
   evidence.input = summary.input.evidence;
+  evidence.is_dirty = is_mostly_hidden(summary.lens.hidden().share());
   evidence.is_miscalibrated = summary.mission && summary.mission->is_focal_length_off();
   const Calibrator* const calibrator = summary.mapper.calibrator();
   return calibrator ? judged_by(*calibrator, evidence) : evidence;
 }
-
-}  // namespace
 
 FrameReport described(FrameReport report, const FrameSummary& summary) {
   const Odometry& odometry = summary.whereabouts.odometry();
@@ -108,7 +108,8 @@ FrameReport described(FrameReport report, const FrameSummary& summary) {
   return report;
 }
 
-Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthOptions& options) {
+Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthEvidence& evidence,
+                 const HealthOptions& options) {
   const Frame& frame = summary.input.frame;
   Health health = summary.track ? measured(*summary.track, summary.rig) : Health{};
   if (summary.mission) health = summary.mission->added_to(health, frame.time, summary.first_frame);
@@ -117,7 +118,7 @@ Health health_of(const FrameSummary& summary, const Matrix6& covariance, const H
   health.image = frame.condition;
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  return judged(health, evidence_of(summary), options);
+  return judged(health, evidence, options);
 }
 
 }  // namespace byre

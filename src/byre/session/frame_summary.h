@@ -41,7 +41,11 @@ struct FrameSummary {
 // A report with the frame's poses, their covariances and the counts of points in it.
 FrameReport described(FrameReport report, const FrameSummary& summary);
 
+// The evidence of the frame alone.
+HealthEvidence evidence_of(const FrameSummary& summary);
+
 // How far the pose may be relied on. covariance: of the pose in the map.
-Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthOptions& options);
+Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthEvidence& evidence,
+                 const HealthOptions& options);
 
 }  // namespace byre

@@ -69,7 +69,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   hint_.pass(rectified.time);
   const Stopwatch mapping_before;
   take_over_results(report);
-  InputFrame input = input_of(rectified);
+  InputFrame input = input_of(rectified, motion);
   mapper_.start_job();
   const double seconds_before = mapping_before.seconds();
 
@@ -77,6 +77,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   const Stopwatch tracking;
   const Located located = locate(input);
   report.track_seconds = tracking.seconds();
+  const TrackedFrame* const tracked = located.track ? &located.track->tracked : nullptr;
+  input.evidence.out_of_step = input_watch_.out_of_step(input.frame, rig_, tracked, map());
   if (budget != nullptr && located.track) budget->note_tracked();
 
   const Stopwatch mapping_after;
@@ -112,7 +114,8 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   state_ = next_state(state_, {whereabouts_.has_pose(), is_believed, seconds_without}, options_.state);
   report = described(std::move(report), summary);
   report.state = state_;
-  report.health = health_of(summary, report.covariance, options_.health);
+  const HealthEvidence evidence = doubts_.held(rectified.time, evidence_of(summary));
+  report.health = health_of(summary, report.covariance, evidence, options_.health);
   note_quality(report);
   if (trusted_place_.is_news(report.refused_place, report.health.verdict)) {
     report.events.push_back(SessionEvent::place_refused);
@@ -198,12 +201,12 @@ void Session::take_turn(const RigTurn& turn) {
   whereabouts_.turn(turn, mapper_.online());
 }
 
-InputFrame Session::input_of(const Frame& rectified) {
+InputFrame Session::input_of(const Frame& rectified, const std::optional<BodyMotion>& motion) {
   Frame frame = mapper_.corrected(rectified);
   if (mission_) frame = mission_->corrected(frame);
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
-  const InputEvidence evidence = input_watch_.look_at(frame, rig_);
+  const InputEvidence evidence = input_watch_.look_at(frame, rig_, {motion, whereabouts_.camera_motion()});
   mapper_.note_images(evidence.cameras_disagree);
   return {std::move(frame), fault, evidence};
 }

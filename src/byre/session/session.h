@@ -133,7 +133,7 @@ class Session {
   void take_over_place(FrameReport& report);
   bool take_over_camera();
   void take_turn(const RigTurn& turn);
-  InputFrame input_of(const Frame& rectified);
+  InputFrame input_of(const Frame& rectified, const std::optional<BodyMotion>& motion);
   Located locate(const InputFrame& input);
   bool may_begin_submap(const InputFrame& input) const;
   Located begin_submap(const Frame& frame);
@@ -156,6 +156,7 @@ class Session {
   Whereabouts whereabouts_;
   KeyframeWatch keyframe_watch_;
   InputWatch input_watch_;
+  LastingDoubts doubts_;
   LensWatch lens_watch_;
   Shutter shutter_;
   State state_ = State::initialising;

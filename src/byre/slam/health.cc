@@ -21,7 +21,7 @@ double uncertainty_of(const Health& health, const HealthOptions& options) {
 // What is wrong with the input, which may be why nothing is found; none when nothing is known to be.
 Doubt fault_of_input(const HealthEvidence& evidence) {
   if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
-  if (evidence.input.is_repeated) return Doubt::frozen;
+  if (evidence.input.is_repeated || evidence.input.is_frozen) return Doubt::frozen;
   if (evidence.is_miscalibrated) return Doubt::calibration;
   if (evidence.input.right_fault != ImageFault::none) return Doubt::right_camera;
   return evidence.input.cameras_disagree ? Doubt::cameras_disagree : Doubt::none;
@@ -74,7 +74,7 @@ Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, cons
   if (health.offline_inliers + health.online_inliers < options.min_points) {
     return evidence.image_fault == ImageFault::none ? Doubt::few_points : Doubt::blinded;
   }
-  if (health.hidden_share > kMostHidden) return Doubt::dirty;
+  if (evidence.is_dirty || is_mostly_hidden(health.hidden_share)) return Doubt::dirty;
   if (health.spread < options.min_spread) return Doubt::clustered;
   if (health.rotation_sigma > options.max_rotation_sigma) return Doubt::uncertain;
   return misses_offline_points(health, options) ? Doubt::few_offline_points : Doubt::none;
@@ -155,6 +155,36 @@ std::string note_on_dirt(const Health& health) {
   if (is_left && is_right) text += " and ";
   if (is_right) text += hidden(health.hidden_share_right, "right");
   return text + (is_left && is_right ? ": clean the lenses" : ": clean the lens");
+}
+
+bool is_mostly_hidden(double hidden_share) {
+  return hidden_share > kMostHidden;
+}
+
+HealthEvidence LastingDoubts::held(Timestamp time, const HealthEvidence& evidence) {
+  const auto note = [time](LastingDoubt& doubt, Sign sign) {
+    doubt.note(time, sign);
+    return doubt.is_raised();
+  };
+  const auto where_seen = [&](bool is_present) {
+    return is_present || evidence.pose_found ? sign_of(is_present) : Sign::unclear;
+  };
+  const InputEvidence& input = evidence.input;
+  const bool is_seen = evidence.image_fault == ImageFault::none;
+  const Sign still_or_frozen = input.is_frozen ? Sign::present : input.is_still ? Sign::unclear : Sign::absent;
+  const bool is_right_faulty = input.right_fault != ImageFault::none;
+  if (is_right_faulty) right_fault_ = input.right_fault;
+  const bool is_at_odds = input.cameras_disagree || input.out_of_step == Sign::present;
+  if (is_at_odds) may_be_timing_ = !input.is_still || (may_be_timing_ && cameras_disagree_.is_raised());
+  const Sign in_agreement = may_be_timing_ || !is_seen ? input.out_of_step : Sign::absent;
+  HealthEvidence result = evidence;
+  result.input.is_repeated = note(repeated_, sign_of(input.is_repeated));
+  result.input.is_frozen = note(frozen_, is_seen ? still_or_frozen : Sign::unclear);
+  if (note(right_camera_, is_seen ? sign_of(is_right_faulty) : Sign::unclear)) result.input.right_fault = right_fault_;
+  result.input.cameras_disagree = note(cameras_disagree_, is_at_odds ? Sign::present : in_agreement);
+  result.is_miscalibrated = note(miscalibrated_, where_seen(evidence.is_miscalibrated));
+  result.is_dirty = note(dirty_, where_seen(evidence.is_dirty));
+  return result;
 }
 
 double position_error(const Health& measured, const HealthOptions& options) {

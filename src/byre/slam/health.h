@@ -21,7 +21,7 @@ struct HealthOptions {
   double max_frozen = 0.15;           // seconds that a camera may give the same image, until the pose is of no use
 };
 
-// What is known of a frame beside its measures.
+// Evidence of a frame beside its measures.
 struct HealthEvidence {
   bool pose_found = false;
   bool registered = true;      // the pose is in the offline map's frame
@@ -36,10 +36,31 @@ struct HealthEvidence {
   // Nothing is recognised, and the pose goes on by what is told of the motion: verdict on the last one that was seen.
   std::optional<Verdict> bridged_from{};
   Doubt refused_place = Doubt::none;  // why the robot cannot be where the frame was found
+  bool is_dirty = false;              // dirt hides most of the left image
+};
+
+// The doubts about images and calibration, each a LastingDoubt.
+class LastingDoubts {
+ public:
+  // The evidence of a frame, with the causes that earlier frames showed and that have not been absent for long enough.
+  HealthEvidence held(Timestamp time, const HealthEvidence& evidence);
+
+ private:
+  LastingDoubt repeated_;
+  LastingDoubt frozen_;
+  LastingDoubt right_camera_;
+  LastingDoubt cameras_disagree_;
+  LastingDoubt miscalibrated_;
+  LastingDoubt dirty_;
+  ImageFault right_fault_ = ImageFault::none;  // the last one
+  bool may_be_timing_ = false;  // the images disagreed while they moved, so only a pair in step ends that doubt
 };
 
 // By how much the position may be off, metres: sigmas of the pose and drift together.
 double position_error(const Health& measured, const HealthOptions& options);
+
+// Dirt hides so much of an image that what is left may be one thing that has moved.
+bool is_mostly_hidden(double hidden_share);
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose
 // is degraded while few, clustered or contradicting points hold it.

@@ -207,5 +207,77 @@ TEST(NoteOnDirt, TellsWhichLensesToClean) {
   EXPECT_EQ(note_on_dirt(health), "dirt hides 1 % of the right image: clean the lens");
 }
 
+// So many frames, 20 a second, with the same evidence; the number of frames of which a doubt is left.
+template <typename IsRaised>
+int raised_frames(LastingDoubts& doubts, int first, int count, const HealthEvidence& evidence, IsRaised is_raised) {
+  int raised = 0;
+  for (int i = first; i < first + count; ++i) {
+    if (is_raised(doubts.held(from_seconds(0.05 * i), evidence))) ++raised;
+  }
+  return raised;
+}
+
+bool are_cameras_at_odds(const HealthEvidence& evidence) {
+  return evidence.input.cameras_disagree;
+}
+
+bool is_frozen(const HealthEvidence& evidence) {
+  return evidence.input.is_frozen;
+}
+
+constexpr HealthEvidence kInStep{.pose_found = true, .input = {.out_of_step = Sign::absent}};
+
+TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndsOnlyWhereMotionShowsItInStep) {
+  LastingDoubts doubts;
+  constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.cameras_disagree = true}};
+  EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
+  EXPECT_EQ(raised_frames(doubts, 1, 200, kPose, are_cameras_at_odds), 200);
+  const int raised = raised_frames(doubts, 201, 100, kInStep, are_cameras_at_odds);
+  EXPECT_GE(raised, 10);
+  EXPECT_LE(raised, 25);
+}
+
+TEST(LastingDoubts, OfAPairThatDisagreedAtAStandstillEndsThere) {
+  LastingDoubts doubts;
+  constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.is_still = true, .cameras_disagree = true}};
+  EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
+  EXPECT_LE(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, are_cameras_at_odds), 25);
+}
+
+TEST(LastingDoubts, OfAPairIsRaisedByItsTimingAlone) {
+  LastingDoubts doubts;
+  EXPECT_EQ(
+      raised_frames(doubts, 0, 1, {.pose_found = true, .input = {.out_of_step = Sign::present}}, are_cameras_at_odds),
+      1);
+}
+
+TEST(LastingDoubts, OfAFrozenImageDoesNotEndWhileItStandsStill) {
+  LastingDoubts doubts;
+  EXPECT_EQ(raised_frames(doubts, 0, 1, {.input = {.is_still = true, .is_frozen = true}}, is_frozen), 1);
+  EXPECT_EQ(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, is_frozen), 200);
+  EXPECT_LE(raised_frames(doubts, 201, 200, kPose, is_frozen), 25);
+}
+
+TEST(LastingDoubts, OfTheCalibrationWaitForFramesWithAPose) {
+  LastingDoubts doubts;
+  const auto is_off = [](const HealthEvidence& evidence) { return evidence.is_miscalibrated; };
+  EXPECT_EQ(raised_frames(doubts, 0, 1, {.pose_found = true, .is_miscalibrated = true}, is_off), 1);
+  EXPECT_EQ(raised_frames(doubts, 1, 200, {}, is_off), 200);
+  EXPECT_LE(raised_frames(doubts, 201, 200, kPose, is_off), 25);
+}
+
+TEST(LastingDoubts, KeepTheFaultOfTheRightCamera) {
+  LastingDoubts doubts;
+  const auto fault = [](const HealthEvidence& evidence) { return evidence.input.right_fault == ImageFault::dark; };
+  EXPECT_EQ(raised_frames(doubts, 0, 1, {.input = {.right_fault = ImageFault::dark}}, fault), 1);
+  EXPECT_GE(raised_frames(doubts, 1, 100, kPose, fault), 10);
+}
+
+TEST(LastingDoubts, LeaveSoundFramesAlone) {
+  LastingDoubts doubts;
+  const HealthEvidence held = doubts.held(from_seconds(1.0), kInStep);
+  EXPECT_EQ(judged(good(), held, {}).verdict, Verdict::trusted);
+}
+
 }  // namespace
 }  // namespace byre

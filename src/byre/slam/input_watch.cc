@@ -2,6 +2,7 @@
 
 #include "byre/geometry/median.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -21,9 +22,10 @@ double blend(std::optional<double> before, double now) {
 
 InputWatch::InputWatch(const ImageConditionOptions& image) : image_(image), by_part_(kMemory) {}
 
-InputEvidence InputWatch::look_at(const Frame& frame, const Rig& rig) {
+InputEvidence InputWatch::look_at(const Frame& frame, const Rig& rig, const KnownMotion& motion) {
   InputEvidence evidence;
   note_repetition(frame, evidence);
+  note_stillness(frame, rig, motion, evidence);
   if (frame.condition && frame.right_condition) note_pair(frame, rig, evidence);
   return evidence;
 }
@@ -34,6 +36,21 @@ void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
   if (!evidence.is_repeated) first_shown_ = frame.time;
   evidence.frozen_seconds = to_seconds(frame.time - first_shown_);
   last_content_ = frame.content;
+}
+
+void InputWatch::note_stillness(const Frame& frame, const Rig& rig, const KnownMotion& motion,
+                                InputEvidence& evidence) {
+  if (!frame.condition || fault_of(*frame.condition, image_) != ImageFault::none) return still_.forget();
+  const Stillness stillness = still_.note(frame, rig, motion.measured, motion.before);
+  evidence.is_still = stillness.is_still;
+  evidence.is_frozen = stillness.is_frozen;
+  if (stillness.is_frozen) evidence.frozen_seconds = std::max(evidence.frozen_seconds, stillness.seconds);
+}
+
+Sign InputWatch::out_of_step(const Frame& frame, const Rig& rig, const TrackedFrame* tracked, const MapView& map) {
+  if (tracked != nullptr && frame.right_condition) return timing_.note(frame, rig, *tracked, map);
+  timing_.skip();
+  return Sign::unclear;
 }
 
 void InputWatch::note_pair(const Frame& frame, const Rig& rig, InputEvidence& evidence) {

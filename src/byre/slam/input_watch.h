@@ -1,30 +1,44 @@
 #pragma once
 
 #include "byre/features/stereo_fit.h"
+#include "byre/slam/pair_timing.h"
+#include "byre/slam/still_image.h"
 
 #include <optional>
 
 namespace byre {
 
-// What speaks against the images of a frame themselves.
+// Evidence against the images of a frame themselves.
 struct InputEvidence {
   bool is_repeated = false;                   // the image is the last one again, bit by bit
-  double frozen_seconds = 0.0;                // seconds for which the image has been the same
+  bool is_still = false;                      // the image stands still: it cannot show whether the camera is frozen
+  bool is_frozen = false;                     // the image stands still although the camera moves
+  double frozen_seconds = 0.0;                // time that the image has been repeated or frozen
   ImageFault right_fault = ImageFault::none;  // fault of the right image, where the left one has none
   // The right image hardly shows what the left one does, or on other rows; not where dirt hides much of it.
   bool cameras_disagree = false;
+  Sign out_of_step = Sign::unclear;  // one image of the pair is older than the other
 };
 
-// Looks at frames one after the other.
+// What is known of the motion that a frame ends.
+struct KnownMotion {
+  std::optional<BodyMotion> measured{};  // motion of the body since the frame before, by wheels or a gyroscope
+  CameraMotion before{};                 // motion of the camera up to the frame before
+};
+
+// Compares each frame with those before it.
 class InputWatch {
  public:
   explicit InputWatch(const ImageConditionOptions& image);
 
   // Rows are judged by the calibration that the frame's features were made, or made anew, by.
-  InputEvidence look_at(const Frame& frame, const Rig& rig);
+  InputEvidence look_at(const Frame& frame, const Rig& rig, const KnownMotion& motion = {});
+  // Whether the images of the pair are out of step, once the frame is tracked. tracked: nullptr where it has no pose.
+  Sign out_of_step(const Frame& frame, const Rig& rig, const TrackedFrame* tracked, const MapView& map);
 
  private:
   void note_repetition(const Frame& frame, InputEvidence& evidence);
+  void note_stillness(const Frame& frame, const Rig& rig, const KnownMotion& motion, InputEvidence& evidence);
   void note_pair(const Frame& frame, const Rig& rig, InputEvidence& evidence);
 
   ImageConditionOptions image_;  // constant after construction
@@ -33,6 +47,8 @@ class InputWatch {
   std::optional<double> matched_;
   std::optional<double> row_error_;  // pixels
   MatchedByPart by_part_;
+  StillImage still_;
+  PairTiming timing_;
 };
 
 }  // namespace byre

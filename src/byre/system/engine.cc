@@ -135,6 +135,7 @@ Engine::Processed Engine::process(const ImageFrame& images, const std::optional<
   budget_.begin();
   const bool is_left_alone = images.right && !budget_.has_time_for_right_image();
   const Extraction extraction = extractor_.extract(images, is_left_alone ? ImagesUsed::left : ImagesUsed::all);
+  if (extraction.frame.right_condition) row_error_.note(*extraction.frame.features, extractor_.rig());
   Processed processed{process_in_time(extraction.frame, motion), {}};
   processed.seconds.total = watch.seconds();
   processed.seconds.rectify = extraction.times.rectify;

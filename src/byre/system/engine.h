@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/features/extract.h"
+#include "byre/features/stereo_fit.h"
 #include "byre/motion/motion_prior.h"
 #include "byre/session/session.h"
 #include "byre/system/logged_executor.h"
@@ -118,6 +119,8 @@ class Engine {
   Trajectory trajectory() const { return prior_.completed(session_.final_trajectory()); }
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
+  // How far the calibration that images are rectified by is off, by the rows of all pairs so far.
+  const CommonRowError& row_error() const { return row_error_; }
   KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep()}; }
   // Whether lengths are metres. What one camera maps has them once it is finished, where wheels have told them.
   bool is_metric() const { return is_metric_; }
@@ -137,6 +140,7 @@ class Engine {
   Eigen::Quaterniond body_from_left_;          // constant after construction
   std::optional<RefinedCalibration> known_;    // before any frame
   Extractor extractor_;
+  CommonRowError row_error_;
   MotionPrior prior_;
   bool is_metric_;
   std::optional<Timestamp> last_frame_;

@@ -1,6 +1,7 @@
 #include "byre/slam.h"
 
 #include "byre/features/image_view.h"
+#include "byre/geometry/baseline.h"
 #include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
@@ -17,10 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What nobody's images can be seen by. Files were looked through when they were read; these may come from anywhere.
+constexpr const char* kGivenCalibration = "the calibration given to Slam";
+
+// Throws InputError for values that no camera has. Files were checked when they were read; these may come from
+// anywhere.
 void require_sense(const Calibration& calibration, const SlamOptions& options) {
   const auto refuse = [](std::string_view reason) {
-    throw InputError("the calibration given to Slam", reason, "see byre/calibration.h");
+    throw InputError(kGivenCalibration, reason, "see byre/calibration.h");
   };
   if (const auto fault = fault_in(calibration); !fault.empty()) refuse(fault);
   if (calibration.right && calibration.depth) refuse("has both a right and a depth camera");
@@ -32,6 +36,12 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
   }
   if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
+}
+
+// The calibration with the baseline that the options confirm. Throws InputError where the calibration makes no sense.
+Calibration checked(const Calibration& calibration, const SlamOptions& options) {
+  require_sense(calibration, options);
+  return with_checked_baseline(calibration, options.baseline, kGivenCalibration, "SlamOptions::baseline = ");
 }
 
 Pace pace_of(Workers workers) {
@@ -172,15 +182,14 @@ Slam& Slam::operator=(Slam&&) noexcept = default;
 Slam::~Slam() = default;
 
 Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
-  require_sense(calibration, options);
+  Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  Calibration given = calibration;
   if (!given.tells_metres()) given.body_from_left = {};  // an arm in metres means nothing to who knows none
   return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), StoredMap{}));
 }
 
 Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
-  require_sense(calibration, options);
+  const Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   StoredMap about = load_for_mapping(map, vocabulary);
   about.pose_source = PoseSource::slam;
@@ -188,20 +197,20 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
   about.map = Map(Origin::offline);
   const auto plan = about.plan;
   EngineOptions engine = engine_options(options, vocabulary);
-  engine.known = known_calibration(about.recordings, calibration);
-  engine.mounting = mounting_for(mounting_in(about.notes), about.recordings, calibration);
+  engine.known = known_calibration(about.recordings, given);
+  engine.mounting = mounting_for(mounting_in(about.notes), about.recordings, given);
   engine.session.recording = static_cast<int>(about.recordings.size());
-  auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, std::move(about), std::move(before));
+  auto parts = std::make_unique<Parts>(given, options, vocabulary, engine, std::move(about), std::move(before));
   parts->plan = plan;
   return Slam(std::move(parts));
 }
 
 Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
-  require_sense(calibration, options);
+  const Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
   EngineOptions engine = engine_options(options, vocabulary);
   engine.offline = load_offline_map(map, vocabulary, options.plan);
-  auto parts = std::make_unique<Parts>(calibration, options, vocabulary, engine, StoredMap{});
+  auto parts = std::make_unique<Parts>(given, options, vocabulary, engine, StoredMap{});
   parts->plan = load_plan_registration(map);
   parts->mission_map = map;
   return Slam(std::move(parts));

@@ -72,6 +72,17 @@ class SlamWithAFile : public testing::Test {
   const fs::path map_ = fs::path(testing::TempDir()) / ("byre_slam_test." + std::to_string(getpid()) + ".byre");
 };
 
+TEST(SlamOptions, ConfirmOrCorrectABaselineThatIsRefusedOtherwise) {
+  Calibration calibration = open_shared()->calibration();
+  calibration.right->right_from_left.translation *= 7.5 / calibration.right->right_from_left.translation.norm();
+  EXPECT_THAT(
+      error_by([&] { Slam::mapping(calibration, repeatable()); }),
+      testing::AllOf(testing::HasSubstr("baseline of 7.5 m"), testing::HasSubstr("SlamOptions::baseline = 7.5")));
+  SlamOptions options = repeatable();
+  options.baseline = 0.075;
+  EXPECT_NEAR(Slam::mapping(calibration, options).rig().baseline, 0.075, 1e-9);
+}
+
 TEST_F(SlamWithAFile, KeepsWhatAMapWasMadeFrom) {
   map_shared();
   const std::vector<ImageFrame> frames = shared_frames();

@@ -76,7 +76,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
     throw InputError(options.recording.string(), "shows too little to calibrate its cameras by",
                      "record a minute or more of motion about a place with texture");
   }
-  if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
+  if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});
   Calibration calibration = run.calibration->calibration;
   if (!is_metric) calibration.body_from_left = body_from_camera;
   write_whole(options.output, write_calibration(calibration));

@@ -37,6 +37,15 @@ TEST_F(CheckProgram, OfOneCameraSaysNothingOfAPair) {
   EXPECT_EQ(told.at("without_right"), 0);
 }
 
+TEST_F(CheckProgram, TakesABaselineInPlaceOfTheCalibrations) {
+  const Outcome sound = run("check " + rendered_room() + " --samples 3 --baseline 0.5");
+  EXPECT_EQ(sound.exit_code, 0) << sound.errors;
+  EXPECT_THAT(sound.output, HasSubstr("baseline     0.5000 m"));
+  const Outcome confirmed = run("check " + rendered_room() + " --samples 3 --baseline 7.5");
+  EXPECT_THAT(confirmed.output, HasSubstr("baseline     7.5000 m"));
+  EXPECT_NE(run("check " + rendered_room() + " --samples 3 --baseline 0").exit_code, 0);
+}
+
 TEST_F(CheckProgram, ItsSummaryBeginsAMapping) {
   const Outcome outcome = run("map " + rendered_room() + " --frames :4 --no-loops -o room.byre");
   EXPECT_THAT(outcome.errors, HasSubstr("checked "));

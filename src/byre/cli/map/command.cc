@@ -139,7 +139,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   MapRun run = run_and_autosave(input, protocol.options, options, record, std::move(extended), messages, interrupt);
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
-  if (const auto warning = calibration_warning(run.calibration)) show_warnings(std::cerr, {*warning});
+  if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});
   const ResourceUse resources = resources_used_so_far();
   input.note_times(run, record.about.recordings.back());
   input.note_frames(run, protocol);

@@ -41,6 +41,11 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
             "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
       ->type_name("FILE");
   command
+      .add_option("--baseline", options.baseline,
+                  "Distance of left and right camera, in place of the calibration's; confirms one beyond 1 m")
+      ->type_name("METRES")
+      ->check(between(1e-4, 1e3));
+  command
       .add_option_function<std::string>(
           "--fps", set_frame_rate,
           "Frame rate of images and videos, in place of the times in their names or of what the video says")

@@ -6,6 +6,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input/report_row.h"
 #include "byre/playback/source_recording.h"
 
@@ -64,9 +65,11 @@ RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
   }
   const std::filesystem::path& file = *choice_.open.calibration;
   const auto tell = [](const std::string& note) { show_warnings(std::cerr, {note}); };  // somebody is to see to it
+  const Calibration calibration =
+      with_checked_baseline(read_calibration(file), choice_.open.baseline, file.string(), "--baseline ");
   live_ = std::make_unique<LiveFrames>(choice_.live.cameras.live(),
-                                       scaled_calibration(read_calibration(file), choice_.has_metric_map, scaled_),
-                                       file.string(), choice_.live.duration_s, tell);
+                                       scaled_calibration(calibration, choice_.has_metric_map, scaled_), file.string(),
+                                       choice_.live.duration_s, tell);
 }
 
 const Calibration& RunInput::calibration() const {

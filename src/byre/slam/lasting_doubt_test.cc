@@ -1,0 +1,71 @@
+#include "byre/slam/lasting_doubt.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+constexpr double kStep = 0.05;  // seconds between frames
+
+class Doubted : public ::testing::Test {
+ protected:
+  // So many frames with the same sign; the number of frames of which the doubt was raised.
+  int note(int frames, Sign sign, double step = kStep) {
+    int raised = 0;
+    for (int i = 0; i < frames; ++i) {
+      time_ += from_seconds(step);
+      doubt_.note(time_, sign);
+      if (doubt_.is_raised()) ++raised;
+    }
+    return raised;
+  }
+
+  LastingDoubt doubt_;
+  Timestamp time_{};
+};
+
+TEST_F(Doubted, IsNotRaisedWithoutACause) {
+  EXPECT_EQ(note(100, Sign::absent) + note(100, Sign::unclear), 0);
+}
+
+TEST_F(Doubted, IsRaisedByTheFirstSignAndLastsASecondBeyondIt) {
+  EXPECT_EQ(note(1, Sign::present), 1);
+  const int frames = note(100, Sign::absent);
+  EXPECT_GE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) - 1);
+  EXPECT_LE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) + 1);
+}
+
+TEST_F(Doubted, NeedsFramesWhereTheyAreRare) {
+  note(1, Sign::present, 1.0);
+  EXPECT_EQ(note(20, Sign::absent, 1.0), LastingDoubt::kLeastFrames - 1);
+}
+
+TEST_F(Doubted, LastsAsLongAsItsCauseDid) {
+  note(100, Sign::present);
+  EXPECT_NEAR(note(1000, Sign::absent) * kStep, 100 * kStep + LastingDoubt::kLeastSeconds, 3 * kStep);
+}
+
+TEST_F(Doubted, LastsNoLongerThanItsBound) {
+  note(10'000, Sign::present);
+  EXPECT_NEAR(note(10'000, Sign::absent) * kStep, LastingDoubt::kMostSeconds, 3 * kStep);
+}
+
+TEST_F(Doubted, DoesNotFlickerWhereItsCauseShowsNowAndThen) {
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_EQ(note(1, Sign::present), 1);
+    EXPECT_EQ(note(9, Sign::absent), 9);
+  }
+}
+
+TEST_F(Doubted, IsNotEndedByFramesThatCannotShowItsCause) {
+  note(1, Sign::present);
+  EXPECT_EQ(note(1000, Sign::unclear), 1000);
+}
+
+TEST_F(Doubted, IsNotEndedByATimeWithoutFrames) {
+  note(1, Sign::present);
+  EXPECT_EQ(note(1, Sign::absent, 3600.0), 1);
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,162 @@
+#include "byre/slam/still_image.h"
+
+#include "byre/features/descriptor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace byre {
+namespace {
+
+constexpr int kMostSamples = 300;    // corners that are compared
+constexpr int kFewestSamples = 30;   // corners from which a standstill is found
+constexpr int kCoarsestOctave = 3;   // beyond, a corner is too vague
+constexpr float kStays = 1.5f;       // octave pixels that noise moves a corner at most
+constexpr int kAlike = 64;           // bits, descriptors of one corner under noise
+constexpr double kStillShare = 0.4;  // share of corners that stay in an image that stands still
+
+bool stays_at(const Features& features, const Keypoint& keypoint, const Descriptor& descriptor) {
+  int least = std::numeric_limits<int>::max();
+  features.visit_area(
+      keypoint.pixel, kStays * kScaleOfOctave[keypoint.octave], keypoint.octave, keypoint.octave,
+      [&](int feature) { least = std::min(least, hamming_distance(descriptor, features.descriptor(feature))); });
+  return least <= kAlike;
+}
+
+// Pixels by which the motion would have moved the corner.
+Eigen::Vector2d shift_by(const Eigen::Vector2d& pixel, const Eigen::Vector3d& then, const Pose& now_from_then,
+                         const Rig& rig) {
+  constexpr double kNearest = 0.05;  // lengths of the map
+  Eigen::Vector3d in_camera = now_from_then * then;
+  in_camera.z() = std::max(kNearest, in_camera.z());
+  return rig.project(in_camera).head<2>() - pixel;
+}
+
+// The least motion that the measurement allows, by three sigmas of its length and of its angle.
+Pose least_motion(const BodyMotion& measured) {
+  constexpr double kSigmas = 3.0;
+  const auto share_left = [](double size, double variance) {
+    return size > 0.0 ? std::max(0.0, 1.0 - kSigmas * std::sqrt(std::max(0.0, variance)) / size) : 0.0;
+  };
+  const Eigen::Vector3d& way = measured.last_from_body.translation;
+  const Eigen::Vector3d turn = rotation_log(measured.last_from_body.rotation);
+  const Matrix6& covariance = measured.covariance;
+  return {rotation_exp(share_left(turn.norm(), covariance.bottomRightCorner<3, 3>().trace()) * turn),
+          share_left(way.norm(), covariance.topLeftCorner<3, 3>().trace()) * way};
+}
+
+// now_from_then of the camera.
+Pose of_camera(const Pose& then_from_now_of_body, const Rig& rig) {
+  return inverse(inverse(rig.body_from_camera) * then_from_now_of_body * rig.body_from_camera);
+}
+
+// A trusted pose may be off by as much, and more.
+bool is_small(const Pose& motion) {
+  constexpr double kMetres = 0.1;
+  constexpr double kRadians = 0.05;
+  return motion.translation.norm() < kMetres && rotation_log(motion.rotation).norm() < kRadians;
+}
+
+// Whether the measurement says more of the motion than going on as before does.
+bool is_known_better(const BodyMotion& measured, const Vector6& velocity, double seconds) {
+  constexpr double kShare = 0.3;
+  constexpr double kLeast = 1e-3;  // metres and radians
+  const double way_sigma = std::sqrt(std::max(0.0, measured.covariance.topLeftCorner<3, 3>().trace()));
+  const double turn_sigma = std::sqrt(std::max(0.0, measured.covariance.bottomRightCorner<3, 3>().trace()));
+  return way_sigma <= kShare * velocity.head<3>().norm() * seconds + kLeast &&
+         turn_sigma <= kShare * velocity.tail<3>().norm() * seconds + kLeast;
+}
+
+}  // namespace
+
+// depth: of corners without a disparity.
+void StillImage::compare(const Features& features, const Rig& rig, double depth) {
+  corners_.clear();
+  const int step = std::max(1, reference_->size() / kMostSamples);
+  for (int i = 0; i < reference_->size(); i += step) {
+    const Keypoint& keypoint = reference_->keypoint(i);
+    if (keypoint.octave > kCoarsestOctave) continue;
+    const Eigen::Vector2d pixel = keypoint.pixel.cast<double>();
+    const bool has_depth = rig.is_stereo() && keypoint.has_disparity();
+    const Eigen::Vector3d in_camera = has_depth ? rig.triangulate({pixel.x(), pixel.y(), keypoint.disparity})
+                                                : Eigen::Vector3d(depth * rig.ray(pixel));
+    corners_.push_back({pixel, in_camera, stays_at(features, keypoint, reference_->descriptor(i))});
+  }
+}
+
+// Enough corners that the motion would have moved are where they were.
+bool StillImage::is_contradicted_by(const Pose& now_from_then, const Rig& rig) const {
+  constexpr double kLeastShift = 4.0;           // pixels
+  constexpr double kLeastShiftOfWidth = 0.008;  // share of the image's width
+  constexpr double kLeastMoved = 0.15;          // share of the corners
+  constexpr double kStaying = 0.4;              // share of those that should have moved
+  const double least = std::max(kLeastShift, kLeastShiftOfWidth * rig.width);
+  int moved = 0, staying = 0;
+  for (const Corner& corner : corners_) {
+    if (!(shift_by(corner.pixel, corner.in_camera, now_from_then, rig).norm() >= least)) continue;
+    ++moved;
+    if (corner.stays) ++staying;
+  }
+  return moved >= kFewestSamples && moved >= kLeastMoved * static_cast<double>(corners_.size()) &&
+         staying >= kStaying * moved;
+}
+
+// The camera moved steadily up to the reference, and no robot stops so fast. later: velocity at the reference.
+bool StillImage::is_sudden_stop(const Vector6& later, double seconds, const Rig& rig) const {
+  constexpr double kDeceleration = 3.0;  // metres (lengths of the map), and radians, per second squared
+  constexpr double kSteady = 0.4;        // change as a share of the motion in the image
+  if ((later.head<3>().norm() + later.tail<3>().norm()) < kDeceleration * seconds) return false;
+  double motion = 0.0, change = 0.0;
+  for (const Corner& corner : corners_) {
+    const auto shift = [&](const Vector6& velocity) {
+      return shift_by(corner.pixel, corner.in_camera, exp_pose(velocity * seconds), rig);
+    };
+    motion += shift(later).norm();
+    change += (shift(later) - shift(velocity_)).norm();
+  }
+  return change <= kSteady * motion;
+}
+
+void StillImage::restart(const Frame& frame, const Vector6& velocity) {
+  reference_ = frame.features;
+  since_ = frame.time;
+  velocity_ = velocity;
+  stopped_from_.reset();
+  measured_ = no_motion();
+  is_contradicted_ = false;
+}
+
+Stillness StillImage::note(const Frame& frame, const Rig& rig, const std::optional<BodyMotion>& measured,
+                           const CameraMotion& before) {
+  constexpr double kLongest = 0.3;  // seconds for which motion is taken to go on
+  if (!reference_) {
+    restart(frame, before.velocity);
+    return {};
+  }
+  compare(*frame.features, rig, before.depth);
+  const auto staying = static_cast<double>(std::ranges::count_if(corners_, &Corner::stays));
+  if (corners_.size() < kFewestSamples || staying < kStillShare * static_cast<double>(corners_.size())) {
+    restart(frame, before.velocity);
+    return {};
+  }
+  const double seconds = to_seconds(frame.time - since_);
+  const bool is_first = !stopped_from_;
+  if (is_first) {
+    stopped_from_ = is_sudden_stop(before.velocity, seconds, rig) ? before.velocity : Vector6(Vector6::Zero());
+  }
+  measured_ = measured_ && measured ? std::optional(*measured_ * *measured) : std::nullopt;
+  if (measured_ && is_contradicted_by(of_camera(least_motion(*measured_), rig), rig)) {
+    is_contradicted_ = true;
+  } else if (measured_ && is_contradicted_ && is_small(measured_->last_from_body)) {
+    is_contradicted_ = false;
+  }
+  const double goes_on = std::min(seconds, kLongest);
+  if (!(measured_ && is_known_better(*measured_, *stopped_from_, goes_on)) &&
+      is_contradicted_by(exp_pose(*stopped_from_ * goes_on), rig)) {
+    is_contradicted_ = true;
+  }
+  return {true, is_contradicted_, seconds};
+}
+
+}  // namespace byre
