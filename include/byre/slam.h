@@ -7,6 +7,7 @@
 #include "byre/frame_report.h"
 #include "byre/image.h"
 #include "byre/input_error.h"
+#include "byre/motion_warning.h"
 #include "byre/pose.h"
 #include "byre/pose_hint.h"
 #include "byre/rig.h"
@@ -133,8 +134,10 @@ class Slam {
   int keyframes() const;
   int points() const;
   std::vector<Eigen::Vector3d> point_positions() const;  // places of these points, in the frame of map_from_body
-  int frames() const;                                    // all frames handed over
-  int frames(InputFault fault) const;                    // frames handed over with that fault
+  // Faults of motion inputs so far, each kind once; FrameReport::warnings has those since the frame before.
+  const std::vector<MotionWarning>& motion_warnings() const;
+  int frames() const;                  // all frames handed over
+  int frames(InputFault fault) const;  // frames handed over with that fault
 
  private:
   struct Parts;

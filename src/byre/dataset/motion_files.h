@@ -1,9 +1,11 @@
 #pragma once
 
 #include "byre/body_motion.h"
+#include "byre/motion_warning.h"
 #include "byre/recording.h"
 
 #include <filesystem>
+#include <string>
 
 namespace byre {
 
@@ -17,5 +19,8 @@ namespace byre {
 // body_from_left: of the recording's own calibration.
 MotionSamples read_motion(const std::filesystem::path& recording, const OpenOptions& options,
                           const Pose& body_from_left = {});
+
+// File or topic that a sensor's samples were read from.
+std::string motion_source(const std::filesystem::path& recording, const OpenOptions& options, MotionSensor sensor);
 
 }  // namespace byre
