@@ -41,6 +41,9 @@ struct FrameSummary {
 // A report with the frame's poses, their covariances and the counts of points in it.
 FrameReport described(FrameReport report, const FrameSummary& summary);
 
+// Numbers that are not finite leave no report: such a pose is withheld, and is then not trusted.
+void withhold_non_finite(FrameReport& report);
+
 // How far the pose may be relied on. covariance: of the pose in the map.
 Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthOptions& options);
 
