@@ -211,6 +211,7 @@ void Node::process(const Pairs::Pair& pair) {
     if (right) images.right = right->view();
     motion_.take();
     motion_.tell(clock_, runner_);
+    if (const std::string news = motion_.news(); !news.empty()) log_(LogLevel::warning, news);
     const FrameReport report = runner_.process(images);
     outputs_.tell_images(pair.stamp, pair.left.bytes(),
                          pair.right ? pair.right->bytes() : std::span<const std::byte>());
@@ -250,6 +251,9 @@ void Node::note_events(const FrameReport& report) {
       continue;
     }
     log_(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
+  }
+  for (const MotionWarning& warning : report.warnings) {
+    log_(LogLevel::warning, to_text(warning, motion_.source_of(warning.sensor)));
   }
   if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
   const std::string doubt =

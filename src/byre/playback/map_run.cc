@@ -86,6 +86,7 @@ void take_over_result(Engine& engine, MapRun& run) {
   run.final = engine.prior().completed(seen);
   run.calibration = engine.calibration();
   run.told = told_motion(engine.prior(), engine.session());
+  run.told.metres_sigma = engine.wheel_scale_sigma();
   run.is_metric = engine.is_metric();
   run.map = engine.take_kept_map();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
@@ -139,6 +140,11 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     }
   }
   note_jobs(engine, run, noted_jobs);
+  run.motion_warnings = engine.warnings();
+  if (!run.frames.empty()) {
+    const auto clocks = clock_warnings(frames.motion(), run.frames.front().time, run.frames.back().time);
+    run.motion_warnings.insert(run.motion_warnings.end(), clocks.begin(), clocks.end());
+  }
   take_over_result(engine, run);
   run.wall_seconds = watch.seconds();
   return run;

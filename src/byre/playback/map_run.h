@@ -26,14 +26,15 @@ struct ToldMotion {
   bool is_told = false;  // by wheels or a gyroscope
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;           // seconds that wheels stamp later than the camera
-  int slips = 0;                      // times that wheels were left out
-  bool is_mounted_otherwise = false;  // wheels, than when the map was made
-  KnownMounting to_keep;              // for the next drive
-  int stops = 0;                      // times that the body stood still, as accelerations show too
-  double stood_s = 0.0;               // seconds that it did
-  int tilts_held = 0;                 // bridged frames whose roll and pitch accelerations held
-  int led_afterwards = 0;             // final poses of frames that had none, where wheels led from those that had
+  double time_offset = 0.0;            // seconds that wheels stamp later than the camera
+  int slips = 0;                       // times that wheels were left out
+  bool is_mounted_otherwise = false;   // wheels, than when the map was made
+  KnownMounting to_keep;               // for the next drive
+  int stops = 0;                       // times that the body stood still, as accelerations show too
+  double stood_s = 0.0;                // seconds that it did
+  int tilts_held = 0;                  // bridged frames whose roll and pitch accelerations held
+  std::optional<double> metres_sigma;  // share, of a map whose metres are by wheels alone
+  int led_afterwards = 0;              // final poses of frames that had none, where wheels led from those that had
 };
 
 struct MapRun {
@@ -47,10 +48,11 @@ struct MapRun {
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;
-  bool is_metric = true;              // lengths of the map and of final poses are metres
-  std::vector<std::string> warnings;  // warnings of the recording
-  std::vector<double> lateness;       // seconds by which late frames were fed too late, in a live run
-  double wall_seconds = 0.0;          // wall time of the whole run
+  bool is_metric = true;                       // lengths of the map and of final poses are metres
+  std::vector<std::string> warnings;           // warnings of the recording
+  std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer
+  std::vector<double> lateness;                // seconds by which late frames were fed too late, in a live run
+  double wall_seconds = 0.0;                   // wall time of the whole run
 };
 
 // What can be seen of a run right after a frame: valid for the time of the call.
