@@ -373,7 +373,8 @@ bool MotionCheck::note(const Turn& turn) {
       turn.is_seen && changes_ >= kManyChanges && std::max(measured_change_, reference_change_) >= kEnough;
   if (is_enough && (ratio > 3.0 || ratio < 1.0 / 3.0)) {
     return ignore_gyroscope(Fault::unit, turn.time, formatted("rates are %.3g times the turns that are seen", ratio),
-                            "give radians per second, and see that the sensor is fixed to the cameras");
+                            is_in_degrees ? "give radians per second: these are degrees per second"
+                                          : "give radians per second, and see that the sensor is fixed to the cameras");
   }
   if (changes_ >= 2 * kManyChanges) {
     measured_change_ *= 0.5;

@@ -503,6 +503,7 @@ std::optional<BodyMotion> MotionPrior::across_jump(Timestamp earlier, Timestamp 
   const Timestamp offset = from_seconds(time_offset()), span = later - earlier;
   if (span > kMaxFrameGap || !wheels_.has_jump(earlier + offset, later + offset)) return {};
   auto motion = by_wheels(earlier - span, earlier, {});
+  if (!motion) motion = by_wheels(earlier - 2 * span, earlier - span, {});  // the border is right after the frame
   if (!motion) return {};
   forget_way(*motion);
   forget_turn(*motion);
