@@ -22,6 +22,12 @@ std::optional<Matrix6> covariance_of(const std::optional<Pose>& pose, const Matr
   return pose ? std::optional(covariance) : std::nullopt;
 }
 
+std::vector<std::string> texts_of(const std::vector<MotionWarning>& warnings) {
+  std::vector<std::string> texts;
+  for (const MotionWarning& warning : warnings) texts.push_back(to_text(warning));
+  return texts;
+}
+
 void bind_reports(py::module_& module) {
   py::class_<Health>(module, "Health", "What one frame tells of how well the robot knows where it is.")
       .def_readonly("verdict", &Health::verdict)
@@ -64,6 +70,9 @@ void bind_reports(py::module_& module) {
       .def_readonly("health", &FrameReport::health)
       .def_property_readonly("verdict", [](const FrameReport& report) { return report.health.verdict; })
       .def_readonly("events", &FrameReport::events)
+      .def_property_readonly(
+          "warnings", [](const FrameReport& report) { return texts_of(report.warnings); },
+          "Faults of wheels, gyroscope and accelerometer found since the last frame, as text; each kind once.")
       .def_readonly("features", &FrameReport::features)
       .def_readonly("matches", &FrameReport::matches)
       .def_readonly("inliers", &FrameReport::inliers)
@@ -305,6 +314,9 @@ void bind_results(SlamClass& type) {
                              "Why the file of a mission's map cannot be read further; None without damage.")
       .def_property_readonly("keyframes", &Slam::keyframes)
       .def_property_readonly("points", &Slam::points)
+      .def_property_readonly(
+          "motion_warnings", [](const Slam& slam) { return texts_of(slam.motion_warnings()); },
+          "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
       .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Frames handed over.")
       .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"));
 }

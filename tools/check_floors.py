@@ -42,7 +42,7 @@ PUBLIC = {
     "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "pose_hint.h": "geometry",
     "rig.h": "geometry",
     "trajectory.h": "geometry", "two_view_failure.h": "geometry",
-    "body_motion.h": "motion",
+    "body_motion.h": "motion", "motion_warning.h": "motion",
     "features.h": "features", "image.h": "features", "image_condition.h": "features",
     "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
     "calibration_file.h": "dataset", "floor_plan.h": "dataset", "recording.h": "dataset",

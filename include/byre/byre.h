@@ -13,6 +13,7 @@
 #include "byre/health.h"
 #include "byre/image.h"
 #include "byre/input_error.h"
+#include "byre/motion_warning.h"
 #include "byre/pose.h"
 #include "byre/pose_hint.h"
 #include "byre/recording.h"

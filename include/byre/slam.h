@@ -7,6 +7,7 @@
 #include "byre/frame_report.h"
 #include "byre/image.h"
 #include "byre/input_error.h"
+#include "byre/motion_warning.h"
 #include "byre/pose.h"
 #include "byre/pose_hint.h"
 #include "byre/rig.h"
@@ -40,8 +41,8 @@ struct SlamOptions {
   // Baseline of a stereo pair in metres, in place of the calibration's length. One beyond 1 m needs to be confirmed so:
   // it is refused otherwise, since extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
-  std::string recording = "live";      // name of the frames in a kept map
-  std::string site;                    // place where the map was made, noted in it unless empty
+  std::string recording = "live";                     // name of the frames in a kept map
+  std::string site;                                   // place where the map was made, noted in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
   // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};
@@ -141,8 +142,10 @@ class Slam {
   int keyframes() const;
   int points() const;
   std::vector<Eigen::Vector3d> point_positions() const;  // places of these points, in the frame of map_from_body
-  int frames() const;                                    // all frames handed over
-  int frames(InputFault fault) const;                    // frames handed over with that fault
+  // Faults of motion inputs so far, each kind once; FrameReport::warnings has those since the frame before.
+  const std::vector<MotionWarning>& motion_warnings() const;
+  int frames() const;                  // all frames handed over
+  int frames(InputFault fault) const;  // frames handed over with that fault
 
  private:
   struct Parts;

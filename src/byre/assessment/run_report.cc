@@ -56,9 +56,9 @@ std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const Fra
   }
   const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) begun += "; refused before: " + refusals;
-  const std::string scale = run.is_metric ? fmt::format("metres, as the wheels tell them (sigma {:.2f} %)",
-                                                        100.0 * run.told.wheels->scale_sigma)
-                                          : "of the map's own; \"byre scale\" makes it metres";
+  const std::string scale =
+      run.is_metric ? fmt::format("metres by the wheels (sigma {:.2f} %)", 100.0 * run.told.metres_sigma.value_or(0.0))
+                    : "of the map's own; \"byre scale\" makes it metres";
   return row("begun", begun) + row("scale", scale);
 }
 

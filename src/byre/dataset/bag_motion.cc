@@ -117,9 +117,15 @@ BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::strin
   if (wants_gyroscope(options)) {
     const Asked asked{options.imu_topic, "name one of them: --imu-topic TOPIC, or leave the gyroscope out"};
     const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
+    std::size_t unmeasured = 0;
     for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, images, motion.warnings)) {
-      motion.samples.rates.push_back(sample.rate);
+      if (sample.rate) motion.samples.rates.push_back(*sample.rate);
+      if (!sample.rate) ++unmeasured;
       if (sample.acceleration) motion.samples.accelerations.push_back(*sample.acceleration);
+    }
+    if (unmeasured > 0) {
+      motion.warnings.push_back(place + ": " + bag.content().topics[topic].name + ": " + std::to_string(unmeasured) +
+                                " messages: " + kRatesNotMeasured);
     }
   }
   return motion;

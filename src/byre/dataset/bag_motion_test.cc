@@ -121,6 +121,21 @@ TEST_F(BagMotions, GiveAccelerationsWhereTheMessageHasSome) {
   EXPECT_EQ(motion.samples.accelerations[0].acceleration, Eigen::Vector3d(0.1, -0.2, 9.8));
 }
 
+TEST_F(BagMotions, LeaveOutRatesThatAreMarkedAsNotMeasured) {
+  std::vector<SceneMessage> messages;
+  for (int i = 0; i < 3; ++i) {
+    ros::Imu message{.header = {ros::to_time(at_ms(1000 + i)), "imu"}};
+    message.angular_velocity_covariance[0] = -1.0;
+    message.linear_acceleration = {0.1, -0.2, 9.8};
+    messages.push_back(scene_message(kImuData, at_ms(1002 + i), message));
+  }
+  const BagMotion motion = read(messages, {.use_gyroscope = true});
+  EXPECT_THAT(motion.samples.rates, IsEmpty());
+  EXPECT_THAT(motion.samples.accelerations, SizeIs(3));
+  ASSERT_THAT(motion.warnings, SizeIs(1));
+  EXPECT_THAT(motion.warnings.front(), AllOf(HasSubstr("walk.mcap: /imu/data: 3 messages"), HasSubstr("not measured")));
+}
+
 TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
   const OpenOptions options{.use_gyroscope = true};
   EXPECT_THAT(read({imu(kImuData, 1005, 0.2)}, options).samples.rates, SizeIs(1));

@@ -113,4 +113,14 @@ FileMotion read_motion(const fs::path& recording, const OpenOptions& options, co
   return motion;
 }
 
+std::string motion_source(const fs::path& recording, const OpenOptions& options, MotionSensor sensor) {
+  const bool is_wheels = sensor == MotionSensor::wheels;
+  if (is_wheels && options.wheels) return options.wheels->string();
+  const auto& topic = is_wheels ? options.wheels_topic : options.imu_topic;
+  if (topic) return recording.string() + ": " + *topic;
+  if (is_wheels) return (recording / "wheel.txt").string();
+  const auto folder = find_mav_folder(recording);
+  return folder ? (*folder / "imu0" / "data.csv").string() : recording.string();
+}
+
 }  // namespace byre

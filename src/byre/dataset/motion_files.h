@@ -2,6 +2,7 @@
 
 #include "byre/body_motion.h"
 #include "byre/dataset/restored_times.h"
+#include "byre/motion_warning.h"
 #include "byre/recording.h"
 
 #include <filesystem>
@@ -29,5 +30,8 @@ FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions
 // Poses of a file of wheels, with continuous times (restore_times).
 Trajectory read_wheel_file(const std::filesystem::path& path, const SensorClock& images,
                            std::vector<std::string>& warnings);
+
+// File or topic that a sensor's samples were read from.
+std::string motion_source(const std::filesystem::path& recording, const OpenOptions& options, MotionSensor sensor);
 
 }  // namespace byre

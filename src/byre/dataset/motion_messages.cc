@@ -46,8 +46,10 @@ std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time) {
   const auto vector_of = [](const ros::Vector3& told) { return Eigen::Vector3d(told.x, told.y, told.z); };
   const Eigen::Vector3d rate = vector_of(message.angular_velocity);
   const Eigen::Vector3d acceleration = vector_of(message.linear_acceleration);
-  if (!rate.allFinite()) return std::nullopt;
-  ImuSample sample{{time, rate}};
+  const bool has_rate = message.angular_velocity_covariance[0] != -1.0;
+  if (has_rate && !rate.allFinite()) return std::nullopt;
+  ImuSample sample{time};
+  if (has_rate) sample.rate = {time, rate};
   const bool has_acceleration = message.linear_acceleration_covariance[0] != -1.0 && acceleration.allFinite();
   if (has_acceleration && !acceleration.isZero(0.0)) sample.acceleration = {time, acceleration};
   return sample;

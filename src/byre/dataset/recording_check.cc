@@ -3,6 +3,7 @@
 #include "byre/features/extract.h"
 #include "byre/features/stereo_fit.h"
 #include "byre/geometry/median.h"
+#include "byre/motion/motion_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -269,6 +270,18 @@ RecordingCheck check_recording(Recording& recording, int samples, const std::fun
   }
   sum.tell(check);
   return check;
+}
+
+std::vector<Finding> motion_findings(const Recording& recording,
+                                     const std::function<std::string(MotionSensor)>& source_of) {
+  std::vector<Finding> findings;
+  const std::vector<Timestamp>& times = recording.times();
+  if (times.empty()) return findings;
+  for (const MotionWarning& warning : check_motion(recording.motion(), times.front(), times.back())) {
+    const std::string what = to_text({warning.sensor, warning.time, warning.what, ""}, source_of(warning.sensor));
+    findings.push_back({false, what, warning.remedy});
+  }
+  return findings;
 }
 
 std::vector<Finding> findings_of(const RecordingCheck& check) {

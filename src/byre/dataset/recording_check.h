@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/image_condition.h"
+#include "byre/motion_warning.h"
 #include "byre/recording.h"
 
 #include <array>
@@ -62,5 +63,10 @@ struct Finding {
 };
 
 std::vector<Finding> findings_of(const RecordingCheck& check);
+
+// Faults of the wheels, gyroscope and accelerometer that were opened with the recording, by their samples alone.
+// source_of: file or topic of a sensor.
+std::vector<Finding> motion_findings(const Recording& recording,
+                                     const std::function<std::string(MotionSensor)>& source_of);
 
 }  // namespace byre

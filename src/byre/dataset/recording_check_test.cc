@@ -51,6 +51,8 @@ class MadeUpRecording : public Recording {
   const Calibration& calibration() const override { return calibration_; }
   const std::vector<Timestamp>& times() const override { return times_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
+  const MotionSamples& motion() const override { return motion_; }
+  void set_motion(MotionSamples samples) { motion_ = std::move(samples); }
   std::optional<ImageFrame> read(int index) override {
     ImageFrame images{times_[static_cast<std::size_t>(index)], texture(index, 0), texture(index, kDisparity)};
     if (change_) change_(images, index);
@@ -59,6 +61,7 @@ class MadeUpRecording : public Recording {
 
  private:
   Change change_;
+  MotionSamples motion_;
   Calibration calibration_;
   std::vector<Timestamp> times_;
   std::vector<std::string> warnings_;
@@ -244,6 +247,27 @@ TEST(RecordingCheck, NamesWhatWasWrongWithTimesAndARemedy) {
   EXPECT_THAT(findings_with({.unstamped = 3}), HasSubstr("3 images have a time stamp of zero or a wrong one"));
   EXPECT_THAT(findings_with({.late = 2}), HasSubstr("2 images were recorded after later ones"));
   EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another one"));
+}
+
+TEST(MotionFindings, NameFileFaultAndRemedy) {
+  MadeUpRecording recording;
+  const auto source_of = [](MotionSensor sensor) {
+    return sensor == MotionSensor::wheels ? "walk/wheel.txt" : "walk/imu.csv";
+  };
+  EXPECT_THAT(motion_findings(recording, source_of), IsEmpty());
+  MotionSamples samples;
+  for (int i = 0; i < 300; ++i) {
+    const double seconds = 0.02 * i;
+    samples.wheels.push_back({from_seconds(seconds), {Eigen::Quaterniond::Identity(), {50.0 * seconds, 0.0, 0.0}}});
+    samples.accelerations.push_back({from_seconds(seconds), {0.0, 0.0, 1.0}});
+  }
+  recording.set_motion(samples);
+  const std::vector<Finding> findings = motion_findings(recording, source_of);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_THAT(findings[0].what, HasSubstr("wheels (walk/wheel.txt), at "));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("centimetres"));
+  EXPECT_THAT(findings[1].what, HasSubstr("accelerometer (walk/imu.csv)"));
+  EXPECT_THAT(findings[1].remedy, HasSubstr("multiples of g"));
 }
 
 }  // namespace

@@ -1,16 +1,20 @@
 #include "byre/localisation/odometry.h"
 
+#include "byre/geometry/finite.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace byre {
 
 void Odometry::correct(const Pose& map_from_body) {
+  if (!is_finite(map_from_body)) return;
   odometry_from_map_ = odometry_from_map_ * map_from_body_ * inverse(map_from_body);
   map_from_body_ = map_from_body;
 }
 
 Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<Offset>& offset) {
+  if (!is_finite(map_from_body)) return {map_from_body_, 0.0};
   const Pose smooth = without_change_of(offset, map_from_body);
   const double metres = (map_from_body_.translation - smooth.translation).norm();
   map_from_body_ = smooth;
@@ -21,6 +25,7 @@ Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<O
 }
 
 void Odometry::go_by(const Pose& last_from_body, const Pose& map_from_body) {
+  if (!is_finite(last_from_body)) return correct(map_from_body);
   correct(map_from_body * inverse(last_from_body));
   follow(map_from_body, {});
 }

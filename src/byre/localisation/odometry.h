@@ -6,6 +6,7 @@
 
 namespace byre {
 
+// A pose that is not finite changes nothing.
 // Where the body is in the map, and the smooth pose beside that: whatever moves the map, or the pose in it, without the
 // robot moving is taken out again. The smooth pose's frame is that of the body at the start.
 class Odometry {

@@ -2,6 +2,8 @@
 
 #include "byre/geometry/geometry_matchers.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -98,6 +100,20 @@ TEST(Odometry, ComparesNoOffsetsAcrossAGap) {
   odometry.follow(at(1.0), ahead_by(0.0));
   odometry.remember_offset({});
   EXPECT_NEAR(odometry.follow(at(1.5), ahead_by(0.3)).metres, 0.5, 1e-12);
+}
+
+TEST(Odometry, StaysFinite) {
+  Odometry odometry = started_at(at(0.0));
+  odometry.follow(at(1.0), {});
+  const Pose none = at(std::numeric_limits<double>::quiet_NaN());
+  odometry.correct(none);
+  odometry.follow(none, {});
+  odometry.go_by(none, none);
+  odometry.go_by(at(std::numeric_limits<double>::infinity()), at(1.0));
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.0), 1e-12, 1e-12));
+  odometry.follow(at(2.0), {});
+  EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(2.0), 1e-12, 1e-12));
+  EXPECT_DOUBLE_EQ(odometry.travelled(), 2.0);
 }
 
 }  // namespace

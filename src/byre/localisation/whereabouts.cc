@@ -48,6 +48,34 @@ Matrix6 Whereabouts::carried_covariance() const {
   return move_covariance(carried_->covariance, inverse(odometry_.map_from_body()) * carried_->map_from_body);
 }
 
+Matrix6 Whereabouts::bridged_odometry_covariance() const {
+  if (!odometry_open_) return Matrix6::Zero();
+  return move_covariance(odometry_open_->covariance,
+                         inverse(odometry_.odometry_from_body()) * odometry_open_->map_from_body);
+}
+
+// The odometry goes by what is measured to a place that was found.
+void Whereabouts::open_odometry(const std::optional<BodyMotion>& led) {
+  if (!led) return;
+  const Matrix6 covariance = bridged_odometry_covariance() + led->covariance;
+  odometry_open_ = {odometry_.odometry_from_body(), covariance};
+}
+
+// Whether the pose goes on from the last one as the camera moved before, within what a body can speed up.
+bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const {
+  constexpr double kMostAcceleration = 15.0;  // m/s^2
+  constexpr double kMostTurning = 30.0;       // radians per second squared
+  constexpr double kShare = 0.05;             // share of the depth of what is seen
+  constexpr double kTurn = 0.1;               // radians
+  if (!has_pose_ || trajectory_.empty()) return false;
+  const double seconds = to_seconds(time - trajectory_.back().time);
+  const auto predicted = motion_.predict_by_velocity(byre::camera_from_world(map, trajectory_.back()), seconds);
+  if (!predicted) return false;
+  const Pose apart = inverse(body_pose(rig, *predicted)) * now;
+  return apart.translation.norm() <= kShare * scene_depth_ + kMostAcceleration * seconds * seconds &&
+         rotation_log(apart.rotation).norm() <= kTurn + kMostTurning * seconds * seconds;
+}
+
 bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const MapView& map) const {
   constexpr Timestamp kLongest = std::chrono::seconds(30);
@@ -60,6 +88,7 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
   std::optional<BodyMotion> told = since_believed_;  // since the last pose that was seen
   if (told && bridge_) told = *bridge_ * *told;
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
+  if (is_continued(frame.time, now, rig, map)) return false;
   const auto is_elsewhere = [&] {
     const Pose led = body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body;
     return is_beyond(told->covariance, inverse(led) * now);
@@ -152,7 +181,10 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   if (on_offline_map_) place_.observe(seen.view != nullptr ? *seen.view : PlaceView{}, !seen.from_nothing);
   is_by_hint_ = is_by_hint_ && !place_.is_accepted();
   if (seen.from_nothing && seen.is_registered) note_end_of_bridge(rig, map);
+  std::optional<BodyMotion> led;
+  if (seen.from_nothing && !trajectory_.empty() && last_told_) led = bridge_ ? *bridge_ * *last_told_ : *last_told_;
   progress.step = move_to(seen, body, rig, map);
+  open_odometry(led);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
   const KeyframeId anchor = anchor_of(track);
   trajectory_.add({seen.frame.time, anchor, track.tracked.camera_from_world * inverse(camera_from_world(map, anchor)),
@@ -173,7 +205,9 @@ void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t su
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
   if (bridge_ && !on_offline_map_ && !trajectory_.empty()) carried_ = {body, covariance_of_bridge()};
+  const std::optional<BodyMotion> led = bridge_;
   bridge_ ? void(odometry_.follow(body, {})) : odometry_.correct(body);
+  open_odometry(led);
   odometry_.remember_offset({});
   for (const KeyframeId id : keyframes) {
     const Timestamp time = online.find_keyframe(id)->frame.time;

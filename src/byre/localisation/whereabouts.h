@@ -60,7 +60,10 @@ class Whereabouts {
   const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
+  // Covariance of the odometry by what bridges to found places left open, beside the drift of what is seen.
+  Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
+  // A pose that goes on from the last one, as seen, is never out of reach.
   // Wheels did not turn as much as they must have to lead there from where the robot was seen last, or led it
   // elsewhere: it is another place that looks alike. After half a minute the robot may have been carried. On an offline
   // map that is asked for three seconds, where it was known well.
@@ -126,6 +129,8 @@ class Whereabouts {
   PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body) const;
   void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+  bool is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const;
+  void open_odometry(const std::optional<BodyMotion>& led);
   bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
   bool leads_well(const BodyMotion& told) const;
   bool is_led_well() const;  // by what was told since the last pose that was believed
@@ -164,6 +169,7 @@ class Whereabouts {
     Matrix6 covariance;
   };
   std::optional<Carried> carried_;
+  std::optional<Carried> odometry_open_;  // at an odometry pose, what bridges left open up to there
   Odometry odometry_;
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // before the pose was lost

@@ -67,6 +67,12 @@ void forget_way(BodyMotion& motion) {
   motion.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
+void forget_turn(BodyMotion& motion) {
+  constexpr double kLeast = 0.02;  // radians
+  const double sigma = rotation_log(motion.last_from_body.rotation).norm() + kLeast;
+  motion.covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+}
+
 // A body that stands does not creep away unnoticed: little is left open, however long it stands.
 BodyMotion at_rest(BodyMotion motion, double seconds) {
   constexpr double kShare = 0.1;   // share of the way that wheels told all the same
@@ -89,25 +95,66 @@ void MotionPrior::begin_with(const KnownMounting& known) {
   if (known.wheels) time_offset_ = known.time_offset;
 }
 
-// However long no frame comes.
+// Old samples are forgotten also while no frame comes.
 void MotionPrior::add(const StampedPose& wheels) {
-  wheels_.add(wheels);
-  wheels_.forget_before(wheels.time - kMostKept);
+  const bool was_ignored = check_.are_wheels_ignored();
+  const auto [is_clock_set_back, beginning, sample] = check_.check(wheels);
+  if (is_clock_set_back || (!was_ignored && check_.are_wheels_ignored())) drop_wheels();
+  if (beginning) wheels_.begin_segment(*beginning);
+  if (!sample) return;
+  wheels_.add(*sample);
+  wheels_.forget_before(sample->time - kMostKept);
 }
 
 void MotionPrior::add(const BaseVelocity& wheels) {
+  const bool was_ignored = check_.are_wheels_ignored();
+  const StampCheck::Order order = check_.check(wheels);
+  if (order == StampCheck::Order::restarted || (!was_ignored && check_.are_wheels_ignored())) drop_wheels();
+  if (order == StampCheck::Order::dropped) return;
   wheels_.add(wheels);
   wheels_.forget_before(wheels.time - kMostKept);
 }
 
+void MotionPrior::add(const Acceleration& acceleration) {
+  const StampCheck::Order order = check_.check(acceleration);
+  if (order != StampCheck::Order::dropped) standing_.add(acceleration);
+}
+
+// What the samples gave is forgotten with them, but for what is known from a drive before.
+void MotionPrior::drop_wheels() {
+  wheels_ = {};
+  if (check_.are_wheels_ignored()) {
+    mounting_.reset();
+    presumed_.reset();
+  }
+}
+
+void MotionPrior::drop_gyroscope() {
+  rates_ = {};
+  gyroscope_.reset();
+  presumed_gyroscope_.reset();
+  measured_up_.reset();
+  for (SeenMotion& motion : seen_) motion.gyroscope_turn.reset();
+}
+
 void MotionPrior::add(const AngularRate& rate) {
+  const StampCheck::Order order = check_.check(rate);
+  if (order == StampCheck::Order::dropped) return;
+  if (order == StampCheck::Order::restarted) rates_ = {};
   rates_.add(rate);
   standing_.add(rate);
   rates_.forget_before(rate.time - kMostKept);
 }
 
 void MotionPrior::presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscope) {
-  constexpr double kSigma = 0.03;  // radians
+  constexpr double kSigma = 0.03;   // radians
+  constexpr double kMostOff = 0.1;  // share of the length 1
+  if (!(std::abs(body_from_gyroscope.norm() - 1.0) < kMostOff)) {
+    return warn({MotionSensor::gyroscope,
+                 {},
+                 "the rotation of its mounting is not finite or not of length 1; it is left out",
+                 "give a unit quaternion"});
+  }
   presumed_gyroscope_ = GyroscopeMounting{.body_from_gyroscope = body_from_gyroscope.normalized(),
                                           .covariance = kSigma * kSigma * Eigen::Matrix3d::Identity()};
 }
@@ -161,14 +208,33 @@ std::optional<BodyTilt> MotionPrior::tilt(Timestamp time) const {
   return standing_.tilt(time, standing_by_wheels(time), gyroscope_);
 }
 
+// Whether the gyroscope measures the turns of the body: as they are seen, else as wheels measure them.
+void MotionPrior::compare_turns(Timestamp time, const std::optional<SeenMotion>& seen) {
+  MotionCheck::Turn turn{time, Eigen::Vector3d::Zero(), {}, seen.has_value()};
+  const Timestamp begin = seen ? seen->earlier : turns_compared_.value_or(time);
+  if (!turns_compared_ || seen) turns_compared_ = time;
+  if (time - begin < kStride) return;
+  turns_compared_ = time;
+  if (seen) {
+    turn.reference = rotation_log(seen->body.rotation);
+  } else {
+    const auto base = base_between(begin, time);
+    if (!base) return;
+    turn.reference = rotation_log(base->rotation);
+  }
+  turn.measured = rates_.integral(begin, time);
+  if (check_.note(turn)) drop_gyroscope();
+}
+
 void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
-  if (is_empty()) return;
+  if (is_empty() && !check_.is_gyroscope_silent()) return;
   watch_standing(time, odometry_from_body);
   unseen_.note(time, odometry_from_body.has_value());
   forget_old_samples();
   if (!odometry_from_body) {
     begin_.reset();
     last_.reset();
+    compare_turns(time, {});
     return;
   }
   const StampedPose now{time, *odometry_from_body};
@@ -183,6 +249,7 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
   if (time - begin_->time < kStride) return;
   const SeenMotion motion{begin_->time, time, inverse(begin_->world_from_body) * now.world_from_body};
   begin_ = now;
+  compare_turns(time, motion);
   watch_for_slip(motion);
   seen_.push_back(motion);
   if (seen_.size() > kMostMotions) seen_.pop_front();
@@ -274,6 +341,8 @@ void MotionPrior::look_for_wheel_mounting() {
   }
   const auto found = known_.wheels ? find_wheel_mounting(all, known_.wheels) : alone;
   if (found) mounting_ = found;
+  if (!knows_metres_ || !alone || seen_.empty()) return;
+  if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma, seen_.back().later)) drop_wheels();
 }
 
 // By the first seconds, and anew with each motion until it is found.
@@ -379,6 +448,10 @@ std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, T
     base.is_way_known = !is_slip(base.motion.rotation, base_turn, to_seconds(later - earlier));
     base.motion.rotation = base_turn;
   }
+  if (is_jerk(earlier, later, *told)) {
+    base.is_way_known = false;
+    base.is_turn_known = turn.has_value();
+  }
   return base;
 }
 
@@ -392,6 +465,49 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   BodyMotion motion{body, covariance_of(body, base->motion, *mounting)};
   if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
+  if (!base->is_turn_known) forget_turn(motion);
+  return motion;
+}
+
+// Whether the base moves otherwise than in the span before by more than a body can: wheels spin, or err.
+bool MotionPrior::is_jerk(Timestamp earlier, Timestamp later, const Pose& base) const {
+  constexpr double kMostAcceleration = 15.0;  // m/s^2
+  constexpr double kLeast = 0.02;             // metres: ticks of encoders
+  constexpr double kMostTurning = 30.0;       // radians per second squared
+  constexpr double kLeastTurn = 0.05;         // radians
+  const Timestamp span = later - earlier;
+  if (span > kMaxFrameGap) return false;
+  const Timestamp offset = from_seconds(time_offset());
+  if (wheels_.has_jump(earlier + offset - span, earlier + offset)) return true;
+  const auto before = base_between(earlier - span, earlier);
+  if (!before) return false;
+  const double squared = to_seconds(span) * to_seconds(span);
+  return (base.translation - before->translation).norm() > kLeast + kMostAcceleration * squared ||
+         angle_between(base.rotation, before->rotation) > kLeastTurn + kMostTurning * squared;
+}
+
+// Whether a turn by the gyroscope is another one than that of the wheels by more than a wheel that spins: one of both
+// is faulty.
+bool MotionPrior::contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const {
+  constexpr double kMostRate = 3.0;   // radians per second
+  constexpr double kLeastTurn = 0.1;  // radians
+  const auto base = base_between(earlier, later);
+  if (!base) return false;
+  const double apart = std::abs(rotation_log(turn).norm() - rotation_log(base->rotation).norm());
+  return apart > kLeastTurn + kMostRate * to_seconds(later - earlier);
+}
+
+// Over a jump of the wheels' pose the body is taken to move on as before, which may be wrong by all of it.
+std::optional<BodyMotion> MotionPrior::across_jump(Timestamp earlier, Timestamp later,
+                                                   const std::optional<Eigen::Quaterniond>& turn) const {
+  const Timestamp offset = from_seconds(time_offset()), span = later - earlier;
+  if (span > kMaxFrameGap || !wheels_.has_jump(earlier + offset, later + offset)) return {};
+  auto motion = by_wheels(earlier - span, earlier, {});
+  if (!motion) motion = by_wheels(earlier - 2 * span, earlier - span, {});  // the border is right after the frame
+  if (!motion) return {};
+  forget_way(*motion);
+  forget_turn(*motion);
+  if (turn) motion->last_from_body.rotation = *turn;
   return motion;
 }
 
@@ -410,8 +526,15 @@ std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp lat
 
 std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp later) const {
   constexpr double kLeastTurn = 1e-4;  // radians
-  const auto turn = turn_by_gyroscope(earlier, later);
+  auto turn = turn_by_gyroscope(earlier, later);
+  const bool is_contradicted = turn && !is_slipping_ && contradicts_wheels(earlier, later, *turn);
+  if (is_contradicted) turn.reset();
   auto motion = is_slipping_ ? std::nullopt : by_wheels(earlier, later, turn);
+  if (motion && is_contradicted) {
+    forget_way(*motion);
+    forget_turn(*motion);
+  }
+  if (!motion && !is_slipping_) motion = across_jump(earlier, later, turn);
   if (!turn) return motion;
   if (motion && standing_by_wheels(later)) return at_rest(*motion, to_seconds(later - earlier));
   if (!motion && (motion = by_sight(earlier, later))) motion->last_from_body.rotation = *turn;

@@ -3,6 +3,7 @@
 #include "byre/body_motion.h"
 #include "byre/motion/gyroscope_mounting.h"
 #include "byre/motion/known_mounting.h"
+#include "byre/motion/motion_check.h"
 #include "byre/motion/rate_track.h"
 #include "byre/motion/seen_motion.h"
 #include "byre/motion/standing.h"
@@ -23,6 +24,10 @@ namespace byre {
 // presumed. Where wheels do not move as is seen they are left out, until they do again. Call it from one thread.
 class MotionPrior {
  public:
+  explicit MotionPrior(const MotionLimits& limits = {}) : check_(limits) {}
+
+  // Lengths of the map are metres, known without wheels: a wheel scale that contradicts them is reported.
+  void expect_metres() { knows_metres_ = true; }
   // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
   // it, it is dropped. Call it before anything is told.
   void begin_with(const KnownMounting& known);
@@ -45,10 +50,17 @@ class MotionPrior {
     tells_before_sight_ = true;
   }
 
+  // Samples are checked (MotionCheck); those that are faulty are left out.
   void add(const StampedPose& wheels);
   void add(const BaseVelocity& wheels);
   void add(const AngularRate& rate);
-  void add(const Acceleration& acceleration) { standing_.add(acceleration); }
+  void add(const Acceleration& acceleration);
+  // A motion of the body given by the caller, seconds after the frame before; empty where it is faulty.
+  std::optional<BodyMotion> checked(const BodyMotion& motion, Timestamp time, double seconds) {
+    return check_.check(motion, time, seconds);
+  }
+  const std::vector<MotionWarning>& warnings() const { return check_.warnings(); }  // all so far
+  void warn(const MotionWarning& warning) { check_.warn(warning); }
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
 
   // A frame's smooth pose, in the map's lengths, as it was seen; empty where nothing was.
@@ -98,6 +110,9 @@ class MotionPrior {
   static constexpr Timestamp kUsuallyKept = std::chrono::minutes(2);
   static constexpr Timestamp kMostKept = std::chrono::minutes(30);  // while the mounting is not known, too
 
+  void compare_turns(Timestamp time, const std::optional<SeenMotion>& seen);
+  void drop_wheels();
+  void drop_gyroscope();
   void forget_old_samples();
   void watch_standing(Timestamp time, const std::optional<Pose>& seen);
   std::optional<bool> do_wheels_stand(Timestamp time) const;
@@ -114,17 +129,25 @@ class MotionPrior {
   std::vector<MotionPair> pairs() const;
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
   struct ToldBase {
-    Pose motion;               // earlier_from_later, metres
-    bool is_way_known = true;  // wheels turned as the gyroscope says, or there is none
+    Pose motion;                // earlier_from_later, metres
+    bool is_way_known = true;   // wheels turned as the gyroscope measures, or there is none, and without a jerk
+    bool is_turn_known = true;  // by the gyroscope, or by wheels without a jerk
   };
   std::optional<ToldBase> told_base(Timestamp earlier, Timestamp later,
                                     const std::optional<Eigen::Quaterniond>& turn) const;
   UnseenWay::Tell tell_base() const;
   std::optional<BodyMotion> by_wheels(Timestamp earlier, Timestamp later,
                                       const std::optional<Eigen::Quaterniond>& turn) const;
+  bool contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const;
+  std::optional<BodyMotion> across_jump(Timestamp earlier, Timestamp later,
+                                        const std::optional<Eigen::Quaterniond>& turn) const;
+  bool is_jerk(Timestamp earlier, Timestamp later, const Pose& base) const;
   std::optional<BodyMotion> by_sight(Timestamp earlier, Timestamp later) const;
   std::optional<Eigen::Quaterniond> turn_by_gyroscope(Timestamp earlier, Timestamp later) const;
 
+  MotionCheck check_;
+  bool knows_metres_ = false;
+  std::optional<Timestamp> turns_compared_;  // until when wheels and gyroscope were compared while nothing is seen
   WheelTrack wheels_;
   RateTrack rates_;
   Standing standing_;

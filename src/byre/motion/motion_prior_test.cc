@@ -2,6 +2,7 @@
 
 #include "byre/motion/drive_scene.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -404,7 +405,14 @@ struct Stop {
 MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {
   MotionPrior prior;
   std::mt19937 random(5);
-  const auto time_driven = [&](double t) { return std::min(t, stop.at); };
+  // It brakes evenly over half a second. speed: as a share of the one before.
+  constexpr double kBraking = 0.5;  // seconds
+  const auto braked = [&](double t) { return std::clamp(t - stop.at + 0.5 * kBraking, 0.0, kBraking); };
+  const auto time_driven = [&](double t) {
+    const double u = braked(t);
+    return std::min(t, stop.at - 0.5 * kBraking) + u - u * u / (2.0 * kBraking);
+  };
+  const auto speed = [&](double t) { return 1.0 - braked(t) / kBraking; };
   const Pose map_from_first = inverse(drive.base_from_body);
   for (int step = 0; step * 0.01 < end; ++step) {
     const double t = step * 0.01, driven = time_driven(t);
@@ -412,8 +420,7 @@ MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end)
     wheels.time = from_seconds(t);
     if (t > stop.at && !stop.is_told_of_stop) wheels.world_from_body.translation.x() += 0.05 * (t - stop.at);
     if (step % 2 == 0) prior.add(wheels);
-    Eigen::Vector3d rate = kBodyFromGyroscope.conjugate() * rate_of_body(drive, driven) + kBias;
-    if (t >= stop.at) rate = kBias;
+    Eigen::Vector3d rate = speed(t) * (kBodyFromGyroscope.conjugate() * rate_of_body(drive, driven)) + kBias;
     if (t >= stop.dark) rate += Eigen::Vector3d::Constant(stop.drift);
     prior.add(AngularRate{from_seconds(t), rate});
     const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
@@ -465,6 +472,105 @@ TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
   EXPECT_FALSE(after.are_wheels_slipping());
   EXPECT_EQ(after.slips(), 1);
   EXPECT_NEAR(after.wheels()->metres_per_unit, 1.0, 0.01);
+}
+
+// Wheels whose pose begins at the origin again at each of some times, seen all the time or dark from 60 s on.
+MotionPrior followed_through_resets(const std::vector<double>& resets, double end) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  MotionPrior prior;
+  std::mt19937 random(5);
+  for (int step = 0; step * 0.01 < end; ++step) {
+    const double t = step * 0.01;
+    Pose origin;
+    for (const double reset : resets) {
+      if (t >= reset) origin = Drive::world_from_base(reset);
+    }
+    if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), inverse(origin) * Drive::world_from_base(t)});
+    if (step % 5 == 0) prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
+  }
+  return prior;
+}
+
+TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheSpeedBefore) {
+  const Drive drive{.base_from_body = camera_on_base()};
+  const MotionPrior prior = followed_through_resets({20.0, 65.02}, 72.0);
+  EXPECT_EQ(prior.slips(), 0) << "a jump is no motion";
+  const auto across = prior.between(from_seconds(65.0), from_seconds(65.05));
+  ASSERT_TRUE(across);
+  const Pose truth = true_motion(drive, 65.0, 65.05);
+  EXPECT_LT((across->last_from_body.translation - truth.translation).norm(), 0.005);
+  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "it may be wrong by all of it";
+  const BodyMotion all = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(all.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.transpose() * all.covariance.ldlt().solve(error), 12.6) << "within 95 %";
+  ASSERT_EQ(prior.warnings().size(), 1U) << "one for both jumps";
+}
+
+// Steps of the body as measured never exceed what their covariance allows, whatever wheels report.
+TEST(MotionPrior, CoversEachStepOfFaultyWheelsByItsCovariance) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  std::mt19937 chance(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double size : {0.02, 0.3, 3.0, 300.0, 1e200}) {
+    MotionPrior prior;
+    std::mt19937 random(5);
+    for (int step = 0; step < 7000; ++step) {
+      const double t = step * 0.01;
+      Pose wheels = Drive::world_from_base(t);
+      if (t > 60.0 && uniform(chance) > 0.6)
+        wheels.translation += size * Eigen::Vector3d(uniform(chance), uniform(chance), 0.0);
+      if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), wheels});
+      if (step % 5 != 0) continue;
+      prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
+      if (t < 60.0) continue;
+      const auto motion = prior.between(from_seconds(t - 0.05), from_seconds(t));
+      if (!motion) continue;
+      ASSERT_TRUE(is_sound(*motion)) << size;
+      const Pose truth = true_motion(drive, t - 0.05, t);
+      const double error = (motion->last_from_body.translation - truth.translation).norm();
+      EXPECT_LT(error, 0.12 + 2.8 * std::sqrt(motion->covariance(0, 0))) << size << " at " << t;
+    }
+  }
+}
+
+TEST(MotionPrior, IgnoresAGyroscopeInDegreesPerSecond) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  MotionLimits limits;
+  limits.max_turn_rate = 100.0;
+  MotionPrior prior(limits);
+  std::mt19937 random(5);
+  for (int step = 0; step < 3000; ++step) {
+    const double t = step * 0.01;
+    if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), Drive::world_from_base(t)});
+    prior.add(
+        AngularRate{from_seconds(t), 57.2958 * (kBodyFromGyroscope.conjugate() * rate_of_body(drive, t) + kBias)});
+    if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
+  }
+  EXPECT_FALSE(prior.gyroscope());
+  EXPECT_EQ(prior.warnings().size(), 1U);
+  EXPECT_TRUE(prior.wheels());
+}
+
+TEST(MotionPrior, ReportsWheelsThatContradictKnownMetres) {
+  struct Case {
+    double metres_per_unit;
+    bool is_reported;
+    bool is_ignored;
+  };
+  for (const auto& [metres_per_unit, is_reported, is_ignored] :
+       {Case{1.02, false, false}, Case{1.3, true, false}, Case{0.01, true, true}}) {
+    const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = metres_per_unit, .noise = 0.0002};
+    MotionPrior prior;
+    prior.expect_metres();
+    std::mt19937 random(5);
+    for (int step = 0; step < 3000; ++step) {
+      const double t = step * 0.01;
+      if (step % 2 == 0) prior.add(drive.wheels(t));
+      if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
+    }
+    EXPECT_EQ(!prior.warnings().empty(), is_reported) << metres_per_unit;
+    EXPECT_EQ(!prior.wheels(), is_ignored) << metres_per_unit;
+  }
 }
 
 }  // namespace

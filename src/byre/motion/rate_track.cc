@@ -21,24 +21,39 @@ void RateTrack::forget_before(Timestamp time) {
   while (!samples_.empty() && samples_.front().time < time) samples_.pop_front();
 }
 
-// Between two samples the rate is the mean of both.
-std::optional<Eigen::Quaterniond> RateTrack::between(Timestamp earlier, Timestamp later,
-                                                     const Eigen::Vector3d& bias) const {
+// Hands out rates and the seconds that each lasts: between two samples the mean of both. False where not all is
+// covered.
+template <typename Add>
+bool RateTrack::integrate(Timestamp earlier, Timestamp later, const Add& add) const {
   auto next = std::upper_bound(samples_.begin(), samples_.end(), earlier,
                                [](Timestamp t, const AngularRate& sample) { return t < sample.time; });
-  if (next == samples_.begin()) return {};
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  if (next == samples_.begin()) return false;
   Timestamp now = earlier;
   for (auto sample = std::prev(next); now < later; sample = next, ++next) {
     const bool is_last = next == samples_.end();
-    if ((is_last ? later : next->time) - sample->time > kMaxRateGap) return {};
+    if ((is_last ? later : next->time) - sample->time > kMaxRateGap) return false;
     const Timestamp until = is_last ? later : std::min(later, next->time);
     const Eigen::Vector3d rate = is_last ? sample->rate : (0.5 * (sample->rate + next->rate)).eval();
-    turn = turn * rotation_exp((rate - bias) * to_seconds(until - now));
+    add(rate, to_seconds(until - now));
     now = until;
     if (is_last) break;
   }
-  return turn.normalized();
+  return true;
+}
+
+std::optional<Eigen::Quaterniond> RateTrack::between(Timestamp earlier, Timestamp later,
+                                                     const Eigen::Vector3d& bias) const {
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  const auto add = [&](const Eigen::Vector3d& rate, double seconds) {
+    turn = turn * rotation_exp((rate - bias) * seconds);
+  };
+  return integrate(earlier, later, add) ? std::optional(turn.normalized()) : std::nullopt;
+}
+
+std::optional<Eigen::Vector3d> RateTrack::integral(Timestamp earlier, Timestamp later) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const auto add = [&](const Eigen::Vector3d& rate, double seconds) { sum += rate * seconds; };
+  return integrate(earlier, later, add) ? std::optional(sum) : std::nullopt;
 }
 
 }  // namespace byre

@@ -20,7 +20,13 @@ class RateTrack {
   // covered.
   std::optional<Eigen::Quaterniond> between(Timestamp earlier, Timestamp later, const Eigen::Vector3d& bias) const;
 
+  // The rates integrated axis by axis, radians, beyond half a turn too; empty where between() is.
+  std::optional<Eigen::Vector3d> integral(Timestamp earlier, Timestamp later) const;
+
  private:
+  template <typename Add>
+  bool integrate(Timestamp earlier, Timestamp later, const Add& add) const;
+
   std::deque<AngularRate> samples_;
 };
 

@@ -15,6 +15,7 @@ constexpr double kUsualGravity = 9.81;  // m/s^2
 
 template <typename Sample>
 void keep(const Sample& sample, std::deque<Sample>& samples) {
+  if (!samples.empty() && sample.time + kKept < samples.back().time) samples.clear();  // the clock was set back
   if (!samples.empty() && sample.time <= samples.back().time) return;
   samples.push_back(sample);
   while (samples.front().time + kKept < sample.time) samples.pop_front();

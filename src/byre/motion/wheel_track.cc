@@ -36,6 +36,13 @@ void WheelTrack::add(const StampedPose& sample) {
   samples_.push_back(sample);
 }
 
+void WheelTrack::begin_segment(const StampedPose& first) {
+  if (!samples_.empty() && first.time <= samples_.back().time) return;
+  if (!samples_.empty()) breaks_.push_back(first.time);
+  velocity_.reset();
+  samples_.push_back(first);
+}
+
 void WheelTrack::add(const BaseVelocity& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   Pose base = samples_.empty() ? Pose{} : samples_.back().world_from_body;
@@ -56,6 +63,14 @@ bool WheelTrack::is_broken(Timestamp earlier, Timestamp later) const {
   return broken == samples_.begin() || later > std::prev(broken)->time;
 }
 
+bool WheelTrack::has_jump(Timestamp earlier, Timestamp later) const {
+  constexpr Timestamp kLongest = 100ms;
+  if (!is_broken(earlier, later)) return false;
+  const auto next = std::ranges::upper_bound(breaks_, earlier);
+  const auto broken = std::ranges::lower_bound(samples_, *next, {}, &StampedPose::time);
+  return broken != samples_.end() && broken != samples_.begin() && broken->time - std::prev(broken)->time <= kLongest;
+}
+
 void WheelTrack::forget_before(Timestamp time) {
   if (samples_.empty() || samples_.front().time + kKeptLonger >= time) return;
   samples_.erase(samples_.begin(), std::ranges::lower_bound(samples_, time, {}, &StampedPose::time));
@@ -68,7 +83,8 @@ std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {
   if (velocity_ && time <= last.time + kMaxAhead) {
     return last.world_from_body * arc_of(*velocity_, to_seconds(time - last.time));
   }
-  if (time > last.time + kMaxAhead || last.time - before.time > kMaxWheelGap) return {};
+  const bool is_segment_open = !breaks_.empty() && breaks_.back() == last.time;  // one pose has no motion
+  if (is_segment_open || time > last.time + kMaxAhead || last.time - before.time > kMaxWheelGap) return {};
   const double fraction = to_seconds(time - before.time) / to_seconds(last.time - before.time);
   return interpolate(before.world_from_body, last.world_from_body, fraction);
 }

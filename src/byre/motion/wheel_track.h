@@ -13,6 +13,8 @@ class WheelTrack {
  public:
   // Samples that are not later than the one before are left out.
   void add(const StampedPose& sample);
+  // The first pose of a new segment of odometry: no motion leads to it from the samples before.
+  void begin_segment(const StampedPose& first);
   // The base moves on by the mean of two velocities, along an arc. Nobody knows how fast it was while none came for
   // three tenths of a second: no motion is told across such a gap.
   void add(const BaseVelocity& sample);
@@ -24,8 +26,10 @@ class WheelTrack {
   // The base at a time between two samples at most half a second apart, or up to a quarter of a second after the last
   // one, by which the last motion is taken to go on.
   std::optional<Pose> pose_at(Timestamp time) const;
-  // The base's motion, earlier_from_later; empty where either end is not known.
+  // The base's motion, earlier_from_later; empty where either end is not known, or lies in another segment.
   std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
+  // A segment ends between the two, and the next one begins within a tenth of a second.
+  bool has_jump(Timestamp earlier, Timestamp later) const;
 
   // How far the base went, and turned, to and fro counted; empty unless it was told all along.
   struct Distance {

@@ -87,12 +87,22 @@ void MotionInput::tell(const StampClock& clock, SlamRunner& runner) {
     runner.tell_wheels(velocity);
   }
   for (const ImuSample& sample : imu_) {
-    const Timestamp time = clock.without_jumps(sample.rate.time);
-    runner.tell_gyroscope({time, sample.rate.rate});
+    const Timestamp time = clock.without_jumps(sample.time);
+    if (sample.rate) runner.tell_gyroscope({time, sample.rate->rate});
+    if (!sample.rate) are_rates_unmeasured_ = true;
     if (sample.acceleration) runner.tell_accelerometer({time, sample.acceleration->acceleration});
   }
   samples_.clear();
   imu_.clear();
+}
+
+std::string MotionInput::news() {
+  if (!are_rates_unmeasured_ || std::exchange(is_reported_, true)) return "";
+  return config_.topic(config_.gyroscope) + ": " + kRatesNotMeasured;
+}
+
+std::string MotionInput::source_of(MotionSensor sensor) const {
+  return config_.topic(sensor == MotionSensor::wheels ? config_.wheels : config_.gyroscope);
 }
 
 }  // namespace byre

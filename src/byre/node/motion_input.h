@@ -21,6 +21,10 @@ class MotionInput {
   void take();
   // Precondition: the runner is running. clock: of the images.
   void tell(const StampClock& clock, SlamRunner& runner);
+  // A fault of a topic, once; empty: nothing new.
+  std::string news();
+  // Topic of a sensor.
+  std::string source_of(MotionSensor sensor) const;
 
  private:
   Subscriber subscribe(const std::string& topic, const MessageType& type);
@@ -35,6 +39,8 @@ class MotionInput {
   std::string wheels_type_;
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
+  bool are_rates_unmeasured_ = false;  // by a message
+  bool is_reported_ = false;
   std::deque<WheelSample> samples_;  // the last seconds of wheels, by their own stamps
   std::deque<ImuSample> imu_;        // the last seconds, by their own stamps
 };

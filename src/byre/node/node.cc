@@ -216,6 +216,7 @@ void Node::process(const Pairs::Pair& pair) {
     if (right) images.right = right->view();
     motion_.take();
     motion_.tell(clock_, runner_);
+    if (const std::string news = motion_.news(); !news.empty()) log_(LogLevel::warning, news);
     const FrameReport report = runner_.process(images);
     outputs_.tell_images(pair.stamp, pair.left.bytes(),
                          pair.right ? pair.right->bytes() : std::span<const std::byte>());
@@ -259,6 +260,9 @@ void Node::note_events(const FrameReport& report) {
   const bool was_damaged = last_report_ && last_report_->health.doubt == Doubt::map_damaged;
   if (report.health.doubt == Doubt::map_damaged && !was_damaged) {
     log_(LogLevel::error, runner_.map_damage().value_or("the map file is damaged"));
+  }
+  for (const MotionWarning& warning : report.warnings) {
+    log_(LogLevel::warning, to_text(warning, motion_.source_of(warning.sensor)));
   }
   if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
   const std::string doubt =

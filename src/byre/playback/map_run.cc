@@ -87,6 +87,7 @@ void take_over_result(Engine& engine, MapRun& run) {
   run.calibration = engine.calibration();
   run.row_error = engine.row_error().pixels();
   run.told = told_motion(engine.prior(), engine.session());
+  run.told.metres_sigma = engine.wheel_scale_sigma();
   run.is_metric = engine.is_metric();
   run.map = engine.take_kept_map();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
@@ -141,6 +142,11 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     }
   }
   note_jobs(engine, run, noted_jobs);
+  run.motion_warnings = engine.warnings();
+  if (!run.frames.empty()) {
+    const auto clocks = clock_warnings(frames.motion(), run.frames.front().time, run.frames.back().time);
+    run.motion_warnings.insert(run.motion_warnings.end(), clocks.begin(), clocks.end());
+  }
   take_over_result(engine, run);
   if (const InputError* const damage = engine.map_damage()) run.map_damage = *damage;
   run.wall_seconds = watch.seconds();

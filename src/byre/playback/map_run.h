@@ -27,14 +27,15 @@ struct ToldMotion {
   bool is_told = false;  // by wheels or a gyroscope
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;           // seconds that wheels stamp later than the camera
-  int slips = 0;                      // times that wheels were left out
-  bool is_mounted_otherwise = false;  // wheels, than when the map was made
-  KnownMounting to_keep;              // for the next drive
-  int stops = 0;                      // times that the body stood still, as accelerations show too
-  double stood_s = 0.0;               // seconds that it did
-  int tilts_held = 0;                 // bridged frames whose roll and pitch accelerations held
-  int led_afterwards = 0;             // final poses of frames that had none, where wheels led from those that had
+  double time_offset = 0.0;            // seconds that wheels stamp later than the camera
+  int slips = 0;                       // times that wheels were left out
+  bool is_mounted_otherwise = false;   // wheels, than when the map was made
+  KnownMounting to_keep;               // for the next drive
+  int stops = 0;                       // times that the body stood still, as accelerations show too
+  double stood_s = 0.0;                // seconds that it did
+  int tilts_held = 0;                  // bridged frames whose roll and pitch accelerations held
+  std::optional<double> metres_sigma;  // share, of a map whose metres are by wheels alone
+  int led_afterwards = 0;              // final poses of frames that had none, where wheels led from those that had
 };
 
 struct MapRun {
@@ -53,9 +54,10 @@ struct MapRun {
   bool is_metric = true;  // lengths of the map and of final poses are metres
   // Damage of the offline map's file, at which the mission was ended, see Engine::map_damage.
   std::optional<InputError> map_damage;
-  std::vector<std::string> warnings;  // warnings of the recording
-  std::vector<double> lateness;       // seconds by which late frames were fed too late, in a live run
-  double wall_seconds = 0.0;          // wall time of the whole run
+  std::vector<std::string> warnings;           // warnings of the recording
+  std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer
+  std::vector<double> lateness;                // seconds by which late frames were fed too late, in a live run
+  double wall_seconds = 0.0;                   // wall time of the whole run
 };
 
 // What can be seen of a run right after a frame: valid for the time of the call.

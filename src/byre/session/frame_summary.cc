@@ -1,5 +1,6 @@
 #include "byre/session/frame_summary.h"
 
+#include "byre/geometry/finite.h"
 #include "byre/slam/localisation.h"
 
 #include <algorithm>
@@ -104,8 +105,33 @@ FrameReport described(FrameReport report, const FrameSummary& summary) {
   report.inliers = static_cast<int>(tracked.features.size());
   report.covariance += body_covariance(covariance_in_map(tracked, summary.mission), summary.rig);
   report.odometry_covariance =
-      odometry_covariance(body_covariance(tracked.match_covariance, summary.rig), odometry.travelled());
+      odometry_covariance(body_covariance(tracked.match_covariance, summary.rig), odometry.travelled()) +
+      summary.whereabouts.bridged_odometry_covariance();
   return report;
+}
+
+void withhold_non_finite(FrameReport& report) {
+  Health& health = report.health;
+  if ((report.map_from_body && !is_finite(*report.map_from_body)) || !report.covariance.allFinite()) {
+    report.map_from_body.reset();
+    report.covariance.setZero();
+    health.verdict = Verdict::untrusted;
+    health.doubt = Doubt::no_pose;
+  }
+  if ((report.odometry_from_body && !is_finite(*report.odometry_from_body)) ||
+      !report.odometry_covariance.allFinite()) {
+    report.odometry_from_body.reset();
+    report.odometry_covariance.setZero();
+  }
+  if (report.correction && !is_finite(*report.correction)) report.correction.reset();
+  if (health.agreement && !std::isfinite(health.agreement->translation + health.agreement->rotation)) {
+    health.agreement.reset();
+  }
+  for (double* const number : {&health.inlier_share, &health.spread, &health.position_sigma, &health.rotation_sigma,
+                               &health.distance_since_offline, &health.seconds_since_offline, &health.focal_error,
+                               &health.hidden_share, &health.hidden_share_right}) {
+    if (!std::isfinite(*number)) *number = 0.0;
+  }
 }
 
 Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthEvidence& evidence,

@@ -43,6 +43,8 @@ FrameReport described(FrameReport report, const FrameSummary& summary);
 
 // The evidence of the frame alone.
 HealthEvidence evidence_of(const FrameSummary& summary);
+// Numbers that are not finite leave no report: such a pose is withheld, and is then not trusted.
+void withhold_non_finite(FrameReport& report);
 
 // How far the pose may be relied on. covariance: of the pose in the map.
 Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthEvidence& evidence,

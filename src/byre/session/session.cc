@@ -1,5 +1,6 @@
 #include "byre/session/session.h"
 
+#include "byre/geometry/finite.h"
 #include "byre/slam/body_pose.h"
 #include "byre/workers/stopwatch.h"
 
@@ -116,6 +117,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   report.state = state_;
   const HealthEvidence evidence = doubts_.held(rectified.time, evidence_of(summary));
   report.health = health_of(summary, report.covariance, evidence, options_.health);
+  withhold_non_finite(report);
   note_quality(report);
   if (trusted_place_.is_news(report.refused_place, report.health.verdict)) {
     report.events.push_back(SessionEvent::place_refused);
@@ -232,6 +234,10 @@ Session::Located Session::locate(const InputFrame& input) {
     located.track =
         tracker_.track(frame, scene, {last.time, camera_from_world(map(), last), last.keyframe}, whereabouts_.motion());
   }
+  const auto drop_non_finite = [&] {
+    if (located.track && !is_finite(located.track->tracked.camera_from_world)) located.track.reset();
+  };
+  drop_non_finite();
   if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
   const auto is_out_of_reach = [&] { return whereabouts_.is_out_of_reach(frame, *located.track, rig_, map()); };
   const bool is_sure = whereabouts_.place().is_believed();
@@ -242,6 +248,7 @@ Session::Located Session::locate(const InputFrame& input) {
   if (!located.track && can_search) {
     Tracker::Find find = tracker_.find(frame, scene);
     located.track = std::move(find.track);
+    drop_non_finite();
     if (located.track && !hint_.get() && is_out_of_reach()) located.track.reset();
     located.refused = find.refused;
     located.from_nothing = located.track.has_value();

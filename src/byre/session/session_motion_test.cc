@@ -270,5 +270,38 @@ TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
   }
 }
 
+// A motion that is wrong by metres from the 20th frame on, in full light.
+TEST(ToldMotion, DoesNotLoseAPoseThatIsSeen) {
+  const SimulatedMission mission = lap();
+  for (const bool has_vocabulary : {true, false}) {
+    for (const double metres : {-2.7, 1.0, 30.0}) {
+      Session session(mission.rig, {}, Lanes(make_inline_executor()),
+                      has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
+      for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+        std::optional<BodyMotion> motion;
+        if (i > 0) {
+          Pose step = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+          if (i >= kDark) step.translation.x() += metres;
+          motion = step;
+        }
+        const FrameReport report = session.process(mission.frames[i], motion);
+        ASSERT_TRUE(report.map_from_body) << i << " " << metres;
+        EXPECT_FALSE(report.has(SessionEvent::pose_lost)) << i << " " << metres;
+        EXPECT_NE(report.health.doubt, Doubt::bridged) << i << " " << metres;
+        EXPECT_LT(error_of(report, mission, i), 0.05) << i << " " << metres;
+      }
+    }
+  }
+}
+
+// After a dark stretch the odometry has gone by what is measured, and keeps what that leaves open.
+TEST(ToldMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
+  const SimulatedMission mission = lap();
+  const std::vector<FrameReport> told = reports_of(mission, true, true);
+  const auto variance = [&](std::size_t i) { return told[i].odometry_covariance.topLeftCorner<3, 3>().trace(); };
+  EXPECT_GT(variance(kLight), 0.5 * variance(kLight - 1));
+  EXPECT_GT(variance(kLight + 5), 0.5 * variance(kLight - 1));
+}
+
 }  // namespace
 }  // namespace byre

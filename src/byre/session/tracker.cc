@@ -104,10 +104,24 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
   const bool is_limited = scene.mission && scene.is_place_proven;
   HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
-  if (scene.ground != nullptr) limits.prior = planar_prior(*scene.ground, scene.rig, predicted);
-  auto best = track_from(frame, scene, predicted, limits);
+  const auto track_around = [&](const Pose& pose) {
+    HybridLimits held = limits;
+    if (scene.ground != nullptr) held.prior = planar_prior(*scene.ground, scene.rig, pose);
+    return track_from(frame, scene, pose, held);
+  };
+  auto best = track_around(predicted);
   if (best && scene.is_pressed) return best;
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
+  if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
+  // Wheels that err do not lose a pose: the camera's own motion is tried, then none.
+  const auto by_velocity = motion.told() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
+  for (const std::optional<Pose>& pose :
+       {by_velocity, by_velocity ? std::optional(last.camera_from_world) : by_velocity}) {
+    if (!pose || static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) break;
+    auto tracked = track_around(*pose);
+    if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);
+  }
+  if (scene.ground != nullptr) limits.prior = planar_prior(*scene.ground, scene.rig, predicted);
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   for (const std::optional<KeyframeId>& keyframe : {std::optional(last.keyframe), newest}) {
     const auto pose = keyframe ? pose_from_keyframe(frame, scene.rig, scene.mapper.map(), *keyframe) : std::nullopt;

@@ -3,7 +3,21 @@
 #include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace byre {
+namespace {
+
+// Whether the way may be wrong by all of it, as where wheels spin or their pose jumps.
+bool is_way_open(const BodyMotion& motion) {
+  constexpr double kShare = 0.9;  // share of the way
+  constexpr double kLeast = 0.1;  // metres
+  const double sigma = std::sqrt(motion.covariance.topLeftCorner<3, 3>().trace());
+  return sigma > std::max(kLeast, kShare * motion.last_from_body.translation.norm());
+}
+
+}  // namespace
 
 void MotionModel::tell(const std::optional<BodyMotion>& motion) {
   told_ = told_ && motion ? std::optional(*told_ * *motion) : std::nullopt;
@@ -25,7 +39,13 @@ void MotionModel::scale_lengths(double change) {
         BodyMotion{byre::scale_lengths(told_->last_from_body, change), byre::scale_lengths(told_->covariance, change)};
 }
 
+std::optional<Pose> MotionModel::predict_by_velocity(const Pose& last_camera_from_world, double seconds) const {
+  if (!velocity_) return {};
+  return exp_pose(*velocity_ * seconds) * last_camera_from_world;
+}
+
 Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const {
+  if (told_ && velocity_ && is_way_open(*told_)) return *predict_by_velocity(last_camera_from_world, seconds);
   if (told_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * told_->last_from_body);
   if (velocity_) return exp_pose(*velocity_ * seconds) * last_camera_from_world;
   return last_camera_from_world;

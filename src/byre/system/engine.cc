@@ -3,7 +3,10 @@
 #include "byre/map/known_calibration.h"
 #include "byre/workers/stopwatch.h"
 
+#include <cmath>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -77,7 +80,9 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
       body_from_left_(given.body_from_left.rotation),
       known_(known_before(given, options)),
       extractor_(known_ ? known_->calibration : given, options.extract),
+      prior_(options.motion_limits),
       is_metric_(given.tells_metres() || options.offline || before),
+      least_scale_sigma_(options.wheel_scale_sigma),
       budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
       session_(extractor_.rig(), session_options(given, options),
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
@@ -85,6 +90,7 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
   const Eigen::Quaterniond& body_from_left = given.body_from_left.rotation;
   prior_.presume_upright(body_from_left * -Eigen::Vector3d::UnitY(), body_from_left * Eigen::Vector3d::UnitZ());
   if (!options.offline) prior_.serve_mapping();
+  if (is_metric_) prior_.expect_metres();
   session_.hear([this](Timestamp earlier, Timestamp later) { return prior_.way_between(earlier, later); },
                 [this, is_metric = given.tells_metres()](Timestamp earlier, Timestamp later) {
                   return prior_.reach(earlier, later, is_metric);
@@ -107,9 +113,15 @@ FrameReport Engine::process(const Frame& frame, const std::optional<BodyMotion>&
   return process_in_time(frame, motion);
 }
 
-FrameReport Engine::process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion) {
+std::optional<BodyMotion> Engine::checked(const std::optional<BodyMotion>& motion, Timestamp time) {
+  if (!motion) return {};
+  return prior_.checked(*motion, time, last_frame_ ? to_seconds(time) - to_seconds(*last_frame_) : 0.0);
+}
+
+FrameReport Engine::process_in_time(const Frame& frame, const std::optional<BodyMotion>& given) {
   log_.job_seconds.clear();
-  const bool is_told = !motion && last_frame_ && !prior_.is_empty();
+  const std::optional<BodyMotion> motion = checked(given, frame.time);
+  const bool is_told = !given && last_frame_ && !prior_.is_empty();
   const auto known_motion = is_told ? prior_.between(*last_frame_, frame.time) : motion;
   session_.tell_tilt(is_told ? prior_.tilt(frame.time) : std::nullopt);
   FrameReport report = session_.process(frame, known_motion, &budget_);
@@ -126,6 +138,9 @@ FrameReport Engine::process_in_time(const Frame& frame, const std::optional<Body
   budget_.end();
   report.cuts = budget_.cuts();
   report.is_late = budget_.is_late();
+  const auto first_new = warnings().begin() + static_cast<std::ptrdiff_t>(warnings_reported_);
+  report.warnings.assign(first_new, warnings().end());
+  warnings_reported_ = warnings().size();
   return report;
 }
 
@@ -161,11 +176,23 @@ Finishing Engine::finish_map(const FinishHooks& hooks) {
 
 // Where motions leave open how long the unit is, it stays the map's own.
 void Engine::measure_by_wheels() {
-  constexpr double kMaxSigma = 0.02;  // share
+  constexpr double kMaxSigma = 0.02;     // share
+  constexpr double kMaxTurnScale = 0.1;  // natural logarithm
   const auto& wheels = prior_.wheels();
   if (!wheels || wheels->scale_sigma > kMaxSigma) return;
+  // Wheels whose radius is wrong measure ways and turns too long alike.
+  if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
+    prior_.warn(
+        {MotionSensor::wheels,
+         {},
+         fmt::format("wheels measure turns {:.3g} times as large as the camera sees them; the map has no metres",
+                     1.0 / wheels->turn_errors.scale),
+         "calibrate the radius and the distance of the wheels, or measure the map: byre scale"});
+    return;
+  }
   const double factor = wheels->metres_per_unit;
   session_.stretch(factor);
+  metres_sigma_ = std::hypot(wheels->scale_sigma, least_scale_sigma_);
   prior_.stretch(factor);
   is_metric_ = true;
 }

@@ -42,6 +42,9 @@ struct EngineOptions {
   // How wheels and a gyroscope were mounted when the map was made that is gone on with; a mission asks its offline map.
   KnownMounting mounting;
   bool use_known_mounting = true;
+  MotionLimits motion_limits;
+  // Standard deviation of the metres of a map that one camera made, where wheels alone measure them, as a share.
+  double wheel_scale_sigma = 0.02;
   double frame_deadline_ms = 0.0;             // wall time that a frame may take, see FrameBudget
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
 };
@@ -50,6 +53,7 @@ struct EngineOptions {
 struct KeptWithMap {
   std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
   KnownMounting mounting;                         // mounting of wheels and a gyroscope
+  std::optional<double> metres_sigma{};           // see Engine::wheel_scale_sigma
 };
 
 // Wall time of a frame's stages, seconds. All but decode are spent one after the other on the frame thread.
@@ -95,6 +99,11 @@ class Engine {
     prior_.presume_gyroscope(body_from_left_ * left_from_gyroscope);
   }
 
+  // A motion of the body from the last frame to a time, as a caller gives it; empty where it is faulty.
+  std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
+  // Faults of motion inputs so far.
+  const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
+
   // motion: of the body since the last frame; empty: what wheels and a gyroscope tell, if they do.
   Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
@@ -121,9 +130,12 @@ class Engine {
   std::optional<RefinedCalibration> calibration() const;
   // How far the calibration that images are rectified by is off, by the rows of all pairs so far.
   const CommonRowError& row_error() const { return row_error_; }
-  KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep()}; }
+  KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep(), metres_sigma_}; }
   // Whether lengths are metres. What one camera maps has them once it is finished, where wheels have told them.
   bool is_metric() const { return is_metric_; }
+  // Standard deviation of metres that wheels alone measure, as a share; empty where lengths are no metres, or cameras
+  // or a map measure them.
+  std::optional<double> wheel_scale_sigma() const { return metres_sigma_; }
   // What is kept of the map by now.
   Map kept_map() const;
   // The same at last: the session has none after that, so that no map is there twice.
@@ -143,7 +155,10 @@ class Engine {
   CommonRowError row_error_;
   MotionPrior prior_;
   bool is_metric_;
+  double least_scale_sigma_;            // constant after construction
+  std::optional<double> metres_sigma_;  // see wheel_scale_sigma
   std::optional<Timestamp> last_frame_;
+  std::size_t warnings_reported_ = 0;
   FrameBudget budget_;
   Session session_;
 };

@@ -335,6 +335,24 @@ void add_motion(Table& table) {
   table.push_back(flag(
       "motion.known_mounting", [](auto& o) -> auto& { return o.use_known_mounting; },
       "wheels and gyroscope taken to be mounted as when the map was made, until they tell otherwise"));
+  table.push_back(number(
+      "motion.max_speed_m_per_s", "metres a second", 0.01, 1e3,
+      [](auto& o) -> auto& { return o.motion_limits.max_speed; },
+      "highest speed of the robot's base: faster wheel samples are dropped, and many of them are taken for another "
+      "unit"));
+  table.push_back(number(
+      "motion.max_turn_rate_rad_per_s", "radians a second", 0.01, 1e3,
+      [](auto& o) -> auto& { return o.motion_limits.max_turn_rate; },
+      "highest turn rate of base and gyroscope, likewise"));
+  table.push_back(number(
+      "motion.max_acceleration_m_per_s2", "m/s^2", 10, 1e4,
+      [](auto& o) -> auto& { return o.motion_limits.max_acceleration; }, "largest acceleration that is used"));
+  table.push_back(number(
+      "motion.max_position_m", "metres", 1, 1e9, [](auto& o) -> auto& { return o.motion_limits.max_position; },
+      "distance from the origin of wheel odometry beyond which a pose is dropped"));
+  table.push_back(number(
+      "motion.wheel_scale_sigma", "share of the length", 0, 1, [](auto& o) -> auto& { return o.wheel_scale_sigma; },
+      "standard deviation of the metres of a map by one camera that wheels alone measure, beside the fit"));
 }
 
 void add_health(Table& table) {

@@ -2,6 +2,7 @@
 
 #include "byre/features/image_view.h"
 #include "byre/geometry/baseline.h"
+#include "byre/geometry/finite.h"
 #include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
@@ -11,6 +12,7 @@
 #include "byre/system/option_table.h"
 #include "byre/system/stored_map.h"
 
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -97,7 +99,7 @@ struct Slam::Parts {
   // The images that the engine is to see; empty where they are dropped, see input.
   const ImageFrame* take(const CameraImages& images);
   // How the body has moved since the frame that the engine saw last.
-  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& motion, bool is_dropped);
+  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& told, Timestamp time, bool is_dropped);
   FrameReport noted(FrameReport report);
   // Whether anything was mapped; where a map is gone on with, whether anything was added to it.
   bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
@@ -142,7 +144,9 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
   return &buffer;
 }
 
-std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& motion, bool is_dropped) {
+std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& told, Timestamp time,
+                                                   bool is_dropped) {
+  const std::optional<BodyMotion> motion = engine.checked(told, time);
   const bool is_of_use = engine.is_metric();  // nobody can tell metres to who knows none
   const auto since = is_of_use && unseen_motion && motion ? std::optional(*unseen_motion * *motion) : std::nullopt;
   unseen_motion = is_dropped ? since : no_motion();
@@ -173,6 +177,7 @@ StoredMap Slam::Parts::kept() const {
   stored.recordings.push_back(
       {options.recording, given, first_time.value_or(Timestamp{}), last_time, engine.calibration()});
   note_mounting(engine.prior().to_keep(), stored.notes);
+  if (const auto sigma = engine.wheel_scale_sigma()) stored.notes[kMetresNote] = metres_note(*sigma);
   return stored;
 }
 
@@ -218,7 +223,7 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
 
 FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMotion>& told) {
   const ImageFrame* const taken = parts_->take(images);
-  const auto motion = parts_->take_motion(told, taken == nullptr);
+  const auto motion = parts_->take_motion(told, images.left.time, taken == nullptr);
   if (taken == nullptr) return parts_->dropped(images.left.time);
   return parts_->noted(parts_->engine.process(*taken, motion).report);
 }
@@ -226,7 +231,7 @@ FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMo
 FrameReport Slam::process(const Frame& frame, const std::optional<BodyMotion>& told) {
   const InputFault fault =
       parts_->is_finished ? parts_->input.note(InputFault::after_finishing) : parts_->input.note(frame);
-  const auto motion = parts_->take_motion(told, is_dropped(fault));
+  const auto motion = parts_->take_motion(told, frame.time, is_dropped(fault));
   if (is_dropped(fault)) return parts_->dropped(frame.time);
   return parts_->noted(parts_->engine.process(frame, motion));
 }
@@ -260,7 +265,9 @@ bool Slam::is_mapping_paused() const {
 }
 
 void Slam::look_near(const PoseHint& hint) {
-  parts_->engine.look_near(hint);
+  constexpr double kMostOff = 0.1;  // share of the length 1
+  const bool is_sound = is_finite(hint.map_from_body) && std::abs(hint.map_from_body.rotation.norm() - 1.0) < kMostOff;
+  if (is_sound) parts_->engine.look_near(hint);
 }
 
 std::optional<std::string> Slam::map_damage() const {
@@ -295,17 +302,20 @@ void Slam::save(const fs::path& path) const {
 }
 
 Trajectory Slam::trajectory() const {
-  return parts_->engine.trajectory();
+  Trajectory trajectory = parts_->engine.trajectory();
+  std::erase_if(trajectory, [](const StampedPose& pose) { return !is_finite(pose.world_from_body); });
+  return trajectory;
 }
 
 std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {
   const auto& plan = parts_->plan;
-  return plan ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
+  return plan && is_finite(map_from_body) ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
 }
 
 std::optional<Matrix6> Slam::plan_covariance(const Pose& map_from_body, const Matrix6& covariance) const {
   const auto& plan = parts_->plan;
-  return plan ? std::optional(covariance_on_plan(*plan, map_from_body, covariance)) : std::nullopt;
+  const bool is_sound = is_finite(map_from_body) && covariance.allFinite();
+  return plan && is_sound ? std::optional(covariance_on_plan(*plan, map_from_body, covariance)) : std::nullopt;
 }
 
 const Rig& Slam::rig() const {
@@ -334,6 +344,10 @@ std::vector<Eigen::Vector3d> Slam::point_positions() const {
   std::vector<Eigen::Vector3d> positions;
   for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
   return positions;
+}
+
+const std::vector<MotionWarning>& Slam::motion_warnings() const {
+  return parts_->engine.warnings();
 }
 
 int Slam::frames() const {

@@ -1,12 +1,17 @@
 #include "byre/slam.h"
 
 #include "byre/features/extract.h"
+#include "byre/geometry/finite.h"
+#include "byre/map/map.h"
 #include "byre/map/map_file.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
+#include <random>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -364,6 +369,116 @@ TEST(Slam, TracksOwnFeaturesAsItsOwn) {
     const FrameReport report = by_features.process(extractor.extract(frame).frame);
     EXPECT_EQ(report.map_from_body, expected.map_from_body);
   }
+}
+
+// Values that break what does not expect them.
+const std::vector<double>& hostile_values() {
+  static const std::vector<double> values = {std::numeric_limits<double>::quiet_NaN(),
+                                             std::numeric_limits<double>::infinity(),
+                                             -std::numeric_limits<double>::infinity(),
+                                             1.0001644e256,
+                                             -1e308,
+                                             std::numeric_limits<double>::max(),
+                                             std::numeric_limits<double>::denorm_min(),
+                                             0.0,
+                                             -0.0,
+                                             1e7};
+  return values;
+}
+
+void expect_finite(const FrameReport& report) {
+  if (report.map_from_body) EXPECT_TRUE(is_finite(*report.map_from_body));
+  if (report.odometry_from_body) EXPECT_TRUE(is_finite(*report.odometry_from_body));
+  if (report.correction) EXPECT_TRUE(is_finite(*report.correction));
+  EXPECT_TRUE(report.covariance.allFinite());
+  EXPECT_TRUE(report.odometry_covariance.allFinite());
+  const Health& health = report.health;
+  for (const double value : {health.inlier_share, health.spread, health.position_sigma, health.rotation_sigma,
+                             health.distance_since_offline, health.seconds_since_offline, health.focal_error}) {
+    EXPECT_TRUE(std::isfinite(value));
+  }
+}
+
+Pose hostile_pose(std::mt19937& random) {
+  const auto value = [&] { return hostile_values()[random() % hostile_values().size()]; };
+  Pose pose;
+  pose.translation = {value(), random() % 2 == 0 ? value() : 0.0, 0.0};
+  if (random() % 2 == 0) pose.rotation = Eigen::Quaterniond(value(), value(), 0.0, value());
+  return pose;
+}
+
+// Samples of every motion input before a frame, sound or hostile, also with times that go back or leave the clock.
+void tell_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
+  const auto value = [&] { return hostile_values()[random() % hostile_values().size()]; };
+  const std::vector<Timestamp> times = {
+      time,  time - std::chrono::hours(1),       time + std::chrono::hours(24), {}, Timestamp::max(), Timestamp::min(),
+      -time, time - std::chrono::milliseconds(5)};
+  for (int i = 0; i < 20; ++i) {
+    const Timestamp at = random() % 2 == 0 ? time - std::chrono::milliseconds(20 - i) : times[random() % times.size()];
+    const bool is_hostile = random() % 2 == 0;
+    slam.tell_wheels(StampedPose{at, is_hostile ? hostile_pose(random) : Pose{}});
+    if (is_hostile) slam.tell_wheels(BaseVelocity{at, value(), value(), value()});
+    slam.tell_gyroscope(
+        {at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0.0, 0.01, 0.1)});
+    slam.tell_accelerometer({at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0, 0, 9.8)});
+  }
+  slam.look_near({hostile_pose(random), value(), value(), value()});
+}
+
+std::optional<BodyMotion> hostile_motion(std::mt19937& random) {
+  if (random() % 3 == 0) return {};
+  BodyMotion motion(hostile_pose(random), Matrix6::Identity());
+  if (random() % 2 == 0) motion.covariance(1, 1) = hostile_values()[random() % hostile_values().size()];
+  return motion;
+}
+
+TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
+  map_shared();
+  std::vector<ImageFrame> frames = shared_frames();
+  for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // so that what is measured leads on
+    std::ranges::fill(frames[i].left.pixels, std::uint8_t{0});
+    if (frames[i].right) std::ranges::fill(frames[i].right->pixels, std::uint8_t{0});
+  }
+  for (const bool is_mission : {true, false}) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+      std::mt19937 random(seed);
+      Slam slam = is_mission ? Slam::on_map(open_shared()->calibration(), map_, repeatable())
+                             : Slam::mapping(open_shared()->calibration(), repeatable());
+      slam.tell_gyroscope_mounting(Eigen::Quaterniond(0.0, 0.0, 0.0, seed == 1U ? 0.0 : hostile_values().front()));
+      int poses = 0;
+      for (const ImageFrame& frame : frames) {
+        tell_hostile(slam, frame.time, random);
+        const FrameReport report = slam.process(view_of(frame), hostile_motion(random));
+        expect_finite(report);
+        poses += report.map_from_body ? 1 : 0;
+      }
+      EXPECT_GT(poses, 10) << "hostile samples lose no pose that is seen";
+      EXPECT_FALSE(slam.motion_warnings().empty());
+      slam.finish();
+      for (const StampedPose& pose : slam.trajectory()) EXPECT_TRUE(is_finite(pose.world_from_body));
+      for (const Eigen::Vector3d& point : slam.point_positions()) EXPECT_TRUE(point.allFinite());
+      if (slam.keyframes() == 0) continue;
+      slam.save(map_.string() + ".hostile");
+      EXPECT_TRUE(find_faults(load_map(map_.string() + ".hostile").map).empty());
+      fs::remove(map_.string() + ".hostile");
+    }
+  }
+}
+
+TEST(Slam, ReportsEachFaultOfAMotionInputOnce) {
+  const std::vector<ImageFrame> frames = shared_frames();
+  Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
+  std::vector<MotionWarning> warnings;
+  for (const ImageFrame& frame : frames) {
+    slam.tell_gyroscope({frame.time, Eigen::Vector3d(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0)});
+    const FrameReport report = slam.process(view_of(frame));
+    warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
+  }
+  ASSERT_THAT(warnings, SizeIs(1));
+  EXPECT_EQ(warnings.front().sensor, MotionSensor::gyroscope);
+  EXPECT_EQ(warnings.front().time, frames.front().time);
+  EXPECT_FALSE(warnings.front().remedy.empty());
+  EXPECT_THAT(slam.motion_warnings(), SizeIs(1));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/warnings.h"
+#include "byre/dataset/motion_files.h"
 #include "byre/features/image_threads.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ constexpr const char* kCheckFooter = R"(Examples:
 
 Looks at some frames, a few seconds' work, and tells what would spoil a mission: rate and gaps, images that are dark,
 blurred or repeated, left and right images that do not fit together, a calibration that is off or not of these cameras;
-and what to do about each. "byre map" and "byre run" print its summary when they begin.
+faults of wheels, gyroscope and accelerometer (--gyroscope); and what to do about each. "byre map" and "byre run" print its summary when they begin.
 
 Exit codes: 0 nothing is in the way, 1 something is to be mended first, 3 the recording cannot be read.)";
 
@@ -42,7 +43,10 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   const RecordingCheck check = check_recording(*recording, options.samples, [&] { return interrupt.caught(); });
   if (interrupt.caught()) return ExitCode::interrupted;
-  const std::vector<Finding> findings = findings_of(check);
+  std::vector<Finding> findings = findings_of(check);
+  const std::vector<Finding> motion = motion_findings(
+      *recording, [&](MotionSensor sensor) { return motion_source(options.recording, options.open, sensor); });
+  findings.insert(findings.end(), motion.begin(), motion.end());
   if (options.json) {
     nlohmann::ordered_json json = {
         {"program", "byre check"}, {"version", BYRE_VERSION}, {"recording", options.recording.string()}};

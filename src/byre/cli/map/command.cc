@@ -36,9 +36,10 @@ struct MapRecord {
 
 // The map is as it was read again after that.
 void save(Map& offline, const KeptWithMap& kept, const MapRecord& record) {
-  const auto& [calibration, mounting] = kept;
+  const auto& [calibration, mounting, metres_sigma] = kept;
   StoredMap stored = record.about;
   note_mounting(mounting, stored.notes);
+  if (metres_sigma) stored.notes[kMetresNote] = metres_note(*metres_sigma);
   if (calibration) stored.recordings.back().refined = calibration;
   stored.map = std::exchange(offline, Map(Origin::offline));
   try {
@@ -147,7 +148,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   if (run.final.empty()) options.map.reset();  // there is nothing to keep
   OutputWriter outputs;
   outputs.attempt([&] {
-    if (options.map) save(run.map, {run.calibration, run.told.to_keep}, record);
+    if (options.map) save(run.map, {run.calibration, run.told.to_keep, run.told.metres_sigma}, record);
   });
   write_results(options, run, protocol, resources, outputs);
   outputs.require_written();

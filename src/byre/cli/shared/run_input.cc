@@ -6,6 +6,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
+#include "byre/dataset/motion_files.h"
 #include "byre/geometry/baseline.h"
 #include "byre/input/report_row.h"
 #include "byre/playback/source_recording.h"
@@ -131,7 +132,11 @@ void RunInput::note_frames(const MapRun& run, MapProtocol& protocol) const {
 MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, const InterruptCatcher& interrupt,
                      std::optional<Map> before) {
   if (live_) return run_with_progress(*live_, options, hooks, interrupt, choice_.quiet, std::move(before));
-  return run_with_progress(*scaled_.recording, options, hooks, interrupt, choice_.quiet, std::move(before));
+  MapRun run = run_with_progress(*scaled_.recording, options, hooks, interrupt, choice_.quiet, std::move(before));
+  for (const MotionWarning& warning : run.motion_warnings) {
+    run.warnings.push_back(to_text(warning, motion_source(choice_.recording, choice_.open, warning.sensor)));
+  }
+  return run;
 }
 
 std::string RunInput::report() {

@@ -1,0 +1,530 @@
+#include "byre/motion/motion_check.h"
+
+#include "byre/geometry/degrees.h"
+#include "byre/motion/rate_track.h"
+#include "byre/motion/wheel_track.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace byre {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Timestamp kLatestStamp = Timestamp::max() / 2;  // differences of stamps stay in range
+constexpr Timestamp kLeap = 10s;                          // a stamp so far ahead needs a second one
+constexpr int kLateUntilRestarted = 10;                   // stamps in a row
+constexpr double kLeastRecent = 0.02;                     // seconds of a step whose speed is measured: stamps jitter
+constexpr double kFastShareOfUnit = 0.5;  // share of samples beyond the limit from which the unit is wrong
+constexpr double kDegreesPerRadian = 1.0 / kDegree;
+
+bool is_rotation(const Eigen::Quaterniond& rotation) {
+  constexpr double kMostOff = 0.1;  // share of the length 1
+  return rotation.coeffs().allFinite() && std::abs(rotation.norm() - 1.0) < kMostOff;
+}
+
+// The bits of a unit quaternion stay.
+Eigen::Quaterniond unit(const Eigen::Quaterniond& rotation) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(rotation.squaredNorm() - 1.0) < kRounding ? rotation : rotation.normalized();
+}
+
+double distance(const StampedPose& from, const StampedPose& to) {
+  return (to.world_from_body.translation - from.world_from_body.translation).norm();
+}
+
+double turn(const StampedPose& from, const StampedPose& to) {
+  return angle_between(from.world_from_body.rotation, to.world_from_body.rotation);
+}
+
+// Drivers of a base that start again publish exactly this pose first.
+bool is_origin(const StampedPose& sample) {
+  constexpr double kRounding = 1e-6;  // metres and radians
+  return sample.world_from_body.translation.norm() < kRounding &&
+         sample.world_from_body.rotation.vec().norm() < kRounding;
+}
+
+}  // namespace
+
+bool is_sound(const BodyMotion& motion) {
+  constexpr double kMostOff = 0.1;        // share of the length 1
+  constexpr double kMostVariance = 1e12;  // square metres and square radians: sums and products stay finite
+  const auto& [pose, covariance] = motion;
+  return pose.translation.allFinite() && pose.rotation.coeffs().allFinite() && covariance.allFinite() &&
+         std::abs(pose.rotation.norm() - 1.0) < kMostOff && (covariance.diagonal().array() >= 0.0).all() &&
+         (covariance.array().abs() <= kMostVariance).all();
+}
+
+std::string_view to_string(MotionSensor sensor) {
+  switch (sensor) {
+    case MotionSensor::wheels:
+      return "wheels";
+    case MotionSensor::gyroscope:
+      return "gyroscope";
+    case MotionSensor::accelerometer:
+      return "accelerometer";
+    case MotionSensor::body_motion:
+      return "motion of the body";
+  }
+  return "";
+}
+
+std::string to_text(const MotionWarning& warning, std::string_view source) {
+  std::string text(to_string(warning.sensor));
+  if (!source.empty()) text += " (" + std::string(source) + ")";
+  if (warning.time != Timestamp{}) text += fmt::format(", at {:.3f} s", to_seconds(warning.time));
+  return text + ": " + warning.what + (warning.remedy.empty() ? "" : "; " + warning.remedy);
+}
+
+StampCheck::Order StampCheck::check(Timestamp time) {
+  if (time > kLatestStamp || time < -kLatestStamp) return Order::dropped;
+  if (last_ && time <= *last_) {
+    late_count_ = late_ && time > *late_ ? late_count_ + 1 : 1;
+    late_ = time;
+    if (late_count_ < kLateUntilRestarted) return Order::dropped;
+    *this = {};
+    last_ = time;
+    return Order::restarted;
+  }
+  late_.reset();
+  late_count_ = 0;
+  const bool is_confirmed = ahead_ && time > *ahead_ && time - *ahead_ <= kLeap;
+  if (last_ && time - *last_ > kLeap && !is_confirmed) {
+    ahead_ = time;
+    return Order::dropped;
+  }
+  ahead_.reset();
+  last_ = time;
+  return Order::next;
+}
+
+void MotionCheck::warn_once(MotionSensor sensor, Fault fault, Timestamp time, const std::string& what,
+                            const std::string& remedy) {
+  if (warned_.emplace(sensor, fault).second) warnings_.push_back({sensor, time, what, remedy});
+}
+
+StampCheck::Order MotionCheck::ordered(StampCheck& stamps, MotionSensor sensor, Timestamp time) {
+  const StampCheck::Order order = stamps.check(time);
+  if (order == StampCheck::Order::restarted) {
+    warn_once(sensor, Fault::clock, time, "the clock was set back; samples before are forgotten",
+              "keep the clock of the driver steady while it runs");
+  }
+  return order;
+}
+
+// A base speeds up within limits, so that a reset of odometry shows also where the base is near its origin.
+bool MotionCheck::is_step(const StampedPose& from, const StampedPose& to) const {
+  constexpr double kSlack = 0.05;       // metres: encoders' ticks and late stamps
+  constexpr double kSlackTurn = 0.1;    // radians
+  constexpr double kFaster = 1.5;       // times as fast as lately
+  constexpr double kMoreSpeed = 3.0;    // metres per second on top of that: a wheel that begins to spin
+  constexpr double kMoreTurning = 3.0;  // radians per second on top of that
+  const double seconds = to_seconds(to.time - from.time);
+  const double speed = speed_ ? std::min(limits_.max_speed, kFaster * *speed_ + kMoreSpeed) : limits_.max_speed;
+  const double turning =
+      turn_rate_ ? std::min(limits_.max_turn_rate, kFaster * *turn_rate_ + kMoreTurning) : limits_.max_turn_rate;
+  const bool is_restart = is_origin(to) && !is_origin(from) && (distance(from, to) > 1e-3 || turn(from, to) > 1e-3);
+  return !is_restart && distance(from, to) <= kSlack + speed * seconds &&
+         turn(from, to) <= kSlackTurn + turning * seconds;
+}
+
+void MotionCheck::accept(const StampedPose& sample) {
+  constexpr double kKept = 0.9;  // share of the speed before, a sample later
+  if (last_) {
+    const double seconds = std::max(kLeastRecent, to_seconds(sample.time - last_->time));
+    speed_ = std::max(distance(*last_, sample) / seconds, kKept * speed_.value_or(0.0));
+    turn_rate_ = std::max(turn(*last_, sample) / seconds, kKept * turn_rate_.value_or(0.0));
+  }
+  last_ = sample;
+  suspected_.reset();
+}
+
+// A base that drives does not stand to the last bit a sample later: its driver has stopped.
+bool MotionCheck::is_frozen(const StampedPose& sample) {
+  constexpr double kHardestBraking = 8.0;  // m/s^2
+  constexpr double kLeastSpeed = 0.15;     // metres per second
+  constexpr double kLeastRun = 0.055;      // seconds
+  constexpr double kRuns = 3.0;            // times the longest run while driving
+  constexpr double kLongestRun = 0.3;      // seconds: longer ones are stops
+  constexpr double kNew = 0.2;             // weight of a sample
+  const double seconds = std::max(1e-3, to_seconds(sample.time - raw_->time));
+  const double run = pose_since_ ? to_seconds(raw_->time - *pose_since_) : 0.0;
+  if (!(sample.world_from_body == raw_->world_from_body)) {
+    if (run > 0.0 && run <= kLongestRun) longest_run_ = std::max(longest_run_, run);
+    last_step_speed_ = distance(*raw_, sample) / std::max(kLeastRecent, seconds);
+    mean_speed_ += kNew * (last_step_speed_ - mean_speed_);
+    pose_since_ = sample.time;
+    return false;
+  }
+  if (run == 0.0) speed_before_same_ = std::min(mean_speed_, last_step_speed_);
+  mean_speed_ -= kNew * mean_speed_;
+  const double longest = std::max(longest_run_, seconds);
+  if (speed_before_same_ < std::max(kLeastSpeed, kHardestBraking * longest)) return false;
+  return pose_since_ && to_seconds(sample.time - *pose_since_) > kLeastRun + kRuns * longest_run_;
+}
+
+// Speeds beyond the limit for a while are those of another unit: a jump lasts for one sample.
+void MotionCheck::note_speed(Timestamp time, double way, double seconds) {
+  constexpr double kSlack = 0.05;  // metres
+  constexpr double kNew = 0.04;    // weight of a sample
+  constexpr double kMillimetres = 300.0;
+  const bool is_fast = way > kSlack + limits_.max_speed * seconds;
+  fast_share_ += kNew * ((is_fast ? 1.0 : 0.0) - fast_share_);
+  if (fast_share_ < kFastShareOfUnit) return;
+  const double speed = way / std::max(kLeastRecent, seconds);
+  ignored_.insert(MotionSensor::wheels);
+  warn_once(
+      MotionSensor::wheels, Fault::unit, time,
+      fmt::format("the base moves at {:.3g} m/s, more than motion.max_speed_m_per_s ({:.3g}), for many samples; wheels "
+                  "are ignored",
+                  speed, limits_.max_speed),
+      std::string("give lengths in metres: these look like ") + (speed > kMillimetres ? "millimetres" : "centimetres") +
+          ", or raise the limit for a faster vehicle");
+}
+
+MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
+  constexpr auto kWheels = MotionSensor::wheels;
+  if (are_wheels_ignored()) return {};
+  const Pose& pose = wheels.world_from_body;
+  if (!pose.translation.allFinite() || !is_rotation(pose.rotation)) {
+    warn_once(kWheels, Fault::not_finite, wheels.time,
+              "a pose is not finite, or its quaternion is not of length 1; such poses are dropped",
+              "see what the driver of the base publishes");
+    return {};
+  }
+  const double farthest = pose.translation.lpNorm<Eigen::Infinity>();  // a norm would overflow
+  if (farthest > limits_.max_position) {
+    warn_once(
+        kWheels, Fault::too_large, wheels.time,
+        fmt::format("a pose is {:.3g} m from the origin, more than motion.max_position_m ({:.3g}); such poses are "
+                    "dropped",
+                    farthest, limits_.max_position),
+        "see what the driver of the base publishes");
+    return {};
+  }
+  CheckedPoses result;
+  const StampCheck::Order order = ordered(wheel_stamps_, kWheels, wheels.time);
+  if (order == StampCheck::Order::dropped) return {};
+  if (order == StampCheck::Order::restarted) {
+    result.is_clock_set_back = true;
+    raw_.reset();
+    last_.reset();
+    suspected_.reset();
+  }
+  const StampedPose sample{wheels.time, {unit(pose.rotation), pose.translation}};
+  const bool was_frozen = is_frozen_;
+  if (raw_) {
+    note_speed(sample.time, distance(*raw_, sample), to_seconds(sample.time - raw_->time));
+    is_frozen_ = is_frozen(sample);
+  }
+  raw_ = sample;
+  if (are_wheels_ignored()) return {};
+  if (is_frozen_) {
+    warn_once(kWheels, Fault::frozen, sample.time,
+              fmt::format("the pose stays the same to the last bit right after {:.2f} m/s; such poses are not used",
+                          speed_before_same_),
+              "see that the driver of the base runs");
+    return result;
+  }
+  if (was_frozen) {  // nothing is known of the way meanwhile
+    result.beginning = sample;
+    last_ = sample;
+    suspected_.reset();
+    speed_.reset();
+    turn_rate_.reset();
+    return result;
+  }
+  const bool follows = !last_ || is_step(*last_, sample);
+  const bool confirms = suspected_ && is_step(*suspected_, sample) &&
+                        (!follows || distance(*suspected_, sample) < distance(*last_, sample));
+  if (!follows && !confirms) {
+    suspected_ = sample;
+    return result;
+  }
+  if (confirms) {
+    const StampedPose &before = *last_, &after = *suspected_;
+    warn_once(kWheels, Fault::jump, after.time,
+              fmt::format("the pose jumps by {:.3g} m and {:.0f} degrees in {:.3f} s; motion across a jump is not used",
+                          distance(before, after), turn(before, after) * kDegreesPerRadian,
+                          to_seconds(after.time - before.time)),
+              "see why the driver of the base starts again, or whether two nodes publish the topic");
+    result.beginning = suspected_;
+    last_ = suspected_;
+    speed_.reset();
+    turn_rate_.reset();
+  } else if (suspected_) {
+    warn_once(
+        kWheels, Fault::spike, suspected_->time,
+        fmt::format("a single pose lies {:.3g} m off the way; such poses are dropped", distance(*last_, *suspected_)),
+        "look for noise on the wire of the encoders, or for a second publisher of the topic");
+  }
+  accept(sample);
+  result.sample = sample;
+  return result;
+}
+
+StampCheck::Order MotionCheck::check(const BaseVelocity& wheels) {
+  constexpr auto kWheels = MotionSensor::wheels;
+  const auto dropped = StampCheck::Order::dropped;
+  if (are_wheels_ignored()) return dropped;
+  const double speed = std::hypot(wheels.ahead, wheels.left);
+  if (!std::isfinite(speed) || !std::isfinite(wheels.turning)) {
+    warn_once(kWheels, Fault::not_finite, wheels.time, "a velocity is not finite; such velocities are dropped",
+              "see what the driver of the base publishes");
+    return dropped;
+  }
+  note_speed(wheels.time, speed * kLeastRecent, kLeastRecent);
+  if (are_wheels_ignored()) return dropped;
+  if (speed > limits_.max_speed || std::abs(wheels.turning) > limits_.max_turn_rate) {
+    warn_once(kWheels, Fault::too_large, wheels.time,
+              fmt::format("a velocity of {:.3g} m/s and {:.3g} rad/s is beyond motion.max_speed_m_per_s ({:.3g}) or "
+                          "motion.max_turn_rate_rad_per_s ({:.3g}); such velocities are dropped",
+                          speed, wheels.turning, limits_.max_speed, limits_.max_turn_rate),
+              "see what the driver of the base publishes");
+    return dropped;
+  }
+  return ordered(velocity_stamps_, kWheels, wheels.time);
+}
+
+bool MotionCheck::ignore_gyroscope(Fault fault, Timestamp time, const std::string& what, const std::string& remedy) {
+  ignored_.insert(MotionSensor::gyroscope);
+  warn_once(MotionSensor::gyroscope, fault, time, what + "; the gyroscope is ignored", remedy);
+  return true;
+}
+
+StampCheck::Order MotionCheck::check(const AngularRate& rate) {
+  constexpr auto kGyroscope = MotionSensor::gyroscope;
+  constexpr double kNew = 0.01;  // weight of a sample
+  const auto dropped = StampCheck::Order::dropped;
+  if (ignored_.contains(kGyroscope)) return dropped;
+  if (!rate.rate.allFinite()) {
+    warn_once(kGyroscope, Fault::not_finite, rate.time, "a rate is not finite; such rates are dropped",
+              "see what the driver of the IMU publishes");
+    return dropped;
+  }
+  const bool is_fast = !(rate.rate.norm() <= limits_.max_turn_rate);
+  fast_rate_share_ += kNew * ((is_fast ? 1.0 : 0.0) - fast_rate_share_);
+  if (fast_rate_share_ > kFastShareOfUnit) {
+    ignore_gyroscope(
+        Fault::unit, rate.time,
+        fmt::format("rates are beyond motion.max_turn_rate_rad_per_s ({:.3g}) for many samples", limits_.max_turn_rate),
+        "give radians per second: these look like degrees per second");
+    return dropped;
+  }
+  if (is_fast) {
+    warn_once(
+        kGyroscope, Fault::too_large, rate.time,
+        fmt::format("a rate of {:.3g} rad/s is beyond motion.max_turn_rate_rad_per_s ({:.3g}); such rates are dropped",
+                    rate.rate.norm(), limits_.max_turn_rate),
+        "give radians per second, or raise the limit");
+    return dropped;
+  }
+  const StampCheck::Order order = ordered(rate_stamps_, kGyroscope, rate.time);
+  if (order == dropped) return order;
+  ++rate_count_;
+  rate_time_ = rate.time;
+  has_rate_ = has_rate_ || !rate.rate.isZero(0.0);
+  if (!last_rate_ || *last_rate_ != rate.rate || order == StampCheck::Order::restarted) {
+    same_since_ = rate.time;
+    turned_while_same_ = 0.0;
+  }
+  last_rate_ = rate.rate;
+  return has_rate_ ? order : dropped;
+}
+
+bool MotionCheck::note(const Turn& turn) {
+  constexpr Timestamp kSame = 400ms;         // rates equal to the last bit
+  constexpr double kTurn = 0.03;             // radians, more than noise
+  constexpr double kTurnedWhileSame = 0.15;  // radians
+  constexpr double kTurning = 0.05;          // radians, change of the turn from one to the next
+  constexpr double kEnoughDegrees = 0.15;    // radians by the reference
+  constexpr double kEnough = 1.0;            // radians by the reference
+  constexpr int kFewChanges = 2, kManyChanges = 6;
+  if (ignored_.contains(MotionSensor::gyroscope)) return false;
+  if (rate_time_ && same_since_ && *rate_time_ - *same_since_ >= kSame && *same_since_ < turn.time) {
+    const bool is_turn = turn.reference.norm() >= kTurn;
+    if (!is_turn) has_dead_zone_ = true;
+    const bool counts = turn.is_seen || !has_rate_ || !has_dead_zone_;  // one wheel may spin at rest
+    if (is_turn && counts) turned_while_same_ += turn.reference.norm();
+    if (turned_while_same_ >= kTurnedWhileSame) {
+      return ignore_gyroscope(
+          Fault::silent, turn.time,
+          fmt::format("all rates are {} while the robot turns by {:.0f} degrees",
+                      last_rate_->isZero(0.0) ? "zero" : "equal", turned_while_same_ * kDegreesPerRadian),
+          "choose the topic or file of the gyroscope, not that of an accelerometer alone, and see that the sensor "
+          "runs");
+    }
+  }
+  const std::optional<Turn> before = std::exchange(last_turn_, turn);
+  if (!before || !before->measured || !turn.measured) return false;
+  const double measured = (*turn.measured - *before->measured).norm();
+  const double reference = (turn.reference - before->reference).norm();
+  if (std::max(measured, reference) < kTurning) return false;
+  measured_change_ += measured;
+  reference_change_ += reference;
+  ++changes_;
+  const double ratio = measured_change_ / std::max(reference_change_, 1e-9);
+  const bool is_in_degrees = ratio > 0.5 * kDegreesPerRadian && ratio < 2.0 * kDegreesPerRadian;
+  if (is_in_degrees && changes_ >= kFewChanges && reference_change_ >= kEnoughDegrees) {
+    return ignore_gyroscope(Fault::unit, turn.time, fmt::format("rates are {:.0f} times the turns of the robot", ratio),
+                            "give radians per second: these are degrees per second");
+  }
+  const bool is_enough =
+      turn.is_seen && changes_ >= kManyChanges && std::max(measured_change_, reference_change_) >= kEnough;
+  if (is_enough && (ratio > 3.0 || ratio < 1.0 / 3.0)) {
+    return ignore_gyroscope(Fault::unit, turn.time,
+                            fmt::format("rates are {:.3g} times the turns that are seen", ratio),
+                            is_in_degrees ? "give radians per second: these are degrees per second"
+                                          : "give radians per second, and see that the sensor is fixed to the cameras");
+  }
+  if (changes_ >= 2 * kManyChanges) {
+    measured_change_ *= 0.5;
+    reference_change_ *= 0.5;
+    changes_ /= 2;
+  }
+  return false;
+}
+
+// By the mean of the first second: motion averages out beside gravity.
+void MotionCheck::note_unit_of_acceleration(const Acceleration& acceleration) {
+  constexpr int kSamples = 100;
+  constexpr double kGravity = 9.81;  // m/s^2
+  if (acceleration_count_ >= kSamples) return;
+  acceleration_sum_ += acceleration.acceleration.norm();
+  if (++acceleration_count_ < kSamples) return;
+  const double mean = acceleration_sum_ / kSamples;
+  if (mean > 0.5 * kGravity && mean < 2.0 * kGravity) return;
+  const bool is_in_g = mean > 0.8 && mean < 1.25;
+  ignored_.insert(MotionSensor::accelerometer);
+  warn_once(
+      MotionSensor::accelerometer, Fault::unit, acceleration.time,
+      fmt::format("accelerations have a mean length of {:.3g}, where gravity has 9.81 m/s^2; the accelerometer is "
+                  "ignored",
+                  mean),
+      is_in_g ? "give m/s^2: these are multiples of g" : "give m/s^2 with gravity in it");
+}
+
+StampCheck::Order MotionCheck::check(const Acceleration& acceleration) {
+  constexpr auto kAccelerometer = MotionSensor::accelerometer;
+  const auto dropped = StampCheck::Order::dropped;
+  if (ignored_.contains(kAccelerometer) || acceleration.acceleration.isZero(0.0)) return dropped;
+  const double length = acceleration.acceleration.norm();
+  if (!std::isfinite(length)) {
+    warn_once(kAccelerometer, Fault::not_finite, acceleration.time,
+              "an acceleration is not finite; such accelerations are dropped",
+              "see what the driver of the IMU publishes");
+    return dropped;
+  }
+  if (length > limits_.max_acceleration) {
+    warn_once(kAccelerometer, Fault::too_large, acceleration.time,
+              fmt::format("an acceleration of {:.3g} m/s^2 is beyond motion.max_acceleration_m_per_s2 ({:.3g}); such "
+                          "accelerations are dropped",
+                          length, limits_.max_acceleration),
+              "give m/s^2, or raise the limit");
+    return dropped;
+  }
+  const StampCheck::Order order = ordered(acceleration_stamps_, kAccelerometer, acceleration.time);
+  if (order == dropped) return order;
+  note_unit_of_acceleration(acceleration);
+  return ignored_.contains(kAccelerometer) ? dropped : order;
+}
+
+std::optional<BodyMotion> MotionCheck::check(const BodyMotion& motion, Timestamp time, double seconds) {
+  constexpr double kSlack = 0.5;  // metres and radians
+  if (!is_sound(motion)) {
+    warn_once(MotionSensor::body_motion, Fault::not_finite, time,
+              "the motion or its covariance is not finite, or its quaternion is not of length 1; it is left out",
+              "give a rotation of length 1 and a positive covariance");
+    return {};
+  }
+  const double way = motion.last_from_body.translation.norm();
+  if (way > kSlack + limits_.max_speed * std::max(0.0, seconds)) {
+    warn_once(MotionSensor::body_motion, Fault::too_large, time,
+              fmt::format("{:.3g} m in {:.3f} s is beyond motion.max_speed_m_per_s ({:.3g}); such motions are left out",
+                          way, seconds, limits_.max_speed),
+              "give the motion since the last frame in metres, or raise the limit");
+    return {};
+  }
+  BodyMotion sound = motion;
+  sound.last_from_body.rotation = unit(motion.last_from_body.rotation);
+  return sound;
+}
+
+bool MotionCheck::note_wheel_scale(double metres_per_unit, double sigma, Timestamp time) {
+  constexpr double kLeast = 0.1;  // natural logarithm: worn tyres and rough encoders err by less
+  constexpr double kSigmas = 5.0;
+  constexpr double kAnotherUnit = 2.0;
+  const double off = std::log(metres_per_unit);
+  if (!(std::abs(off) > std::max(kLeast, kSigmas * sigma)) || are_wheels_ignored()) return false;
+  const bool is_unusable = std::abs(off) > std::log(kAnotherUnit);
+  if (is_unusable) ignored_.insert(MotionSensor::wheels);
+  const char* const unit_seen = metres_per_unit > 300.0  ? "these are millimetres"
+                                : metres_per_unit > 30.0 ? "these are centimetres"
+                                                         : "see to the gear ratio and the wheels' radius";
+  warn_once(MotionSensor::wheels, is_unusable ? Fault::unit : Fault::scale, time,
+            fmt::format("ways are {:.3g} times as long as the cameras or the map measure them; ", metres_per_unit) +
+                (is_unusable ? "wheels are ignored" : "lengths are those of the cameras or the map"),
+            is_unusable ? std::string("give lengths in metres: ") + unit_seen
+                        : "calibrate the radius of the wheels, or see that the baseline is right");
+  return is_unusable;
+}
+
+std::vector<MotionWarning> clock_warnings(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame) {
+  std::vector<MotionWarning> warnings;
+  const auto compare = [&](MotionSensor sensor, Timestamp first, Timestamp last) {
+    if (first <= last_frame && last >= first_frame) return;
+    warnings.push_back(
+        {sensor,
+         {},
+         fmt::format("all samples are from {:.3f} to {:.3f} s, but the images from {:.3f} to {:.3f} s; none is used",
+                     to_seconds(first), to_seconds(last), to_seconds(first_frame), to_seconds(last_frame)),
+         "stamp both by one clock, or shift the times of one"});
+  };
+  if (!samples.wheels.empty()) compare(MotionSensor::wheels, samples.wheels.front().time, samples.wheels.back().time);
+  if (!samples.velocities.empty()) {
+    compare(MotionSensor::wheels, samples.velocities.front().time, samples.velocities.back().time);
+  }
+  if (!samples.rates.empty()) compare(MotionSensor::gyroscope, samples.rates.front().time, samples.rates.back().time);
+  return warnings;
+}
+
+std::string metres_note(double sigma) {
+  return fmt::format("sigma_by_wheels {:.4f}", sigma);
+}
+
+std::vector<MotionWarning> check_motion(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame,
+                                        const MotionLimits& limits) {
+  constexpr Timestamp kStride = 500ms;
+  MotionCheck check(limits);
+  WheelTrack wheels;
+  for (const StampedPose& sample : samples.wheels) {
+    const auto [is_clock_set_back, beginning, next] = check.check(sample);
+    if (is_clock_set_back) wheels = {};
+    if (beginning) wheels.begin_segment(*beginning);
+    if (next) wheels.add(*next);
+  }
+  for (const BaseVelocity& sample : samples.velocities) {
+    if (check.check(sample) != StampCheck::Order::dropped) wheels.add(sample);
+  }
+  RateTrack rates;
+  Timestamp begin = first_frame;
+  for (const AngularRate& sample : samples.rates) {
+    if (check.check(sample) != StampCheck::Order::dropped) rates.add(sample);
+    if (sample.time - begin < kStride) continue;
+    const auto turned = wheels.between(begin, sample.time);
+    if (turned) check.note({sample.time, rotation_log(turned->rotation), rates.integral(begin, sample.time)});
+    begin = sample.time;
+    rates.forget_before(sample.time - kStride);
+  }
+  for (const Acceleration& sample : samples.accelerations) check.check(sample);
+  std::vector<MotionWarning> warnings = check.warnings();
+  const std::vector<MotionWarning> clocks = clock_warnings(samples, first_frame, last_frame);
+  warnings.insert(warnings.end(), clocks.begin(), clocks.end());
+  return warnings;
+}
+
+}  // namespace byre
