@@ -35,7 +35,7 @@ ImuSample parse_imu_line(const TextLine& line, const std::string& place) {
   }
   const std::optional<Timestamp> time = parse_nanoseconds(fields[0]);
   if (!time) throw InputError(place, "\"" + std::string(fields[0]) + "\" is not a time in nanoseconds");
-  ImuSample sample{{*time, parse_vector(fields, 1, place)}};
+  ImuSample sample{*time, AngularRate{*time, parse_vector(fields, 1, place)}};
   if (fields.size() < kAllFields) return sample;
   const Eigen::Vector3d acceleration = parse_vector(fields, kLeastFields, place);
   if (!acceleration.isZero(0.0)) sample.acceleration = {*time, acceleration};
@@ -56,13 +56,13 @@ void read_imu(const fs::path& path, const SensorClock& images, FileMotion& motio
   std::vector<Timestamp> stamps;
   for (const TextLine& line : read_lines(path)) {
     listed.push_back(parse_imu_line(line, place_of(path, line)));
-    stamps.push_back(listed.back().rate.time);
+    stamps.push_back(listed.back().time);
   }
   const RestoredTimes restored = restore_lines(std::move(stamps), path, images, motion.warnings);
   for (std::size_t i = 0; i < restored.items.size(); ++i) {
     const Timestamp time = restored.times[i];
     const ImuSample& sample = listed[restored.items[i]];
-    motion.samples.rates.push_back({time, sample.rate.rate});
+    motion.samples.rates.push_back({time, sample.rate->rate});
     if (sample.acceleration) motion.samples.accelerations.push_back({time, sample.acceleration->acceleration});
   }
 }

@@ -90,7 +90,7 @@ bool is_rectified(const Calibration& calibration) {
          right_from_left.translation.tail<2>().norm() < 1e-9 && right_from_left.translation.x() < 0.0;
 }
 
-double baseline_of(const Calibration& calibration) {
+double disparity_baseline(const Calibration& calibration) {
   if (calibration.right) return calibration.right->right_from_left.translation.norm();
   return calibration.depth ? calibration.depth->baseline : 0.0;
 }
@@ -129,7 +129,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
-  const double baseline = baseline_of(calibration);
+  const double baseline = disparity_baseline(calibration);
   constexpr double kLongestBaseline = 10.0;  // metres, that any robot carries
   if (baseline > kLongestBaseline) {
     throw InputError("calibration", "the baseline is " + std::to_string(baseline) + " m long",
