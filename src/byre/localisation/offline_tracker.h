@@ -100,7 +100,7 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
-  std::vector<KeyframeId> nearby_keyframes_;  // of the last view
+  std::vector<KeyframeId> nearby_keyframes_;  // keyframes near the last view
   std::vector<PointId> nearby_points_;        // points that these saw
   RivalPlace rival_;
   std::optional<Timestamp> last_search_;

@@ -67,8 +67,10 @@ bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, 
   constexpr double kMostTurning = 30.0;       // radians per second squared
   constexpr double kShare = 0.05;             // share of the depth of what is seen
   constexpr double kTurn = 0.1;               // radians
-  if (!has_pose_ || trajectory_.empty()) return false;
+  constexpr double kLongest = 0.3;            // seconds between frames, beyond which the motion is no longer known
+  if (!has_pose_ || trajectory_.empty() || !place_.is_believed()) return false;
   const double seconds = to_seconds(time - trajectory_.back().time);
+  if (seconds > kLongest) return false;
   const auto predicted = motion_.predict_by_velocity(byre::camera_from_world(map, trajectory_.back()), seconds);
   if (!predicted) return false;
   const Pose apart = inverse(body_pose(rig, *predicted)) * now;
