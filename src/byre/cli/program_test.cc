@@ -130,7 +130,7 @@ TEST_F(Program, PrintsArgumentsWithoutControlCharacters) {
   const std::string hostile = "\"$(printf 'a\\033[2J\\nb\\377')\"";
   for (const std::string& arguments :
        {"evaluate --estimate estimate.txt --truth " + hostile, "bag info " + hostile, "map . --pace " + hostile,
-        "validate " + hostile, "run . --map " + hostile, hostile, "map . --fps " + hostile}) {
+        "validate " + hostile, hostile, "map . --fps " + hostile}) {
     const Outcome outcome = run(arguments);
     EXPECT_NE(outcome.exit_code, 0) << arguments;
     EXPECT_THAT(outcome.errors, HasSubstr("a\\x1b[2J\\nb\\xff")) << arguments;

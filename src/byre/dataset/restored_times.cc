@@ -27,11 +27,17 @@ constexpr Timestamp kLeastStep = 20ms;  // shorter steps look like jitter
 // Stamps beyond are nonsense; the difference of two of them is still a Timestamp.
 constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);
 
-// Which items have a stamp. Zero is one in recordings whose clock starts there.
+// Which items have a stamp. Zero is one in recordings whose clock starts there: other stamps are near it, or it is that
+// of the first item alone and all others are within a day.
 std::vector<bool> which_are_stamped(const Times& stamps) {
   static constexpr Timestamp kNearZero = 10s;
-  const bool is_zero_time = std::ranges::any_of(
+  static constexpr Timestamp kDay = std::chrono::days(1);
+  const bool is_near_zero = std::ranges::any_of(
       stamps, [](Timestamp stamp) { return stamp != Timestamp{} && std::chrono::abs(stamp) < kNearZero; });
+  const bool begins_at_zero =
+      !stamps.empty() && stamps.front() == Timestamp{} && std::ranges::count(stamps, Timestamp{}) == 1 &&
+      std::ranges::all_of(stamps, [](Timestamp stamp) { return std::chrono::abs(stamp) < kDay; });
+  const bool is_zero_time = is_near_zero || begins_at_zero;
   std::vector<bool> are_stamped;
   for (const Timestamp stamp : stamps) {
     are_stamped.push_back(std::chrono::abs(stamp) <= kLastStamp && (is_zero_time || stamp != Timestamp{}));
