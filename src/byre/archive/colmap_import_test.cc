@@ -60,7 +60,7 @@ TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
     }
   };
   ColmapModel stale = model_;
-  double sign = 0.2;
+  double sign = 1.0;  // metres
   for (auto& [id, image] : stale.images) image.camera_from_world.translation.x() += (sign = -sign);
   EXPECT_THAT(refusal(stale), HasSubstr("has poses in images that do not fit its points: half of the key points are"));
   ColmapModel rough = model_;

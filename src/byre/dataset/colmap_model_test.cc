@@ -51,6 +51,9 @@ class ColmapModelFiles : public TestFolder {
  protected:
   // The error of reading a text model of which one file is this.
   std::string error_with(const std::string& file, const std::string& content) const {
+    for (const char* const part : {"cameras.txt", "images.txt", "points3D.txt"}) {
+      std::filesystem::remove(std::filesystem::path(folder_) / part);
+    }
     write_colmap_model(small_colmap_model(), folder_, ColmapFormat::text);
     write(file, content);
     return error_of([this] { read_colmap_model(folder_); });

@@ -80,7 +80,7 @@ TEST(OptionTable, NamesAndExplainsEachOptionOnceAndInItsGroup) {
   std::string group;
   for (const EngineOption& option : option_table()) {
     EXPECT_TRUE(names.insert(option.name).second) << option.name;
-    EXPECT_THAT(option.name, testing::MatchesRegex("([a-z]+\\.)?[a-z_0]+"));
+    EXPECT_THAT(option.name, testing::MatchesRegex("([a-z]+\\.)?[a-z_0-9]+"));
     EXPECT_FALSE(option.meaning.empty()) << option.name;
     EXPECT_EQ(option.meaning.find_first_of("()|#\n"), std::string::npos) << option.meaning;
     EXPECT_EQ(option.unit.find_first_of("(),|#\n"), std::string::npos) << option.unit;

@@ -210,8 +210,11 @@ TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
   slam.finish();
   ASSERT_GT(slam.keyframes(), 0);
   EXPECT_EQ(slam.point_positions().size(), static_cast<std::size_t>(slam.points()));
-  slam.save(map_);
-  const StoredMap kept = load_map(map_);
+  EXPECT_THROW(slam.save(map_), InputError) << "the mission reads it";
+  const std::filesystem::path beside = std::filesystem::path(map_).concat("_beside.byre");
+  slam.save(beside);
+  const StoredMap kept = load_map(beside);
+  std::filesystem::remove(beside);
   EXPECT_THAT(kept.recordings, SizeIs(1));
   EXPECT_FALSE(kept.plan) << "it was the other map that was laid on the plan";
 }
@@ -452,7 +455,7 @@ TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
         expect_finite(report);
         poses += report.map_from_body ? 1 : 0;
       }
-      EXPECT_GT(poses, 10) << "hostile samples lose no pose that is seen";
+      EXPECT_GE(poses, static_cast<int>(frames.size() / 3)) << "hostile samples lose no pose that is seen";
       EXPECT_FALSE(slam.motion_warnings().empty());
       slam.finish();
       for (const StampedPose& pose : slam.trajectory()) EXPECT_TRUE(is_finite(pose.world_from_body));
