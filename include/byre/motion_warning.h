@@ -27,6 +27,6 @@ struct MotionWarning {
 };
 
 // "wheels (barn/wheel.txt), at 12.340 s: WHAT; REMEDY". source: file or topic of the samples, left out where empty.
-std::string to_text(const MotionWarning& warning, std::string_view source = {});
+std::string to_text(const MotionWarning& warning, std::string_view source = "");
 
 }  // namespace byre

@@ -81,7 +81,7 @@ fs::path rates_of(const fs::path& recording) {
 }  // namespace
 
 Trajectory read_wheel_file(const fs::path& path, const SensorClock& images, std::vector<std::string>& warnings) {
-  Trajectory wheels = read_trajectory_lines(path);
+  Trajectory wheels = parse_pose_lines(path);
   std::vector<Timestamp> stamps;
   for (const StampedPose& sample : wheels) stamps.push_back(sample.time);
   const RestoredTimes restored = restore_lines(std::move(stamps), path, images, warnings);

@@ -179,7 +179,7 @@ Trajectory read_trajectory(const fs::path& path) {
   return trajectory;
 }
 
-Trajectory read_trajectory_lines(const fs::path& path) {
+Trajectory parse_pose_lines(const fs::path& path) {
   Trajectory trajectory;
   for_each_pose(path, [&](const StampedPose& sample, const std::string&) { trajectory.push_back(sample); });
   return trajectory;
