@@ -45,7 +45,7 @@ PlaceSearch OfflineTracker::collect_place() {
 PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const HiddenCells& hidden) {
   const Pose& pose = track.tracked.camera_from_world;
-  std::vector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
+  ReusedVector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
   if (keyframes != nearby_keyframes_) {
     nearby_points_ = points_of_place(*offline_, keyframes);
     nearby_keyframes_ = std::move(keyframes);
@@ -60,6 +60,13 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
   }
   return view_of_place({*offline_, rig, frame, track.tracked, nearby_points_, around, hidden,
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); }});
+}
+
+double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
+                                   const HiddenCells& hidden) {
+  PlaceHypothesis place(0.0, 0);
+  place.observe(view_of(frame, track, rig, hidden), true);
+  return place.log_odds();
 }
 
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,
@@ -150,6 +157,9 @@ OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, co
   } else if (is_in_place && agreement.translation > kElsewhere && found.log_odds > place.log_odds()) {
     return {.events = {}, .refutes_pose = true};
   }
+  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
+  const double prior = submaps.is_registered() ? 0.0 : whereabouts.log_odds_of_registration(offline_from_online);
+  if (prior < 0.0 && found.log_odds + prior < 0.0) return {};
   return {.events = {}, .correction = correction_by(found, camera_from_online, submaps.frame())};
 }
 

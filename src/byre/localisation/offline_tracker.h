@@ -72,6 +72,8 @@ class OfflineTracker {
   };
   // What a frame that was tracked in the map's frame shows of it.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
+  // Log-odds of a frame's pose by what that frame alone shows.
+  double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
   Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
@@ -100,8 +102,8 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
-  std::vector<KeyframeId> nearby_keyframes_;  // keyframes near the last view
-  std::vector<PointId> nearby_points_;        // points that these saw
+  ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view
+  ReusedVector<PointId> nearby_points_;        // points that these saw
   RivalPlace rival_;
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <Eigen/Eigenvalues>
 
@@ -26,23 +25,25 @@ constexpr double kReject = -4.0;  // log-odds from which an accepted place is re
 constexpr int kLengthOfMean = 6;     // frames over which a cell's points are averaged
 constexpr int kFramesToForget = 50;  // frames without a cell in view after which it counts no more
 
-std::vector<Eigen::Vector3d> places_around(const Eigen::Vector3d& middle, const std::vector<Eigen::Vector3d>& places) {
+using Places = ReusedVector<Eigen::Vector3d>;
+
+Places places_around(const Eigen::Vector3d& middle, const Places& places) {
   constexpr double kReach = 2.0;  // metres from the middle of a thing to its edge
-  std::vector<Eigen::Vector3d> around;
+  Places around;
   for (const Eigen::Vector3d& place : places) {
     if ((place - middle).norm() <= kReach) around.push_back(place);
   }
   return around;
 }
 
-Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& places) {
+Eigen::Vector3d mean_of(const Places& places) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& place : places) sum += place;
   return sum / static_cast<double>(places.size());
 }
 
 // How many of the places lie on one plane.
-int count_on_plane(const std::vector<Eigen::Vector3d>& places) {
+int count_on_plane(const Places& places) {
   constexpr double kThickness = 0.6;    // metres from the plane
   constexpr std::size_t kAnyPlane = 3;  // places through which a plane can be laid
   if (places.size() <= kAnyPlane) return static_cast<int>(places.size());
@@ -57,10 +58,10 @@ int count_on_plane(const std::vector<Eigen::Vector3d>& places) {
 }
 
 // How many of the places one moved thing can hold: those on a plane, no farther apart than a large thing is wide.
-int most_on_one_thing(const std::vector<Eigen::Vector3d>& places) {
+int most_on_one_thing(const Places& places) {
   int most = 0;
   for (const Eigen::Vector3d& place : places) {
-    const std::vector<Eigen::Vector3d> thing = places_around(mean_of(places_around(place, places)), places);
+    const Places thing = places_around(mean_of(places_around(place, places)), places);
     if (static_cast<int>(thing.size()) > most) most = std::max(most, count_on_plane(thing));
   }
   return most;
@@ -70,7 +71,7 @@ int most_on_one_thing(const std::vector<Eigen::Vector3d>& places) {
 
 double PlaceHypothesis::evidence() const {
   double all = 0.0;
-  std::vector<Eigen::Vector3d> agreeing;
+  Places agreeing;
   for (const Cell& cell : cells_) {
     if (cell.expected < kMinExpected) continue;
     const bool agrees = cell.seen >= std::max(1.0, kMinShare * cell.expected);

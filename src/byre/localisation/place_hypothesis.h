@@ -4,9 +4,14 @@
 #include "byre/slam/registration.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace byre {
+
+// Prior log-odds of a place that the measured motion of the robot does not lead to: one such find in a hundred is of a
+// robot that was carried.
+inline const double kLogOddsOfCarried = -std::log(100.0);
 
 // Whether the offline map is what a robot at a pose sees: the log-likelihood ratio, in nats, of that pose against any
 // other place (Wald 1945).

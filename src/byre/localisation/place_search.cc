@@ -65,7 +65,7 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
   PlaceHypothesis place(0.0, 0);
   const ReusedVector<PointId> around =
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
-  const std::vector<PointId> nearby =
+  const ReusedVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
   place.observe(view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden}),
                 true);

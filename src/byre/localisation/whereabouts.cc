@@ -81,12 +81,11 @@ bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, 
 bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const MapView& map) const {
   constexpr Timestamp kLongest = std::chrono::seconds(30);
-  constexpr Timestamp kLongestOnMission = std::chrono::seconds(3);  // whoever is carried is found in the map soon
   constexpr double kSigmas = 5.0;
   if (!reach_ || trajectory_.believed_count() == 0) return false;
   const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
   const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : believed;
-  if (frame.time - last_seen.time > (on_offline_map_ ? kLongestOnMission : kLongest)) return false;
+  if (!on_offline_map_ && frame.time - last_seen.time > kLongest) return false;
   std::optional<BodyMotion> told = since_believed_;  // since the last pose that was seen
   if (told && bridge_) told = *bridge_ * *told;
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
@@ -96,7 +95,7 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
     return is_beyond(told->covariance, inverse(led) * now);
   };
   if (on_offline_map_) {
-    return quality_.verdict != Verdict::untrusted && told && leads_well(*told) && is_elsewhere();
+    return quality_.verdict != Verdict::untrusted && told && is_elsewhere();
   }
   const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
@@ -137,9 +136,8 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
 // The test of a pose found without a prediction. It starts anew, and farther away than the robot can have moved with
 // more to prove; near where an accepted pose was shortly before it goes on.
 PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body) const {
-  constexpr double kSlack = 0.5;            // metres: error of poses
-  constexpr double kShortly = 1.0;          // seconds
-  const double of_jump = -std::log(100.0);  // one find in a hundred is of a robot that was carried
+  constexpr double kSlack = 0.5;    // metres: error of poses
+  constexpr double kShortly = 1.0;  // seconds
   const int frames = registration_.confirmations;
   if (trajectory_.empty() || !last_believed_) return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
   // A well-known motion leaves no time without a pose.
@@ -149,7 +147,7 @@ PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body
   };
   const double shift = (body.translation - odometry_.map_from_body().translation).norm();
   if (shift > kSlack + registration_.max_speed * seconds_since(*last_believed_)) {
-    return PlaceHypothesis(of_jump, kConfirmationsOfJump, registration_.accept_log_odds);
+    return PlaceHypothesis(kLogOddsOfCarried, kConfirmationsOfJump, registration_.accept_log_odds);
   }
   if (!last_accepted_ || seconds_since(*last_accepted_) > kShortly)
     return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
@@ -172,6 +170,19 @@ double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig
   return step.metres;
 }
 
+double Whereabouts::log_odds_of_registration(const Pose& offline_from_online) const {
+  if (!bridged_beginning_) return 0.0;
+  const auto& [body, covariance] = *bridged_beginning_;
+  return is_beyond(covariance, inverse(body) * offline_from_online * body) ? kLogOddsOfCarried : 0.0;
+}
+
+void Whereabouts::note_registration(const Pose& offline_from_online, bool is_by_hint) {
+  const double prior = is_by_hint ? 0.0 : log_odds_of_registration(offline_from_online);
+  place_ = PlaceHypothesis(prior, 0, registration_.accept_log_odds);
+  is_by_hint_ = is_by_hint;
+  bridged_beginning_.reset();
+}
+
 Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig, const MapView& map) {
   const HybridTrack& track = seen.track;
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
@@ -179,6 +190,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   if (seen.from_nothing && on_offline_map_) {
     place_ = hypothesis_of_find(seen.frame.time, body);
     is_by_hint_ = seen.is_by_hint;
+    bridged_beginning_.reset();
   }
   if (on_offline_map_) place_.observe(seen.view != nullptr ? *seen.view : PlaceView{}, !seen.from_nothing);
   is_by_hint_ = is_by_hint_ && !place_.is_accepted();
@@ -206,7 +218,12 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
 void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig,
                         const Map& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
-  if (bridge_ && !on_offline_map_ && !trajectory_.empty()) carried_ = {body, covariance_of_bridge()};
+  const bool is_bridged = bridge_ && !trajectory_.empty();
+  if (is_bridged && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
+  bridged_beginning_.reset();
+  if (is_bridged && on_offline_map_ && quality_.verdict != Verdict::untrusted) {
+    bridged_beginning_ = {body, covariance_of_bridge()};
+  }
   const std::optional<BodyMotion> led = bridge_;
   bridge_ ? void(odometry_.follow(body, {})) : odometry_.correct(body);
   open_odometry(led);

@@ -65,9 +65,12 @@ class Whereabouts {
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
   // A pose that goes on from the last one, as seen, is never out of reach.
   // Wheels did not turn as much as they must have to lead there from where the robot was seen last, or led it
-  // elsewhere: it is another place that looks alike. After half a minute the robot may have been carried. On an offline
-  // map that is asked for three seconds, where it was known well.
+  // elsewhere: it is another place that looks alike. Without an offline map that is asked for half a minute, after
+  // which the robot may have been carried. On an offline map it is asked as long as the motion is measured.
   bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
+  // Prior log-odds that the present submap, not registered yet, lies so in the offline map, by the measured motion up
+  // to its beginning. 0 where that is not known.
+  double log_odds_of_registration(const Pose& offline_from_online) const;
 
   // A frame later; motion is that of the body, where it is known.
   void tell(const std::optional<BodyMotion>& motion);
@@ -112,10 +115,7 @@ class Whereabouts {
   void turn_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.remember_offset({}); }
   // The submap was found to lie in the offline map, which is still to be proven.
-  void note_registration(bool is_by_hint) {
-    place_ = PlaceHypothesis(0.0, 0, registration_.accept_log_odds);
-    is_by_hint_ = is_by_hint;
-  }
+  void note_registration(const Pose& offline_from_online, bool is_by_hint);
   // It was looked for in the whole map too, and found where the hint had led.
   void note_agreement() { is_by_hint_ = false; }
   // By what the map moved the last pose, after_from_before; empty where there is none.
@@ -169,6 +169,7 @@ class Whereabouts {
     Matrix6 covariance;
   };
   std::optional<Carried> carried_;
+  std::optional<Carried> bridged_beginning_;  // of the present submap on a mission, until it is registered
   std::optional<Carried> odometry_open_;  // at an odometry pose, what bridges left open up to there
   Odometry odometry_;
   PlaceHypothesis place_;

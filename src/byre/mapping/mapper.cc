@@ -295,9 +295,9 @@ void Mapper::correct_later(const OnlineCorrection& correction) {
   waiting_correction_ = correction;
 }
 
-bool Mapper::correct_online() {
+std::optional<Pose> Mapper::correct_online() {
   assert(!is_read());
-  if (!waiting_correction_ || !local_.idle()) return false;
+  if (!waiting_correction_ || !local_.idle()) return std::nullopt;
   const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   std::vector<KeyframeId> path = online_.keyframe_ids();
   std::erase_if(path, [&](KeyframeId id) {
@@ -307,7 +307,7 @@ bool Mapper::correct_online() {
   submaps_.join_map_frame(correction.frame);
   ++revision_;
   if (newest_ && pending_.empty()) pending_.push_back(*newest_);
-  return true;
+  return correction.offline_from_online;
 }
 
 // A waiting correction goes first: what a job would work on is about to move.

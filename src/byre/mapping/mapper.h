@@ -139,7 +139,7 @@ class Mapper {
   std::optional<RigTurn> take_over_calibration(const Rig& rig);  // keyframes seen by a better calibration
   std::optional<LengthChanges> take_over_correction();           // a correction of the whole map
   void correct_later(const OnlineCorrection& correction);        // precondition: !has_correction()
-  bool correct_online();                                         // whether a waiting correction was carried out
+  std::optional<Pose> correct_online();                          // offline_from_online of one that was carried out
   void start_job();                                              // job for pending keyframes
 
   void note_hidden(const HiddenCells& hidden) { hidden_ = hidden; }  // see MappingOptions

@@ -154,9 +154,11 @@ void Session::take_over_results(FrameReport& report) {
     report.events.push_back(SessionEvent::map_corrected);
   }
   if (mission_) take_over_place(report);
-  if (mapper_.correct_online()) {
+  if (const auto offline_from_online = mapper_.correct_online()) {
     whereabouts_.note_online_correction();
-    if (!was_registered && is_registered(mapper_)) whereabouts_.note_registration(hint_.get().has_value());
+    if (!was_registered && is_registered(mapper_)) {
+      whereabouts_.note_registration(*offline_from_online, hint_.get().has_value());
+    }
     report.events.push_back(SessionEvent::online_corrected);
   }
   const auto correction = whereabouts_.follow_map(rig_, map());
@@ -249,7 +251,11 @@ Session::Located Session::locate(const InputFrame& input) {
     Tracker::Find find = tracker_.find(frame, scene);
     located.track = std::move(find.track);
     drop_non_finite();
-    if (located.track && !hint_.get() && is_out_of_reach()) located.track.reset();
+    // Where measured motion leads elsewhere, a find needs evidence in proportion; until then that motion is followed.
+    const auto is_less_likely = [&] {
+      return !mission_ || mission_->log_odds_of(frame, *located.track, rig_, lens_watch_.hidden()) + kLogOddsOfCarried < 0;
+    };
+    if (located.track && !hint_.get() && is_out_of_reach() && is_less_likely()) located.track.reset();
     located.refused = find.refused;
     located.from_nothing = located.track.has_value();
     located.is_by_hint = located.from_nothing && hint_.get();

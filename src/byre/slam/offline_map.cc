@@ -82,12 +82,12 @@ OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<Source
   }
 }
 
-std::vector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
+ReusedVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
                                                    int max_count) const {
   constexpr double kMaxAngle = 1.0;  // radians: beyond it hardly a point is in both views
   const Pose world_from_camera = inverse(camera_from_world);
   const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();
-  std::vector<std::pair<double, KeyframeId>> near;
+  ReusedVector<std::pair<double, KeyframeId>> near;
   for (const View& view : views_) {
     const double distance = (view.camera_in_world - world_from_camera.translation).norm();
     if (distance > max_distance) continue;
@@ -95,7 +95,7 @@ std::vector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world
     if (angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
   }
   std::ranges::sort(near);
-  std::vector<KeyframeId> nearest;
+  ReusedVector<KeyframeId> nearest;
   for (const auto& [distance, id] : near) {
     if (static_cast<int>(nearest.size()) >= max_count) break;
     nearest.push_back(id);

@@ -63,7 +63,7 @@ class OfflineMap {
 
   // Keyframes near a camera that look in a similar direction, nearest first. Nearness is distance in metres, and a
   // metre for each radian between the directions.
-  std::vector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
+  ReusedVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
 
  private:
   Map map_;

@@ -20,11 +20,11 @@ ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& 
 
 }  // namespace
 
-std::vector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
+ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
   constexpr double kNear = 1.0;     // metres, with a metre for each radian between viewing directions
   constexpr double kMaxTurn = 0.6;  // radians
   constexpr int kKeyframes = 3;
-  std::vector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
+  ReusedVector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
   std::erase_if(keyframes, [&](KeyframeId id) {
     const Pose& pose = offline.map().find_bare_keyframe(id)->camera_from_world;
     return angle_between(pose.rotation, camera_from_world.rotation) > kMaxTurn;
@@ -33,8 +33,8 @@ std::vector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose
   return keyframes;
 }
 
-std::vector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
-  std::vector<PointId> points;
+ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
+  ReusedVector<PointId> points;
   for (const KeyframeId id : keyframes) {
     for (const Sighting& sighting : offline.map().find_keyframe(id)->sightings) {
       if (sighting.point) points.push_back(*sighting.point);
@@ -51,7 +51,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   const MapView map(&query.offline.map(), nothing_online);
   const Pose& pose = query.tracked.camera_from_world;
   PlaceView view;
-  std::vector<ExpectedPoint> expected;
+  thread_local std::vector<ExpectedPoint> expected;
   project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);

@@ -28,8 +28,8 @@ struct PlaceView {
 };
 
 // Keyframes that looked at the map from about a pose, ascending, and the points that they saw, ascending.
-std::vector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
-std::vector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
+ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
+ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
 
 struct PlaceViewQuery {
   const OfflineMap& offline;

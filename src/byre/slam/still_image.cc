@@ -73,15 +73,12 @@ bool is_known_better(const BodyMotion& measured, const Vector6& velocity, double
 // depth: of corners without a disparity.
 void StillImage::compare(const Features& features, const Rig& rig, double depth) {
   corners_.clear();
-  const int step = std::max(1, reference_->size() / kMostSamples);
-  for (int i = 0; i < reference_->size(); i += step) {
-    const Keypoint& keypoint = reference_->keypoint(i);
-    if (keypoint.octave > kCoarsestOctave) continue;
+  for (const auto& [keypoint, descriptor] : reference_) {
     const Eigen::Vector2d pixel = keypoint.pixel.cast<double>();
     const bool has_depth = rig.is_stereo() && keypoint.has_disparity();
     const Eigen::Vector3d in_camera = has_depth ? rig.triangulate({pixel.x(), pixel.y(), keypoint.disparity})
                                                 : Eigen::Vector3d(depth * rig.ray(pixel));
-    corners_.push_back({pixel, in_camera, stays_at(features, keypoint, reference_->descriptor(i))});
+    corners_.push_back({pixel, in_camera, stays_at(features, keypoint, descriptor)});
   }
 }
 
@@ -119,7 +116,13 @@ bool StillImage::is_sudden_stop(const Vector6& later, double seconds, const Rig&
 }
 
 void StillImage::restart(const Frame& frame, const Vector6& velocity) {
-  reference_ = frame.features;
+  const Features& features = *frame.features;
+  const int step = std::max(1, features.size() / kMostSamples);
+  reference_.clear();
+  for (int i = 0; i < features.size(); i += step) {
+    const Keypoint& keypoint = features.keypoint(i);
+    if (keypoint.octave <= kCoarsestOctave) reference_.push_back({keypoint, features.descriptor(i)});
+  }
   since_ = frame.time;
   velocity_ = velocity;
   stopped_from_.reset();
@@ -130,7 +133,7 @@ void StillImage::restart(const Frame& frame, const Vector6& velocity) {
 Stillness StillImage::note(const Frame& frame, const Rig& rig, const std::optional<BodyMotion>& measured,
                            const CameraMotion& before) {
   constexpr double kLongest = 0.3;  // seconds for which motion is taken to go on
-  if (!reference_) {
+  if (reference_.empty()) {
     restart(frame, before.velocity);
     return {};
   }

@@ -5,7 +5,6 @@
 #include "byre/features/rolling_shutter.h"
 #include "byre/rig.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,10 +29,15 @@ class StillImage {
   Stillness note(const Frame& frame, const Rig& rig, const std::optional<BodyMotion>& measured,
                  const CameraMotion& before);
   // The frame shows too little to compare.
-  void forget() { reference_.reset(); }
+  void forget() { reference_.clear(); }
 
  private:
-  // A corner of the reference, and whether the frame has it at the same place.
+  // A corner of the first frame of the standstill.
+  struct ReferenceCorner {
+    Keypoint keypoint;
+    Descriptor descriptor;
+  };
+  // Where that corner is, and whether the frame has it at the same place.
   struct Corner {
     Eigen::Vector2d pixel;
     Eigen::Vector3d in_camera;
@@ -45,11 +49,11 @@ class StillImage {
   bool is_sudden_stop(const Vector6& later, double seconds, const Rig& rig) const;
   void restart(const Frame& frame, const Vector6& velocity);
 
-  std::shared_ptr<const Features> reference_;  // features of the first frame of the standstill
-  Timestamp since_{};                          // time of the reference
-  Vector6 velocity_ = Vector6::Zero();         // velocity of the camera before the reference, per second
-  std::optional<Vector6> stopped_from_;        // velocity at the reference, once known
-  std::optional<BodyMotion> measured_;         // since the reference; empty: not known
+  std::vector<ReferenceCorner> reference_;  // empty: there is none
+  Timestamp since_{};                       // time of the reference
+  Vector6 velocity_ = Vector6::Zero();      // velocity of the camera before the reference, per second
+  std::optional<Vector6> stopped_from_;     // velocity at the reference, once known
+  std::optional<BodyMotion> measured_;      // since the reference; empty: not known
   bool is_contradicted_ = false;
   std::vector<Corner> corners_;  // memory
 };

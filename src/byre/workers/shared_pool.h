@@ -15,22 +15,21 @@ class SharedPool {
  public:
   // A thing that nobody else holds, to be filled and given out.
   const std::shared_ptr<Thing>& take() {
-    const auto free = std::ranges::find_if(known_, [](const auto& known) { return known.use_count() == 1; });
-    if (free != known_.end()) {
+    auto taken = std::ranges::find_if(known_, [](const auto& known) { return known.use_count() == 1; });
+    if (taken != known_.end()) {
       std::atomic_thread_fence(std::memory_order_acquire);  // what another thread did with it is done before
-      return *free;
+    } else {
+      taken = known_.begin();  // unused, or held for longer than all others
+      *taken = std::make_shared<Thing>();
     }
-    const auto unused = std::ranges::find(known_, nullptr);
-    std::shared_ptr<Thing>& made = unused != known_.end() ? *unused : known_[next_forgotten_++ % kMost];
-    made = std::make_shared<Thing>();
-    return made;
+    std::rotate(taken, taken + 1, known_.end());
+    return known_.back();
   }
 
  private:
   static constexpr std::size_t kMost = 8;  // more than are held at a time of what is not kept
 
-  std::array<std::shared_ptr<Thing>, kMost> known_;
-  std::size_t next_forgotten_ = 0;
+  std::array<std::shared_ptr<Thing>, kMost> known_;  // by when they were given out; unused ones first
 };
 
 }  // namespace byre
