@@ -88,7 +88,7 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
     cv::Mat written(height, width, CV_8UC1, grey.pixels.data());
     try {
       cv::cvtColor(given, written, *encoding->to_grey);
-    } catch (const cv::Exception& exception) {  // sizes that a conversion does not take
+    } catch (const cv::Exception& exception) {  // sizes that a conversion does not support
       throw InputError(place, "has an image that cannot be converted from '" + message.encoding + "': " + exception.err,
                        "look at width, height and encoding of what the camera's driver sends");
     }

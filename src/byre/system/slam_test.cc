@@ -162,7 +162,7 @@ TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
   causal(slam, shared_frames());
   ASSERT_GT(slam.keyframes(), 0);
   const auto time = fs::last_write_time(map_);
-  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map that the mission is on"));
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map of the mission"));
   EXPECT_EQ(fs::last_write_time(map_), time);
   const fs::path letter = map_.string() + ".txt";
   std::ofstream(letter) << "Dear reader";
