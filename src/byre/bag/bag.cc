@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // bytes that any message may be decompressed to
+constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // decompressed bytes allowed for a message of any size
 constexpr std::string_view kRos1Begin = "#ROSBAG V";
 constexpr std::string_view kSqliteBegin = "SQLite format 3";
 

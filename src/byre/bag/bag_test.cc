@@ -182,7 +182,7 @@ TEST_F(BagFiles, OfRosbag2ThatAreNamedTwiceAreReadOnce) {
   write("bag/metadata.yaml",
         "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.mcap, ./bag_0.mcap, bag_0.mcap, link.mcap]\n");
   expect_scene(folder_ / "bag", ros::Encoding::cdr, "mcap");
-  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: names files again 3 times")));
+  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: has 3 repeated file names")));
 }
 
 TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {

@@ -45,8 +45,8 @@ struct RestoredTimes {
 //   late items            Their stamps go back for a moment and fill a gap, while later stamps and the reception delay
 //                         continue. They are put in order.
 //   zero or wrong stamps  They are replaced by even spacing between their neighbours.
-//   coarse stamps         Most items have the stamp of a neighbour, as with whole seconds. Receive times replace them. If
-//                         these are unknown or coarse too, the items of a stamp are spread evenly.
+//   coarse stamps         Most items have the stamp of a neighbour, as with whole seconds. They are replaced by receive
+//                         times. If these are unknown or coarse too, the items of a stamp are spread evenly.
 //   repeated stamps       The first item with a stamp is kept.
 // Ascending stamps are returned unchanged. If all items have one stamp and receive times are of no use, one item is
 // kept. other: clock of the images, if the items are of another sensor.
