@@ -257,7 +257,7 @@ void require_poses(const MapRun& run, const MapProtocol& protocol) {
   if (!run.final.empty()) return;
   const FrameCounts counts = count_frames(run.frames);
   if (2 * counts.unreadable > counts.frames) {
-    throw std::runtime_error(fmt::format("no frame got a pose: {} of {} could not be read; the warnings say why",
+    throw std::runtime_error(fmt::format("no frame got a pose: {} of {} could not be read; see the warnings",
                                          counts.unreadable, counts.frames));
   }
   const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;

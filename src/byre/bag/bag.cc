@@ -59,7 +59,7 @@ class TemporaryFile {
     if (error) refuse("TMPDIR names no folder");
     std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
-    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be made: " + std::strerror(errno));
+    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be created: " + std::strerror(errno));
     close(descriptor);
     path_ = name;
   }
