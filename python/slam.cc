@@ -72,7 +72,7 @@ void bind_reports(py::module_& module) {
       .def_readonly("events", &FrameReport::events)
       .def_property_readonly(
           "warnings", [](const FrameReport& report) { return texts_of(report.warnings); },
-          "Faults of wheels, gyroscope and accelerometer found since the last frame, as text; each kind once.")
+          "Faults of wheels, gyroscope and accelerometer since the last frame, as text; each kind once.")
       .def_readonly("features", &FrameReport::features)
       .def_readonly("matches", &FrameReport::matches)
       .def_readonly("inliers", &FrameReport::inliers)
@@ -211,7 +211,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("max_features", &SlamOptions::max_features)
       .def_readwrite("image_threads", &SlamOptions::image_threads)
       .def_readwrite("baseline", &SlamOptions::baseline,
-                     "Metres, in place of the calibration's; confirms one beyond 1 m.")
+                     "Metres, replaces that of the calibration; confirms one outside 2 mm to 1 m.")
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
       .def_readwrite("vocabulary", &SlamOptions::vocabulary)
@@ -311,7 +311,7 @@ void bind_results(SlamClass& type) {
       .def_property_readonly("calibration", &Slam::calibration, "As it is known by now.")
       .def_property_readonly("is_metric", &Slam::is_metric)
       .def_property_readonly("map_damage", &Slam::map_damage,
-                             "Why the file of a mission's map cannot be read further; None without damage.")
+                             "Damage of the file of a mission's map, as text; None without damage.")
       .def_property_readonly("keyframes", &Slam::keyframes)
       .def_property_readonly("points", &Slam::points)
       .def_property_readonly(

@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
-"""Measures what faulty wheels and IMUs do to poses: one row per fault.
+"""Measures the effect of faulty wheels and IMUs on poses, one row per fault.
 
 Usage: motion_faults.py RECORDING --map MAP --map-truth RECORDING [options]      missions on a map (byre run)
        motion_faults.py RECORDING --task map [options]                           mapping (byre map)
 
-RECORDING is an EuRoC folder with truth, wheel.txt and mav0/imu0/data.csv, such as byre simulate cowshed --motion
-writes. Each fault is made in a copy, whose images are links. Columns:
+RECORDING is an EuRoC folder with ground truth, wheel.txt and mav0/imu0/data.csv, as written by
+byre simulate cowshed --motion. Each fault is made in a copy whose images are links. Columns:
 
   frames     frames of the run
   trusted    frames with the verdict "trusted" (missions)
-  wrong      frames that are trusted and more than 0.2 m off (missions); the bar is 0
+  wrong      trusted frames more than 0.2 m off (missions); limit 0
   worst m    largest error of a trusted frame, and of any frame (missions)
-  jump mm    largest difference between the odometry's step from frame to frame and the true step
-  of bound   the same as a multiple of the odometry's own 95 % bound; the bar is 1
+  jump mm    largest error of an odometry step from frame to frame
+  of bound   the same as a multiple of the odometry's own 95 % bound; limit 1
   RMSE mm    root mean square error of frames with a pose (missions), or ATE of the final trajectory (mapping)
-  ratio      that divided by the one without wheels and IMU; over frames with a pose in both runs (missions)
-  warnings   warnings of the run that name wheels, gyroscope or accelerometer
+  ratio      RMSE relative to a run without wheels and IMU; over frames with a pose in both runs (missions)
+  warnings   warnings of the run about wheels, gyroscope or accelerometer
 
-Exit code: 0 the bar is reached (wrong, of bound), 1 it is not, 2 a run failed. Needs numpy.
+Exit code: 0 within the limits (wrong, of bound), 1 beyond them, 2 a run failed. Needs numpy.
 """
 import argparse
 import json
@@ -32,8 +32,8 @@ import tempfile
 import numpy as np
 
 WRONG = 0.2    # metres
-BOUND = 7.815  # squared Mahalanobis distance that 95 % of errors of three numbers lie within
-NOISE = 1e-3   # metres, of a step: truth is rounded, and what is seen is noisy
+BOUND = 7.815  # 95 % quantile of chi-squared with three degrees of freedom
+NOISE = 1e-3   # metres, of a step: rounding of truth and noise of visual odometry
 
 
 def rotation(quaternion_xyzw) -> np.ndarray:
@@ -50,12 +50,12 @@ def product(a, b) -> np.ndarray:
 
 
 def relative(reference, pose) -> np.ndarray:
-    """A wheel pose (x, y, z and quaternion) as seen from another one."""
+    """A wheel pose (x, y, z and quaternion) relative to another one."""
     turned = np.append(-reference[3:6], reference[6])
     return np.append(rotation(turned) @ (pose[:3] - reference[:3]), product(turned, pose[3:]))
 
 
-# Faults of wheels: rows of time and pose in, rows out. t: seconds from the first row.
+# Faults of wheels: functions of rows of time and pose. Seconds are from the first row.
 
 def reset_at(seconds):
     def change(rows):
@@ -113,7 +113,7 @@ def clock_jump_at(at, seconds):
     return change
 
 
-# Faults of the IMU: rows of time in nanoseconds, three rates, three accelerations.
+# Faults of the IMU: functions of rows of time in nanoseconds, three rates and three accelerations.
 
 def degrees(rows):
     rows[:, 1:4] *= 180 / np.pi

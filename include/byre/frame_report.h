@@ -69,7 +69,7 @@ struct FrameReport {
   Doubt refused_place = Doubt::none;
   TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
   std::vector<SessionEvent> events;                     // what happened in this frame, in order
-  std::vector<MotionWarning> warnings;                  // faults of motion inputs since the last frame, each kind once
+  std::vector<MotionWarning> warnings;                  // faults of motion inputs since the last frame; each kind once
   double track_seconds = 0.0;                           // wall time of tracking on the calling thread
   double map_seconds = 0.0;                             // wall time of mapping on the calling thread, with inline jobs
   std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame

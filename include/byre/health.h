@@ -30,13 +30,13 @@ enum class Doubt : std::uint8_t {
   clustered,           // the points lie in a small part of the image
   uncertain,           // the points leave the pose open by more than is useful
   maps_disagree,       // offline and online points give different poses
-  frozen,              // the camera gives the same image again
+  frozen,              // the camera repeats its image, bit by bit or with sensor noise
   right_camera,        // the right image is dark, overexposed, flat or blurred where the left one is not
   cameras_disagree,    // left and right images do not fit together: out of step, moved, swapped, or not calibrated so
   calibration,         // points of the map fit the images by another focal length
   bridged,             // nothing is recognised: the pose goes on by what wheels or a gyroscope tell
   dirty,               // dirt hides most of the image
-  map_damaged,         // the file of the offline map cannot be read further, see Slam::map_damage
+  map_damaged,         // a part of the offline map's file cannot be read, see Slam::map_damage
   // There is no pose, for the robot cannot be where it was found:
   off_the_plane,  // it would stand too high, too low or too tilted on the ground that the map was driven on
   in_wall,        // it would be inside a wall of the floor plan

@@ -10,7 +10,8 @@ namespace byre {
 // what to do about it; what() reads "place: reason (remedy)".
 class InputError : public std::runtime_error {
  public:
-  // place: "file", "file:line" or "file: field"; remedy: may be empty. Text from outside is made printable: \n, \xNN.
+  // place: "file", "file:line" or "file: field"; remedy: may be empty. Control characters and invalid UTF-8 are escaped
+  // as \n, \t, \r or \xNN.
   InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
 
   const std::string& place() const { return place_; }

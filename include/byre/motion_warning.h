@@ -8,25 +8,25 @@
 
 namespace byre {
 
-// Sensor, or other source, of the motion of the body.
+// Source of measured motion.
 enum class MotionSensor : std::uint8_t {
   wheels,
   gyroscope,
   accelerometer,
-  body_motion  // motion handed to Slam::process
+  body_motion  // BodyMotion given to Slam::process
 };
 
 std::string_view to_string(MotionSensor sensor);
 
-// Fault of a motion input. Each kind of fault is reported once.
+// Fault of a motion input. Each kind of fault is reported once per sensor.
 struct MotionWarning {
   MotionSensor sensor = MotionSensor::wheels;
-  Timestamp time{};    // time of the sample that showed the fault; zero where no single sample does
-  std::string what;    // the fault with its value, and what becomes of the samples
-  std::string remedy;  // what to change
+  Timestamp time{};    // time of the first faulty sample; zero if the fault is not of a single sample
+  std::string what;    // fault with its value, and effect on the samples
+  std::string remedy;  // advice to the user
 };
 
-// "wheels (barn/wheel.txt), at 12.340 s: WHAT; REMEDY". source: file or topic of the samples, left out where empty.
+// "wheels (barn/wheel.txt), at 12.340 s: WHAT; REMEDY". source: file or topic of the samples; may be empty.
 std::string to_text(const MotionWarning& warning, std::string_view source = "");
 
 }  // namespace byre

@@ -38,28 +38,28 @@ struct FrameRange {
   int stride = 1;                   // every n-th frame within the limits is read
 };
 
-// What the times of a recording's frames are made of.
+// Source of the frame times of a recording.
 enum class TimeSource : std::uint8_t {
   stamps,         // the recorded time stamps
-  receive_times,  // when a bag's messages were received: their stamps are zero, or as coarse as whole seconds
-  even_spacing    // coarse stamps, with the images of one stamp spread evenly
+  receive_times,  // receive times of a bag's messages, whose stamps are zero or as coarse as whole seconds
+  even_spacing    // stamps as coarse as whole seconds, with the images of a stamp spread evenly
 };
 
 std::string_view to_string(TimeSource source);
 
-// The clock that stamped the images was set while they were recorded.
+// Step of the clock that stamped the images.
 struct ClockStep {
-  int frame = 0;   // first frame after it, counted in the whole recording
-  Timestamp by{};  // negative: set back. Frame times are continuous: the sum of the steps so far is subtracted
+  int frame = 0;   // first frame after the step, counted in the whole recording
+  Timestamp by{};  // negative: set back. Frame times are stamps less the sum of the steps so far
 };
 
-// How frame times differ from the recorded time stamps. Counts are of the whole recording, left images.
+// Differences between frame times and recorded time stamps. Counts are of the left images of the whole recording.
 struct TimeCorrections {
   TimeSource source = TimeSource::stamps;
   std::vector<ClockStep> clock_steps{};
-  int late = 0;       // images recorded after later ones: put in order
-  int repeated = 0;   // images with the stamp of another: left out
-  int unstamped = 0;  // images whose stamp is zero or nonsense: timed by their neighbours
+  int late = 0;       // images recorded after later ones; put in order
+  int repeated = 0;   // images with the stamp of another image; left out
+  int unstamped = 0;  // images with a zero or wrong stamp; timed by their neighbours
 
   bool any() const { return source != TimeSource::stamps || !clock_steps.empty() || late + repeated + unstamped > 0; }
 };
@@ -77,9 +77,9 @@ struct OpenOptions {
   bool use_gyroscope = false;  // whether imu0 of the folder, or the only sensor_msgs/Imu of a bag is used
   std::optional<std::string> wheels_topic{};  // topic of a bag's wheels, nav_msgs/Odometry or twists; empty: none
   std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
-  std::optional<double> pair_tolerance_s{};   // most seconds between the stamps of a pair; empty: 0.002
-  // Baseline of a stereo pair in metres, in place of the calibration's length. One beyond 1 m is refused unless it is
-  // confirmed here: extrinsics in centimetres or millimetres are likelier.
+  std::optional<double> pair_tolerance_s{};   // largest difference between the stamps of a pair, seconds; empty: 0.002
+  // Baseline of a stereo pair in metres, replaces that of the calibration. A calibration with a baseline outside 2 mm
+  // to 1 m is refused unless it is confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
 };
 
@@ -99,7 +99,8 @@ class Recording {
   virtual std::optional<ImageFrame> read(int index) = 0;
   // What wheels and a gyroscope told meanwhile; none where nothing was recorded or asked for.
   virtual const MotionSamples& motion() const;
-  // How times() differs from the recorded stamps; nothing for steady frame rates. Each correction has a warning, too.
+  // Differences between times() and the recorded stamps; none for recordings timed by a frame rate. Each correction is
+  // among the warnings too.
   virtual const TimeCorrections& time_corrections() const;
   virtual const std::vector<std::string>& warnings() const = 0;  // warnings of opening it first, then of reading
 
@@ -114,12 +115,11 @@ bool is_video_file(const std::filesystem::path& path);
 
 // A recording in any of the formats. Images and videos need a calibration: that of the options, or one that
 // find_calibration finds in the folder (of a video: beside it). They have the times that their file names say, else
-// those of a steady frame rate, 30 Hz with a warning where nothing says which. Bags tell their calibration in camera
-// info and /tf_static. Of a recording of one camera with the
-// calibration of a pair, the choice of camera says which of the two that was. Throws InputError, naming the file and
-// what is wrong with it: missing files, a calibration that does not parse, makes no sense, has an absurd
-// baseline (see OpenOptions) or is of another image size, a camera that is not there, images that all have one
-// time stamp, no frame in range.
+// those of a steady frame rate, 30 Hz with a warning if it is unknown. Bags have their calibration in camera info and
+// /tf_static. If a recording has one camera and its calibration is of a pair, the choice of camera selects the one of
+// the two. Throws InputError with file and reason for missing files, a calibration that does not parse, is invalid, has
+// an absurd baseline (see OpenOptions) or is of another image size, an absent camera, images that all have one time
+// stamp, and a range without frames.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& path, const FrameRange& range,
                                           const OpenOptions& options = {});
 

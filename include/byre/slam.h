@@ -38,8 +38,8 @@ struct SlamOptions {
   double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
   int max_features = 1000;             // most features a frame
   int image_threads = 2;               // threads that work on the images of a frame; poses do not depend on them
-  // Baseline of a stereo pair in metres, in place of the calibration's length. One beyond 1 m needs to be confirmed so:
-  // it is refused otherwise, since extrinsics in centimetres or millimetres are likelier.
+  // Baseline of a stereo pair in metres, replaces that of the calibration. A calibration with a baseline outside 2 mm
+  // to 1 m is refused unless it is confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
   std::string recording = "live";                     // name of the frames in a kept map
   std::string site;                                   // place where the map was made, noted in it unless empty
@@ -109,8 +109,8 @@ class Slam {
   void pause_mapping(bool is_paused);
   bool is_mapping_paused() const;
 
-  // Why the file of a mission's map cannot be read further: file, section, reason and remedy; empty without damage. A
-  // mission reads its map as it drives. Poses go on by what was read before, untrusted; save() works.
+  // Damage of the file of a mission's map: file, section, reason and remedy; empty without damage. A mission reads its
+  // map as it drives. After damage it continues on the parts read before, untrusted; save() works.
   std::optional<std::string> map_damage() const;
 
   // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
@@ -118,10 +118,9 @@ class Slam {
   // later are dropped.
   void finish(const std::function<bool()>& should_stop = {});
 
-  // Keeps what was mapped, with or without finish() before: the whole map, or of a mission what was mapped beside the
-  // map it is on. Replaces the file as a whole. No frame is tracked meanwhile: some milliseconds a keyframe. Throws
-  // InputError when it cannot be written, holds something other than a map or the map of the mission, or nothing was
-  // mapped yet.
+  // Writes the map, with or without finish() before; of a mission, the online map. Replaces the file as a whole. Blocks
+  // tracking for some milliseconds per keyframe. Throws InputError if the file cannot be written, is there and is no
+  // map, or is the map of the mission, and if nothing was mapped yet.
   void save(const std::filesystem::path& path) const;
 
   // Every frame that had a pose, as the map has it now. Where wheels lead on from these poses, or back to the frames
@@ -142,7 +141,7 @@ class Slam {
   int keyframes() const;
   int points() const;
   std::vector<Eigen::Vector3d> point_positions() const;  // places of these points, in the frame of map_from_body
-  // Faults of motion inputs so far, each kind once; FrameReport::warnings has those since the frame before.
+  // Faults of motion inputs so far, each kind once. FrameReport::warnings holds the new ones of each frame.
   const std::vector<MotionWarning>& motion_warnings() const;
   int frames() const;                  // all frames handed over
   int frames(InputFault fault) const;  // frames handed over with that fault

@@ -29,8 +29,8 @@ Trajectory read_kitti_poses(const std::filesystem::path& poses, const std::files
 // with commas (an EuRoC camera's data.csv). Throws InputError naming file and line.
 std::vector<Timestamp> read_times(const std::filesystem::path& path);
 
-// Nine decimals of seconds and metres. KITTI's format has no times. Replaces an older trajectory as a whole or not at
-// all. Throws InputError if the file cannot be written, or holds something other than a trajectory.
+// Seconds and metres have nine decimals. KITTI's format has no times. Replaces an older trajectory as a whole or not at
+// all. Throws InputError if the file cannot be written, or is there and is no trajectory.
 void write_trajectory(const Trajectory& trajectory, const std::filesystem::path& path,
                       TrajectoryFormat format = TrajectoryFormat::tum);
 

@@ -45,7 +45,7 @@ for package in "$prefix"/lib/python3*/dist-packages/byre; do
   PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
 done
 
-# The example of the document compiles against what was installed.
+# The example in docs/floor_plan.md compiles against the installation.
 mkdir "$work/from_docs"
 sed -n '/^## From C++$/,$p' "$source_dir/docs/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
   >"$work/from_docs/floor_plan.cc"

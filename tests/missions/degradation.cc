@@ -257,7 +257,7 @@ Image with_noise(const Image& image, double sigma, std::uint64_t seed) {
   return to_image(grey + white_noise(grey.size(), sigma, seed));
 }
 
-// The image of so many steps before; the first one until then. Step 0 begins anew.
+// Delays images by a number of steps; gives the first image until then. Step 0 restarts.
 class Delay {
  public:
   explicit Delay(int steps) : steps_(steps) {}

@@ -48,11 +48,11 @@ Degradation dirt(int spots);  // other ones on each lens
 Degradation contrast_loss(double share);
 
 // Cameras that lie. Those that remember images are for one run, step by step.
-Degradation frozen(double sigma = 0.0);   // on the image of step 0, with fresh noise of so many grey values
+Degradation frozen(double sigma = 0.0);   // repeats the image of step 0, with fresh noise (grey values)
 Degradation right_exposed(double times);  // 0: dead
 Degradation right_noisy(double sigma);    // grey values
-Degradation right_late(int steps);        // the right image is that of so many steps before
-Degradation left_late(int steps);         // the left image is that of so many steps before
+Degradation right_late(int steps);        // the right image is late by a number of steps
+Degradation left_late(int steps);         // the left image is late by a number of steps
 Degradation swapped();                    // left for right
 Degradation mirrored();                   // left to right
 Degradation upside_down();

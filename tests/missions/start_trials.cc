@@ -1,15 +1,16 @@
-// Starts missions on a map every so many seconds of a recording, and counts frames that are trusted and wrong.
+// Starts missions on a map at regular times of a recording, and counts frames that are trusted and wrong.
 // Usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [options]
-// MISSION is a recording with ground truth; MAP an offline map made from RECORDING, whose ground truth aligns it.
+// MISSION is a recording with ground truth. MAP is an offline map made from RECORDING, and is aligned by its ground
+// truth.
 //   --every S          seconds between starts (0.5)
-//   --length S         seconds of each mission (11)
-//   --from S --to S    starts between these times of the recording
+//   --length S         duration of each mission, seconds (11)
+//   --from S --to S    first and last start, seconds of the recording
 //   --camera C         stereo or left (stereo)
-//   --no-wheels        do not use wheel.txt and the gyroscope
+//   --no-wheels        without wheel.txt and gyroscope
 //   --cover A:B        black images from A to B seconds after each start
-//   --trace FILE       a line of CSV for each frame
-// Features of each frame are extracted once. Exit code: 0 no frame is trusted and wrong, 1 some are, 2 bad usage or
-// data.
+//   --trace FILE       writes a line of CSV for each frame
+// Features of each frame are extracted once. Exit code: 0 without frames that are trusted and wrong, 1 with such
+// frames, 2 bad usage or data.
 
 #include "mission_score.h"
 
@@ -93,7 +94,7 @@ std::optional<StartOptions> parse(std::span<char*> arguments) {
   return options;
 }
 
-// Features of a recording's frames; empty where images cannot be read.
+// Features of the frames of a recording; empty for frames that cannot be read.
 std::vector<std::optional<Frame>> extract_all(Recording& recording, const Calibration& calibration) {
   limit_image_threads(1);
   Extractor extractor(calibration, {});
@@ -105,7 +106,7 @@ std::vector<std::optional<Frame>> extract_all(Recording& recording, const Calibr
   return frames;
 }
 
-// A frame of a covered lens.
+// The frame with a covered lens.
 Frame covered(const Frame& frame) {
   Frame dark = frame;
   dark.features = std::make_shared<const Features>();
@@ -127,7 +128,7 @@ struct Mission {
   const Vocabulary& vocabulary;
 };
 
-// Motion samples from a quarter of a second before the first frame.
+// Adds samples up to a time; leaves out those earlier than a quarter of a second before the first frame.
 template <typename Sample, typename Add>
 void feed(const std::vector<Sample>& samples, std::size_t& next, Timestamp begin, Timestamp until, Add add) {
   for (; next < samples.size() && samples[next].time <= until; ++next) {

@@ -177,7 +177,7 @@ class SharedFlag {
   Flag* flag_;
 };
 
-// For some seconds at most.
+// Waits until the condition holds, for at most five seconds.
 void wait_until(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (!holds() && std::chrono::steady_clock::now() < deadline) {
@@ -207,8 +207,9 @@ TEST_F(InterruptedSave, LeavesAMapWhenItsProcessIsKilled) {
     inside += *is_saving ? 1 : 0;
     while_writing += has_unfinished_files() ? 1 : 0;
     expect_old_or_new_map();
-    EXPECT_LE(std::distance(fs::directory_iterator(folder_), {}), 2) << "what kills leave does not pile up";
-    if (has_unfinished_files()) save_map(old_map_, file_);  // removes it
+    EXPECT_LE(std::distance(fs::directory_iterator(folder_), {}), 2)
+        << "temporary files of killed processes do not accumulate";
+    if (has_unfinished_files()) save_map(old_map_, file_);  // removes the temporary file
     EXPECT_FALSE(has_unfinished_files());
   }
   std::printf("%d kills inside a save, %d of them between the first byte and the rename\n", inside, while_writing);

@@ -84,7 +84,7 @@ TEST_F(FleetTest, ComesBackWithTheBrokerAndNeverHoldsAFrameUp) {
   EXPECT_TRUE(fleet.find(kConnection, connection_is("CONNECTIONBROKEN"))) << "the broker tells of who is gone";
 }
 
-TEST_F(FleetTest, SaysThatThereIsNoBroker) {
+TEST_F(FleetTest, ReportsAnAbsentBroker) {
   std::optional<MqttBroker> broker(std::in_place, folder_, "byre", "secret");
   const std::string given = settings(*broker);
   const std::string place = "127.0.0.1:" + std::to_string(broker->port());

@@ -70,7 +70,7 @@ class KilledRobot {
     seconds_to_save_ = seconds_since(asked);
     EXPECT_EQ(node_->stop(), 0) << node_->said();
     look_at_files(before, true);
-    EXPECT_FALSE(unfinished()) << "what was left of another save is gone with the next one";
+    EXPECT_FALSE(unfinished()) << "a save removes temporary files of earlier ones";
     std::printf("%s, not killed: ready after %.2f s, found after %d frames, saved in %.3f s, %d sessions\n",
                 task_.name.c_str(), seconds_to_begin_, frames_to_find_, seconds_to_save_, sessions());
   }
@@ -109,7 +109,7 @@ class KilledRobot {
  private:
   static constexpr int kFramesToFind = 60;
 
-  // The newest temporary file of the saved map, if there is one.
+  // The newest temporary file of the saved map; empty without one.
   std::optional<fs::path> unfinished() const {
     std::optional<fs::path> newest;
     for (const auto& entry : fs::directory_iterator(task_.saved.parent_path())) {
@@ -206,7 +206,7 @@ class KilledRobot {
     const fs::path previous = task_.saved.parent_path() / (task_.saved.stem().string() + ".previous.byre");
     for (const fs::path& file : {task_.saved, previous}) names.erase(file.filename().string());
     if (const auto file = unfinished()) names.erase(file->filename().string());
-    std::erase_if(names, [&](const std::string& name) {  // a link that a kill left before it got its name
+    std::erase_if(names, [&](const std::string& name) {  // a link left by a kill before it was renamed
       return name.starts_with(previous.filename().string() + ".") && name.ends_with(".unfinished");
     });
     EXPECT_THAT(names, testing::IsEmpty()) << "nothing piles up";

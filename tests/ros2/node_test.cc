@@ -162,7 +162,7 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
     return event.data().find(R"("command":"save\\n<3>fake")") != std::string::npos;
   })) << node.said();
   EXPECT_EQ(node.said().find("\n<3>fake"), std::string::npos) << node.said();
-  command(std::string(1 << 20, 'a'));  // longer than commands may be
+  command(std::string(1 << 20, 'a'));  // longer than a command may be
   EXPECT_EQ(answer("load room.byre").at("done"), true);
   EXPECT_EQ(node.said().find("aaa"), std::string::npos);
   EXPECT_EQ(answer("relocalise").at("done"), true);

@@ -183,8 +183,7 @@ void require_content(const ColmapModel& model, const std::string& name) {
   if (model.points.empty()) throw InputError(name, "is a model without points, so no map can be made of it", remedy);
 }
 
-// Pixels from each key point of the model to where its point projects; for one that does not project, the image's
-// width.
+// Reprojection error of each key point with a point, pixels; the image width for a point that does not project.
 std::vector<double> reprojection_errors(const ColmapModel& model, const std::string& name) {
   std::map<std::uint32_t, Camera> cameras;
   std::vector<double> errors;
@@ -204,22 +203,21 @@ std::vector<double> reprojection_errors(const ColmapModel& model, const std::str
   return errors;
 }
 
-// Poses of another state of the reconstruction than the points give a map of nothing.
+// Refuses a model whose poses are of another state of the reconstruction than its points.
 void require_agreement(const ColmapModel& model, const std::string& name) {
-  constexpr double kLargestMedian = 8.0;  // pixels; about 0.5 in a finished model
-  constexpr double kShareOfWidth = 0.01;  // the bound for large images
+  constexpr double kLargestMedian = 8.0;  // pixels; a finished model has about 0.5
+  constexpr double kShareOfWidth = 0.01;  // bound for large images
   std::vector<double> errors = reprojection_errors(model, name);
   if (errors.empty()) return;
   std::ranges::sort(errors);
   const double median = quantile(errors, 0.5);
   const auto width = static_cast<double>(model.cameras.begin()->second.width);
   if (median <= std::max(kLargestMedian, kShareOfWidth * width)) return;
-  throw InputError(name,
-                   fmt::format("has poses in images that do not fit its points: half of the key points are {:.0f} "
-                               "pixels or more from where their points project",
-                               median),
-                   "write the model anew with the program that made it; poses in frames.txt or frames.bin may be newer "
-                   "than those in images (colmap model_converter writes them)");
+  throw InputError(
+      name,
+      fmt::format("has image poses that do not fit its points: the median reprojection error is {:.0f} pixels", median),
+      "write the model again with the program that made it; poses in frames.txt or frames.bin may be newer "
+      "than those in images (colmap model_converter writes them)");
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ struct ColmapImportHooks {
   std::function<void(int done)> after_image;
 };
 
-// Makes an offline map of a model and its images, in the order of their times; those that cannot be read, or are of
-// another size than their camera's, are left out with a warning. Throws InputError for cameras byre does not have, for
-// poses that do not fit the points, and when no image can be used. model_name: of the model, for messages and for the
+// Makes an offline map of a model and its images, in the order of their times. Images that cannot be read, or are of
+// another size than their camera's, are left out with a warning. Throws InputError for unsupported camera models, for
+// poses that do not fit the points, and if no image can be used. model_name: name of the model in messages and in the
 // map.
 ColmapImport import_colmap(const ColmapModel& model, const std::string& model_name,
                            const std::filesystem::path& images_folder, const ColmapImportOptions& options,

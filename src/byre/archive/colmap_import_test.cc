@@ -62,7 +62,8 @@ TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
   ColmapModel stale = model_;
   double sign = 1.0;  // metres
   for (auto& [id, image] : stale.images) image.camera_from_world.translation.x() += (sign = -sign);
-  EXPECT_THAT(refusal(stale), HasSubstr("has poses in images that do not fit its points: half of the key points are"));
+  EXPECT_THAT(refusal(stale),
+              HasSubstr("has image poses that do not fit its points: the median reprojection error is"));
   ColmapModel rough = model_;
   for (auto& [id, image] : rough.images) {
     for (ColmapKeypoint& keypoint : image.keypoints) keypoint.pixel.x() += 3.0;

@@ -19,9 +19,9 @@ struct Row {
   double sigma_before = 0.0;
   double sigma_after = 0.0;
 
-  // The images determine it at least twice as well as it was known.
+  // Refinement at least halved its standard error.
   bool is_determined() const { return sigma_after < 0.5 * sigma_before; }
-  // Its value differs from the one given by more than a twentieth of the error that it was known to before.
+  // Refinement changed it by more than a twentieth of its standard error before.
   bool is_changed() const { return std::abs(change) > 0.05 * sigma_before; }
 };
 
@@ -47,13 +47,12 @@ std::string names_of_changed(const std::vector<Row>& rows) {
 std::string describe_optics(const RefinedCalibration& refined) {
   if (refined.keyframes == 0) return "as given, but for the length of the baseline or the shutter";
   if (refined.was_refused()) {
-    return fmt::format("as given, though what {} keyframes saw is off it by {:.2f} px on the whole", refined.keyframes,
-                       refined.shift);
+    return fmt::format("as given; refinement by {} keyframes asks for a change of {:.2f} px, which is refused",
+                       refined.keyframes, refined.shift);
   }
-  if (refined.change.isZero(0.0))
-    return fmt::format("as given, which explains what {} keyframes saw", refined.keyframes);
+  if (refined.change.isZero(0.0)) return fmt::format("as given; {} keyframes confirm it", refined.keyframes);
   const std::string changed = names_of_changed(rows_of(refined));
-  return fmt::format("refined from {} keyframes, by {:.2f} px on the whole", refined.keyframes, refined.shift) +
+  return fmt::format("refined from {} keyframes, by {:.2f} px (root mean square)", refined.keyframes, refined.shift) +
          (changed.empty() ? "" : ": " + changed);
 }
 
@@ -89,15 +88,16 @@ std::optional<std::string> calibration_warning(const std::optional<RefinedCalibr
                                                const std::optional<double>& row_error) {
   if (refined && refined->is_implausible()) {
     return fmt::format(
-        "the calibration is not of these cameras: what {} keyframes saw is off it by {:.2f} px on the whole, more than "
-        "calibrations err; it is used as it is. Check resolution and focal length, and calibrate the cameras anew",
+        "the calibration is not of these cameras: refinement by {} keyframes asks for a change of {:.2f} px, more than "
+        "errors of calibrations; it is used unchanged. Check resolution and focal length, and calibrate the cameras "
+        "again",
         refined->keyframes, refined->shift);
   }
   if (!row_error || *row_error <= kFarOffCalibration) return std::nullopt;
   const bool is_refined = refined && !refined->was_refused();
   return fmt::format("the calibration is off by about {:.2f} px, by the rows of the pair: ", *row_error) +
-         (is_refined ? "calibrate the cameras anew, or go on with what \"byre calibrate\" writes"
-                     : "calibrate the cameras anew");
+         (is_refined ? "calibrate the cameras again, or use the calibration that \"byre calibrate\" writes"
+                     : "calibrate the cameras again");
 }
 
 nlohmann::ordered_json calibration_json(const RefinedCalibration& refined) {

@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kMostMissing = 0.05;  // share of the frames
+constexpr double kMostMissing = 0.05;  // largest share of missing frames
 
 void count_verdict(const Health& health, MissionStatistics& statistics) {
   switch (health.verdict) {

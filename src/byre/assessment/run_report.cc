@@ -20,7 +20,7 @@ std::string describe_poses(const FrameCounts& counts) {
   std::string text =
       fmt::format("{} of {} frames ({:.1f} %)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
   if (counts.lost_episodes > 0) text += fmt::format(", lost {} times for {} frames", counts.lost_episodes, counts.lost);
-  if (counts.resets > 0) text += fmt::format(", begun anew {} times", counts.resets);
+  if (counts.resets > 0) text += fmt::format(", reinitialised {} times", counts.resets);
   if (counts.unreadable > 0) text += fmt::format("; {} could not be read", counts.unreadable);
   return text;
 }
@@ -250,14 +250,14 @@ void require_frames(int unreadable, int frames, const std::vector<std::string>& 
   if (!is_full_of_gaps(unreadable, frames)) return;
   std::string text = fmt::format("{} of {} frames could not be read", unreadable, frames);
   if (!warnings.empty()) text += ", see the warnings: " + warnings.front();
-  throw std::runtime_error(text + " (record or copy these images again, or leave them out by --frames)");
+  throw std::runtime_error(text + " (record or copy these images again, or leave them out with --frames)");
 }
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {
   if (!run.final.empty()) return;
   const FrameCounts counts = count_frames(run.frames);
   if (2 * counts.unreadable > counts.frames) {
-    throw std::runtime_error(fmt::format("no frame got a pose: {} of {} could not be read; the warnings say why",
+    throw std::runtime_error(fmt::format("no frame got a pose: {} of {} could not be read; see the warnings",
                                          counts.unreadable, counts.frames));
   }
   const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;

@@ -18,7 +18,7 @@ struct MapProtocol {
   CameraChoice camera = CameraChoice::stereo;
   FrameRange range;
   int frames_in_range = 0;
-  TimeCorrections times;  // how frame times differ from the recorded stamps
+  TimeCorrections times;  // differences between frame times and recorded stamps
   EngineOptions options;
   std::string extended;                  // the map that was gone on with; empty for none
   std::vector<std::string> recordings;   // recordings of the whole map
@@ -37,8 +37,8 @@ std::string to_json(const MapRun& run, const MapProtocol& protocol, const Resour
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
 
-// Throws std::runtime_error, with the first reason and a remedy, if so many frames could not be read that the result is
-// not that of the recording (is_full_of_gaps).
+// Throws std::runtime_error, with the first warning and a remedy, if so many frames could not be read that the result
+// does not represent the recording (is_full_of_gaps).
 void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings);
 inline void require_frames(const MapRun& run) {
   const FrameCounts counts = count_frames(run.frames);

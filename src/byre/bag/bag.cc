@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // bytes that any message may be decompressed to
+constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // decompressed bytes allowed for a message of any size
 constexpr std::string_view kRos1Begin = "#ROSBAG V";
 constexpr std::string_view kSqliteBegin = "SQLite format 3";
 
@@ -59,7 +59,7 @@ class TemporaryFile {
     if (error) refuse("TMPDIR names no folder");
     std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
-    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be made: " + std::strerror(errno));
+    if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be created: " + std::strerror(errno));
     close(descriptor);
     path_ = name;
   }

@@ -84,11 +84,10 @@ bool is_bag(const std::filesystem::path& path);
 // Files of a bag that is there: the file itself, or metadata.yaml and the files that it names, or those beside it.
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);
 
-// Bound of what a compressed file may be decompressed to: far more than cameras' images can be compressed, far less
-// than files that are made to fill memory and disk.
+// Bound of the decompressed size of a file: far above that of camera images, far below that of decompression bombs.
 struct BagLimits {
-  std::uint64_t free_bytes = std::uint64_t{2} << 30;  // allowed for a file of any size
-  std::uint64_t ratio = 100;                          // allowed beside these for each byte of the file
+  std::uint64_t free_bytes = std::uint64_t{2} << 30;  // bytes allowed for a file of any size
+  std::uint64_t ratio = 100;                          // further bytes allowed per byte of the file
 
   std::uint64_t most(std::uint64_t file_bytes) const { return free_bytes + ratio * file_bytes; }
 };
@@ -101,8 +100,8 @@ struct BagLimits {
 //   .mcap.zstd, .db3.zstd                                those, decompressed into a temporary file in TMPDIR
 //   .bag                                                 ROS 1, version 2.0: chunks none, bz2, lz4; with an index or
 //   not
-// Chunks beyond the limits are damage; a .zstd file beyond them is refused. Throws InputError for what is none of those
-// or cannot be opened.
+// Chunks beyond the limits are damage; a .zstd file beyond them is refused. Throws InputError for other files, and for
+// files that cannot be opened.
 std::unique_ptr<Bag> open_bag(const std::filesystem::path& path, const TypeFilter& wanted,
                               const BagLimits& limits = {});
 

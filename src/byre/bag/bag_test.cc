@@ -140,7 +140,7 @@ TEST_F(BagFiles, MayBeCompressedAsAWhole) {
   EXPECT_THAT(damage_of(write("cut.mcap.zstd", cut)), testing::Contains(HasSubstr("cut.mcap.zstd: is cut or damaged")));
 }
 
-TEST_F(BagFiles, AreNamedWhereTheyCannotBeDecompressed) {
+TEST_F(BagFiles, AreNamedIfTheyCannotBeDecompressed) {
   const fs::path whole = write("scene.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
   const auto refusal = [&whole](const std::string& folder) -> std::string {
     const char* const set = std::getenv("TMPDIR");
@@ -176,13 +176,13 @@ TEST_F(BagFiles, OfRosbag2FormOneBag) {
   EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: is missing")));
 }
 
-TEST_F(BagFiles, OfRosbag2ThatAreNamedTwiceAreReadOnce) {
+TEST_F(BagFiles, RepeatedInMetadataAreReadOnce) {
   write("bag/bag_0.mcap", mcap_bytes(scene_messages(), "zstd"));
   fs::create_symlink("bag_0.mcap", folder_ / "bag/link.mcap");
   write("bag/metadata.yaml",
         "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.mcap, ./bag_0.mcap, bag_0.mcap, link.mcap]\n");
   expect_scene(folder_ / "bag", ros::Encoding::cdr, "mcap");
-  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: names files again 3 times")));
+  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: has 3 repeated file names")));
 }
 
 TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {

@@ -92,7 +92,7 @@ void ChunkedBag::add_broken(std::uint64_t record, const std::string& why) {
 
 void ChunkedBag::finish_scan() {
   if (left_out_ > 0) {
-    add_damage(std::to_string(left_out_) + " chunks were not read, as all together become more than " +
+    add_damage(std::to_string(left_out_) + " chunks were not read, because all chunks together become more than " +
                std::to_string(most_decompressed_ >> 20) +
                " MB when decompressed; if the bag is sound, have its recorder write it without compression");
   }

@@ -42,7 +42,7 @@ class ChunkedBag : public Bag {
   ByteSource& file() { return *source_; }
   const std::string& place() const { return place_; }
 
-  // A chunk during the scan; empty once all chunks together exceed the bound of the file.
+  // A decompressed chunk for the scan; empty once all chunks together exceed the bound of the file.
   std::optional<Decompressed> scan_piece(const CompressedPiece& piece);
 
   std::size_t topic_number(const std::string& name, const std::string& type, const std::string& encoding);
@@ -60,7 +60,7 @@ class ChunkedBag : public Bag {
     std::vector<std::byte> bytes{};
   };
   std::span<const std::byte> chunk_at(std::uint64_t begin);
-  // Chunks that claim to be larger than byre takes them are damaged.
+  // Chunks that claim more than kMostChunkBytes are damaged.
   Decompressed decompress_piece(const CompressedPiece& piece);
 
   std::unique_ptr<ByteSource> source_;
@@ -69,9 +69,9 @@ class ChunkedBag : public Bag {
   BagContent content_;
   std::vector<bool> is_wanted_;  // by topic
   std::unordered_map<std::string, std::size_t> topic_numbers_;
-  std::uint64_t most_decompressed_;  // bytes of all chunks, constant after construction
-  std::uint64_t decompressed_ = 0;   // bytes of the chunks scanned so far, as they state
-  std::uint64_t left_out_ = 0;       // chunks beyond most_decompressed_
+  std::uint64_t most_decompressed_;  // bound of all chunks, bytes; constant after construction
+  std::uint64_t decompressed_ = 0;   // stated bytes of the chunks scanned so far
+  std::uint64_t left_out_ = 0;       // number of chunks beyond most_decompressed_
   std::uint64_t broken_ = 0;
   std::string first_broken_;
   std::array<std::optional<CachedChunk>, 2> cache_;  // the last one first: left and right images may lie in two

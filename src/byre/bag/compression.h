@@ -31,9 +31,9 @@ bool is_zstd(std::span<const std::byte> bytes);
 
 std::vector<std::byte> compress_zstd(std::span<const std::byte> bytes);
 
-// Decompresses a file of zstd's frames into another. False when it is cut or damaged: what came before is written.
-// Throws InputError when one cannot be read, the other not be written, or more than most bytes are needed, at the
-// latest when a tenth of the disk space that was free is left.
+// Decompresses a file of zstd frames into another. False if it is cut or damaged; the part before is written. Throws
+// InputError if one cannot be read or the other not be written, and if it needs more than `most` bytes or nine tenths
+// of the free disk space.
 bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most);
 
 }  // namespace byre

@@ -35,7 +35,7 @@ fs::path found_in(const fs::path& folder, const fs::path& named) {
   return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
 }
 
-// Each file once, with a warning where metadata.yaml repeats files.
+// The files of metadata.yaml, each once, with a warning if it repeats files.
 Rosbag2Files files_named(const fs::path& metadata) {
   const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
   Rosbag2Files named;
@@ -52,8 +52,8 @@ Rosbag2Files files_named(const fs::path& metadata) {
     }
   }
   if (repeated > 0) {
-    named.warnings.push_back(metadata.string() + ": names files again " + std::to_string(repeated) +
-                             " times; each is read once");
+    named.warnings.push_back(metadata.string() + ": has " + std::to_string(repeated) +
+                             " repeated file names; each file is read once");
   }
   return named;
 }

@@ -35,7 +35,7 @@ int run(const Action& action, CLI::App& app) {
     require_files_or_folders(app);
     const ExitCode code = action(std::cout);
     const bool is_written = static_cast<bool>(std::cout.flush());
-    if (code == interrupted) return exit_code_of_interrupt();  // its reader may be gone with the terminal
+    if (code == interrupted) return exit_code_of_interrupt();  // the reader may have ended with the terminal
     return is_written ? static_cast<int>(code) : report(kUnwritten, failed);
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
@@ -45,7 +45,7 @@ int run(const Action& action, CLI::App& app) {
     return report("out of memory (free memory, or raise the limit that \"ulimit -v\" shows)", failed);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return report(error.what(), failed);
-    return report("no thread can be started: " + error.code().message() +
+    return report("a thread cannot be started: " + error.code().message() +
                       " (free memory, or raise the limits that \"ulimit -v\" and \"ulimit -u\" show)",
                   failed);
   } catch (const std::exception& error) {

@@ -22,8 +22,8 @@ std::string in_ms(Timestamp time) {
   return fmt::format("{:g} ms", 1e3 * to_seconds(time));
 }
 
-// Gives the frames their right images; warns of images without a partner. Preconditions: frames are those of the left
-// images alone, and there are right ones.
+// Adds right images to the frames. Returns warnings of images without a partner. Preconditions: frames have left images
+// only, and there are right ones.
 std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vector<TimedMessage>& right,
                                    Timestamp tolerance, const std::string& place) {
   std::vector<Timestamp> times;
@@ -49,7 +49,7 @@ std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vec
 
 BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const std::string& place,
                      Timestamp tolerance) {
-  constexpr double kSameFrame = 0.4;  // intervals between the times of reception of a pair
+  constexpr double kSameFrame = 0.4;  // largest difference between the receive times of a pair, intervals
   const TimedMessages left = timed_messages(content, topics.left, {place, "image", "frame"});
   BagFrames result{{}, left.corrections, left.clock, left.warnings};
   const std::string left_place = place + ": " + content.topics[topics.left].name;

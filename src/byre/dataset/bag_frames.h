@@ -21,12 +21,12 @@ struct BagFrames {
   std::vector<BagFrame> frames;
   TimeCorrections corrections;        // corrections of the left images
   SensorClock clock;                  // clock of the left images
-  std::vector<std::string> warnings;  // counts of what is out of order, left out or alone
+  std::vector<std::string> warnings;  // counts of corrections, and of images without a partner
 };
 
-// Frames of the left images in the order of their times (timed_messages), each with the right image whose time differs
-// by the tolerance at most. place: how warnings name the bag. Throws InputError when there are right images and none
-// belongs to a left one, and when all left images have one time stamp.
+// Frames of the left images in order of time (timed_messages), each with the right image whose time differs by at most
+// the tolerance. place: name of the bag in warnings. Throws InputError if no right image has a left partner, and if all
+// left images have one time stamp.
 BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const std::string& place,
                      Timestamp tolerance);
 

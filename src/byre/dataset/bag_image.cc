@@ -95,14 +95,14 @@ ImageReading<Image> grey_of(const ros::Image& image) {
   if (image.data.size() < bytes_needed(image, layout->type)) return {std::nullopt, "is not a whole image"};
   if (image.step % CV_ELEM_SIZE1(layout->type) != 0) {
     return {std::nullopt,
-            "has rows of " + std::to_string(image.step) + " bytes, which is no multiple of its numbers' size"};
+            "has rows of " + std::to_string(image.step) + " bytes, which is no multiple of the size of a number"};
   }
   Image result{static_cast<int>(image.width), static_cast<int>(image.height), {}};
   result.pixels.resize(std::size_t{image.width} * image.height);
   cv::Mat grey(result.height, result.width, CV_8UC1, result.pixels.data());
   try {
     copy_grey(image, *layout, grey);
-  } catch (const cv::Exception& exception) {  // sizes that a conversion does not take
+  } catch (const cv::Exception& exception) {  // sizes that a conversion does not support
     return {std::nullopt, "cannot be converted from \"" + image.encoding + "\": " + exception.err};
   }
   return {std::move(result), {}};

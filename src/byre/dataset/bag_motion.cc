@@ -49,7 +49,7 @@ template <ros::Message M, typename Sample>
 std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& place, const SensorClock& images,
                                std::vector<std::string>& warnings) {
   SensorClock shared = images;
-  shared.source = TimeSource::stamps;  // sound stamps of a sensor are used although those of images are not
+  shared.source = TimeSource::stamps;  // sound stamps of a sensor are used even if those of images are not
   const TimedMessages timed = timed_messages(bag.content(), topic, {place, "message", "message"}, shared);
   warnings.insert(warnings.end(), timed.warnings.begin(), timed.warnings.end());
   const BagTopic& kind = bag.content().topics[topic];

@@ -23,9 +23,9 @@ bool is_of_motion(std::string_view type, const OpenOptions& options);
 //   wheels      nav_msgs/Odometry, its poses or, where they never change, its twists; geometry_msgs/TwistStamped or
 //               TwistWithCovarianceStamped; of the topic that the options name; or the file that they name
 //   gyroscope   sensor_msgs/Imu of the topic that they name; of the only one, where they ask for a gyroscope alone
-// place: how the bag is named in errors and warnings. Warnings count what is damaged or not finite, and corrections of
-// times. images: clock of the left images. Throws InputError, listing the topics of that kind, for a topic that is not
-// there, and where that leaves a choice.
+// place: name of the bag in errors and warnings. Warnings count damaged and non-finite messages, and corrections of
+// times. images: clock of the left images. Throws InputError, with a list of topics of that kind, for an absent topic
+// and if several topics qualify.
 BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place,
                           const SensorClock& images = {});
 

@@ -125,7 +125,7 @@ TEST_F(BagRecordings, WithoutTimesInTheirHeadersHaveThoseOfTheRecorder) {
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("receive times are used for all images")));
 }
 
-// Pairs, 50 ms apart, each received 3 to 5 ms after it was taken. stamp: what its headers say.
+// Pairs, 50 ms apart, each received 3 to 5 ms after it was taken. stamp, log: header stamps and receive times.
 std::vector<SceneMessage> pairs_stamped(int count, const std::function<Timestamp(Timestamp)>& stamp,
                                         const std::function<Timestamp(Timestamp)>& log) {
   std::vector<SceneMessage> messages = infos();
@@ -157,7 +157,7 @@ Timestamp set_back(Timestamp time) {
   return time - (time >= ms(1'001'500) ? ms(620) : ms(0));
 }
 
-TEST_F(BagRecordings, ContinueWhereTheClockOfTheCamerasWasSetBack) {
+TEST_F(BagRecordings, ContinueIfTheClockOfTheCamerasWasSetBack) {
   const auto recording = open(pairs_stamped(60, set_back, as_it_is));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("/left/image_raw: clock set back by 0.620 s at frame 30"),
@@ -166,7 +166,7 @@ TEST_F(BagRecordings, ContinueWhereTheClockOfTheCamerasWasSetBack) {
   EXPECT_EQ(recording->time_corrections().clock_steps[0].by, ms(-620));
 }
 
-TEST_F(BagRecordings, ContinueWhereTheClockOfTheRecorderWasSetBackWithIt) {
+TEST_F(BagRecordings, ContinueIfTheClockOfTheRecorderWasSetBackToo) {
   const std::vector<SceneMessage> messages = pairs_stamped(60, set_back, set_back);
   expect_steady_pairs(*open(messages), 60, ms(0));
   write_db3(folder_ / "walk.db3", messages);
@@ -175,20 +175,20 @@ TEST_F(BagRecordings, ContinueWhereTheClockOfTheRecorderWasSetBackWithIt) {
   }
 }
 
-TEST_F(BagRecordings, KeepStampsWhereTheClockOfTheRecorderAloneWasSetBack) {
+TEST_F(BagRecordings, KeepStampsIfOnlyTheClockOfTheRecorderWasSetBack) {
   const auto recording = open(pairs_stamped(60, as_it_is, set_back));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_FALSE(recording->time_corrections().any());
 }
 
-TEST_F(BagRecordings, ContinueWhereTheyWerePlayedInALoop) {
+TEST_F(BagRecordings, ContinueIfTheyWerePlayedInALoop) {
   const auto recording = open(pairs_stamped(
       60, [](Timestamp time) { return ms(1'000'000) + time % ms(1'000); }, as_it_is));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_EQ(recording->time_corrections().clock_steps.size(), 2u);
 }
 
-TEST_F(BagRecordings, HaveTheirReceiveTimesWhereStampsAreOfWholeSeconds) {
+TEST_F(BagRecordings, HaveReceiveTimesIfStampsAreWholeSeconds) {
   const auto recording = open(pairs_stamped(
       60, [](Timestamp time) { return time - time % std::chrono::seconds(1); }, as_it_is));
   expect_steady_pairs(*recording, 60, ms(5));

@@ -120,7 +120,7 @@ TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
   EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
 }
 
-TEST(CameraInfo, WithoutARotationInRIsRefusedByTheNameOfTheField) {
+TEST(CameraInfo, IsRefusedIfRIsNotARotation) {
   PlacedCameraInfo left = placed_info("left"), right = placed_info("right");
   right.info.p = {430.0, 0.0, 360.0, -43.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.r[4] = 2.0;
@@ -129,7 +129,7 @@ TEST(CameraInfo, WithoutARotationInRIsRefusedByTheNameOfTheField) {
   std::swap(left.info.r, right.info.r);
   EXPECT_THAT(error_of([&] { partner_of(left, right, {}); }),
               HasSubstr("walk.bag: /left/camera_info: has a field R that is not a rotation matrix"));
-  left.is_rectified = right.is_rectified = true;  // R of rectified images is not needed
+  left.is_rectified = right.is_rectified = true;  // R is not needed for rectified images
   EXPECT_NO_THROW(partner_of(left, right, {}));
 }
 

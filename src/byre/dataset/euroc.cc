@@ -21,7 +21,7 @@ TimedFile parse_euroc_line(const TextLine& line, const fs::path& images, const s
   return {*time, images / fields[1]};
 }
 
-// left: clock of the left images, for those of the right camera.
+// left: clock of the left images, for images of the right camera.
 RestoredFiles read_image_list(const fs::path& camera_folder, const SensorClock& left = {}) {
   const fs::path csv = camera_folder / "data.csv";
   std::vector<TimedFile> files;

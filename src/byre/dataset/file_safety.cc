@@ -184,7 +184,7 @@ void require_same_kind(const NamedOutput& written, const fs::path& file) {
 }  // namespace
 
 void require_not_read(const NamedFiles& arguments) {
-  if (arguments.outputs.empty()) return;  // listing what is read takes time
+  if (arguments.outputs.empty()) return;  // listing inputs takes time
   const Owners owners = owners_of(arguments.inputs);
   for (const NamedOutput& written : arguments.outputs) require_not_read(written, owners);
 }

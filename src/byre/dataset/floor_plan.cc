@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr double kSmallestPixel = 1e-4;  // metres; smaller ones may be degrees
 constexpr double kLargestPixel = 100.0;  // metres
-constexpr double kFarthest = 1e9;        // metres, of coordinates of any projected system
+constexpr double kFarthest = 1e9;        // metres, largest coordinate of a projected system
 
 void read_image_size(FloorPlan& plan) {
   const std::optional<ImageSize> size = stated_size(plan.image);
@@ -121,7 +121,7 @@ bool read_is_negated(const YAML::Node& root, const fs::path& path) {
   if (YAML::convert<int>::decode(negate, number)) return number != 0;
   if (YAML::convert<bool>::decode(negate, is_true)) return is_true;
   throw InputError(path.string() + ": negate", "is neither 0 or 1 nor true or false",
-                   "give 1 where white is occupied, else 0");
+                   "give 1 if white is occupied, else 0");
 }
 
 PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
@@ -137,7 +137,7 @@ PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
 
 void require_scale(const FloorPlan& plan, const fs::path& path) {
   if (plan.mode != PlanMode::scale || plan.free_threshold < plan.occupied_threshold.value_or(1.0)) return;
-  throw InputError(path.string() + ": free_thresh", "is not below occupied_thresh, as mode scale needs it");
+  throw InputError(path.string() + ": free_thresh", "is not below occupied_thresh, which mode scale requires");
 }
 
 FloorPlan read_map_server_plan(const fs::path& path) {

@@ -93,7 +93,7 @@ PlacedCalibration read_projections(const fs::path& file, const Image& image, boo
   return calibration;
 }
 
-// One a line: seconds, or the nanoseconds that begin a line with commas.
+// One stamp per line: seconds, or nanoseconds at the start of a line with commas.
 std::vector<Timestamp> read_stamps(const fs::path& file) {
   std::vector<Timestamp> stamps;
   for (const TextLine& line : read_lines(file)) stamps.push_back(parse_time(line, place_of(file, line)));

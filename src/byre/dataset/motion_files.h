@@ -20,14 +20,14 @@ namespace byre {
 // InputError naming file and line: a file named is not there, or does not parse.
 struct FileMotion {
   MotionSamples samples;
-  std::vector<std::string> warnings;  // what was corrected in times or left out, with counts
+  std::vector<std::string> warnings;  // corrections of times and lines left out, with counts
 };
 
-// body_from_left: of the recording's own calibration. images: clock of the left images.
+// body_from_left: by the recording's own calibration. images: clock of the left images.
 FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
                        const Pose& body_from_left = {}, const SensorClock& images = {});
 
-// Poses of a file of wheels, with continuous times (restore_times).
+// Poses of a wheel file, with continuous times (restore_times).
 Trajectory read_wheel_file(const std::filesystem::path& path, const SensorClock& images,
                            std::vector<std::string>& warnings);
 

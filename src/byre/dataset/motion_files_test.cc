@@ -64,7 +64,7 @@ TEST_F(MotionFiles, HoldAnAccelerometerBesideTheGyroscope) {
   EXPECT_FALSE(read_motion(folder_, other_body).samples.left_from_gyroscope);
 }
 
-TEST_F(MotionFiles, CountLinesThatRepeatATimeOrComeLate) {
+TEST_F(MotionFiles, CountLateAndRepeatedLines) {
   write("wheel.txt", "1.0 0 0 0 0 0 0 1\n1.2 2 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n1.3 3 0 0 0 0 0 1\n1.3 4 0 0 0 0 0 1\n");
   const FileMotion motion = read_motion(folder_, {});
   ASSERT_EQ(motion.samples.wheels.size(), 4u);

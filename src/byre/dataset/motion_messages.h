@@ -23,20 +23,20 @@ std::optional<WheelSample> sample_of(const ros::Odometry& message, Timestamp tim
 std::optional<WheelSample> sample_of(const ros::TwistStamped& message, Timestamp time);
 std::optional<WheelSample> sample_of(const ros::TwistWithCovarianceStamped& message, Timestamp time);
 
-// What gyroscope and accelerometer of one sensor measure.
+// Rate and acceleration by one sensor.
 struct ImuSample {
   Timestamp time{};
-  std::optional<AngularRate> rate{};  // empty where the message marks it as not measured
+  std::optional<AngularRate> rate{};  // empty if the message marks it as not measured
   std::optional<Acceleration> acceleration{};
 };
 
-// With the time given; empty where a rate that is measured is not finite. A covariance that begins with -1 marks rates
-// or accelerations as not measured (sensor_msgs/Imu). Accelerations of zero are left out.
+// A sample at the given time; empty if a measured rate is not finite. A covariance that begins with -1 marks rates or
+// accelerations as not measured (sensor_msgs/Imu). Zero accelerations are left out.
 std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time);
 
 // Warning for a topic whose messages mark rates as not measured.
 inline constexpr const char* kRatesNotMeasured =
-    "angular_velocity_covariance[0] is -1, which marks rates as not measured; these messages are no gyroscope; choose "
-    "the topic of the gyroscope, or correct the driver";
+    "angular_velocity_covariance[0] is -1, which marks rates as not measured; these messages are not used; choose the "
+    "topic of the gyroscope, or correct the driver";
 
 }  // namespace byre

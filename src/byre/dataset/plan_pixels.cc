@@ -21,7 +21,7 @@ cv::Mat decode_plan(const FloorPlan& plan, int flags) {
   return decode_image_file(plan.image, flags | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
-// Channels: grey, colours, or colours and alpha.
+// channels: 1 (grey), 3 (colours) or 4 (colours and alpha).
 template <typename Value>
 PlanPixel pixel_of(const Value* values, int channels, double white) {
   const int colours = std::min(channels, kColours);
@@ -52,7 +52,7 @@ std::vector<std::int8_t> read_occupancy(const FloorPlan& plan) {
       pixels.channels() == 1 || pixels.channels() == kColours || pixels.channels() == kWithAlpha;
   if (has_known_channels && pixels.depth() == CV_8U) return occupancy_of_all<std::uint8_t>(pixels, kWhite8, plan);
   if (has_known_channels && pixels.depth() == CV_16U) return occupancy_of_all<std::uint16_t>(pixels, kWhite16, plan);
-  throw InputError(plan.image.string(), "is no image of 8 or 16 bits in grey or colour", "save it as an 8-bit PNG");
+  throw InputError(plan.image.string(), "is not a grey or colour image of 8 or 16 bits", "save it as an 8-bit PNG");
 }
 
 void put_on_white(cv::Mat& image) {
@@ -104,7 +104,7 @@ cv::Mat shown_plan(const FloorPlan& plan) {
 
 DrawnFloorPlan read_plan_pixels(const FloorPlan& plan) {
   ImageReading<Image> reading = try_image(plan.image);
-  if (!reading.image) throw InputError(plan.image.string(), reading.failure, "draw the floor plan anew");
+  if (!reading.image) throw InputError(plan.image.string(), reading.failure, "export the floor plan again");
   DrawnFloorPlan drawn{plan, std::move(*reading.image), read_occupancy(plan)};
   const bool is_shown_as_it_is = !plan.is_negated && decode_plan(plan, cv::IMREAD_UNCHANGED).channels() < kWithAlpha;
   if (is_shown_as_it_is) return drawn;

@@ -51,7 +51,7 @@ TEST(PlanPixels, FollowThePlansOwnThresholds) {
   EXPECT_EQ(grey(89, plan), 100) << "0.65 where the plan has none";
 }
 
-TEST(PlanPixels, AreSharesBetweenTheThresholdsInModeScale) {
+TEST(PlanPixels, AreLinearBetweenTheThresholdsInModeScale) {
   const FloorPlan plan = plan_of(PlanMode::scale), negated = plan_of(PlanMode::scale, true);
   EXPECT_EQ(grey(0, plan), 100);
   EXPECT_EQ(grey(90, plan), 99);
@@ -62,7 +62,7 @@ TEST(PlanPixels, AreSharesBetweenTheThresholdsInModeScale) {
   EXPECT_EQ(grey(254, negated), 100);
 }
 
-TEST(PlanPixels, AreTheirValuesInModeRaw) {
+TEST(PlanPixels, AreGreyValuesInModeRaw) {
   for (const bool is_negated : {false, true}) {
     const FloorPlan plan = plan_of(PlanMode::raw, is_negated);
     EXPECT_EQ(grey(0, plan), 0);
@@ -99,7 +99,7 @@ class PlanImages : public TestFolder {
   }
 };
 
-TEST_F(PlanImages, HaveThePixelsOfTheirRowsFromTheTop) {
+TEST_F(PlanImages, HaveRowsFromTheTop) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(2, 3) << 0, 254, 205, 254, 0, 254);
   EXPECT_THAT(read(image).occupancy, ElementsAre(100, 0, -1, 0, 100, 0));
   EXPECT_THAT(read(image).image.pixels, ElementsAre(0, 254, 205, 254, 0, 254));
@@ -113,7 +113,7 @@ TEST_F(PlanImages, MayHaveSixteenBits) {
 }
 
 TEST_F(PlanImages, HaveTheMeanOfTheirColours) {
-  // In order blue, green, red. Green weighs most in grey pictures for the eye, where the second would be bright.
+  // Channels are blue, green, red. A grey image by luminance would make the green pixel bright.
   const cv::Mat image =
       (cv::Mat_<cv::Vec3b>(1, 3) << cv::Vec3b(255, 255, 255), cv::Vec3b(0, 255, 0), cv::Vec3b(0, 0, 255));
   EXPECT_THAT(read(image).occupancy, ElementsAre(0, 100, 100));
@@ -143,7 +143,7 @@ TEST_F(PlanImages, AreReadInTheirMode) {
   EXPECT_THAT(read(image, "mode: trinary\n").occupancy, ElementsAre(100, 100, 0));
 }
 
-TEST_F(PlanImages, AreRefusedWithAFieldThatMakesNoSense) {
+TEST_F(PlanImages, AreRefusedWithAnInvalidField) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(1, 1) << 0);
   const auto fault = [&](const std::string& fields) { return error_of([&] { read(image, fields); }); };
   EXPECT_THAT(fault("negate: perhaps\n"), HasSubstr("plan.yaml: negate: is neither 0 or 1 nor true or false"));

@@ -167,28 +167,30 @@ void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
     const std::string count =
         fmt::format("the clock of the images was set {} time{} while recording",
                     static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
-    findings.push_back({false,
-                        count + fmt::format(", first by {:.3f} s at frame {}; times after it are shifted",
-                                            to_seconds(first.by), first.frame),
-                        "set clocks before recording, and let them be slewed, not stepped, afterwards (chrony without "
-                        "makestep); do not record a bag that is played in a loop"});
+    findings.push_back(
+        {false,
+         count + fmt::format(", first by {:.3f} s at frame {}; times after it are shifted", to_seconds(first.by),
+                             first.frame),
+         "set clocks before recording, and slew them afterwards instead of stepping them (chrony without "
+         "makestep); do not record a bag that is played in a loop"});
   }
   if (times.source != TimeSource::stamps) {
     const char* const used =
-        times.source == TimeSource::receive_times ? "receive times are used" : "images of one stamp are spread evenly";
-    findings.push_back({false, std::string("images have no time stamps, or stamps as coarse as whole seconds; ") + used,
-                        "have the driver stamp each image to the microsecond: speeds, wheels and gyroscopes need it"});
+        times.source == TimeSource::receive_times ? "receive times are used" : "images of each stamp are spread evenly";
+    findings.push_back(
+        {false, std::string("images have no time stamps, or stamps as coarse as whole seconds; ") + used,
+         "stamp each image to the microsecond in the driver: velocities, wheels and gyroscopes need it"});
   }
   if (times.unstamped > 0) {
     findings.push_back({false,
                         fmt::format("{} images have a time stamp of zero or a wrong one; their times are interpolated",
                                     times.unstamped),
-                        "begin to record once the driver stamps its images"});
+                        "start recording once the driver stamps its images"});
   }
   if (times.late > 0) {
     findings.push_back({false,
                         fmt::format("{} images were recorded after later ones, and are put in order", times.late),
-                        "check what republishes them, and record the driver's own topic"});
+                        "check for a node that republishes images, and record the driver's own topic"});
   }
   if (times.repeated > 0) {
     findings.push_back({false,

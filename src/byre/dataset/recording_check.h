@@ -48,7 +48,7 @@ struct RecordingCheck {
   std::optional<PairCheck> pair;
   double field_of_view_deg = 0.0;  // left image's, horizontal
   double baseline_m = 0.0;         // 0 for one camera
-  TimeCorrections times{};         // corrections of the frames' times
+  TimeCorrections times{};         // corrections of frame times
 };
 
 // Looks at so many pairs of frames that follow each other, spread over the recording. Throws InputError for a
@@ -64,8 +64,8 @@ struct Finding {
 
 std::vector<Finding> findings_of(const RecordingCheck& check);
 
-// Faults of the wheels, gyroscope and accelerometer that were opened with the recording, by their samples alone.
-// source_of: file or topic of a sensor.
+// Faults of wheels, gyroscope and accelerometer of the recording, by their samples alone. source_of: file or topic of a
+// sensor.
 std::vector<Finding> motion_findings(const Recording& recording,
                                      const std::function<std::string(MotionSensor)>& source_of);
 

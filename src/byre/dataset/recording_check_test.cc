@@ -153,7 +153,7 @@ struct FindingCase {
 
 class OneFinding : public testing::TestWithParam<FindingCase> {};
 
-TEST_P(OneFinding, HasItsFiguresAndARemedy) {
+TEST_P(OneFinding, HasFiguresAndARemedy) {
   RecordingCheck check = sound_check();
   GetParam().change(check);
   const std::vector<Finding> findings = findings_of(check);
@@ -163,7 +163,7 @@ TEST_P(OneFinding, HasItsFiguresAndARemedy) {
   EXPECT_FALSE(findings[0].remedy.empty());
 }
 
-// Images of a camera, a number of them with the fault.
+// Sets the number of images with a fault.
 void give_fault(CameraCheck& camera, ImageFault fault, int images) {
   camera.by_fault[static_cast<std::size_t>(fault)] = images;
   camera.by_fault[0] -= images;
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
         FindingCase{[](RecordingCheck& check) { check.baseline_m = 7.5; }, false, "a baseline of 7.5000 m"},
         FindingCase{[](RecordingCheck& check) { check.features = 20.4; }, false, "only 20 features in an image"}));
 
-TEST(RecordingCheck, WithoutProblemsHasNoFinding) {
+TEST(RecordingCheck, HasNoFindingWithoutProblems) {
   EXPECT_TRUE(findings_of(sound_check()).empty());
 }
 
@@ -231,7 +231,7 @@ TEST(RecordingCheck, ListsGraveFindingsFirst) {
   EXPECT_FALSE(findings[1].is_grave);
 }
 
-TEST(RecordingCheck, NamesWhatWasWrongWithTimesAndARemedy) {
+TEST(RecordingCheck, NamesCorrectionsOfTimesAndARemedy) {
   RecordingCheck check = check_of();
   const auto findings_with = [&](const TimeCorrections& times) {
     check.times = times;

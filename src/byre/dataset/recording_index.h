@@ -29,7 +29,7 @@ struct PlacedCalibration {
   std::string depth_size{};
 };
 
-// The file of the calibration that the options name, else the recording.
+// Place of the calibration in messages: the file that the options name, else the recording.
 std::string place_of_calibration(const std::filesystem::path& recording, const OpenOptions& options);
 
 // What a recording of image files consists of, before any image is wanted. The calibration may be of a pair though the

@@ -145,7 +145,7 @@ TEST_F(EurocRecording, NamesTheLineOfAListThatIsWrong) {
   }
 }
 
-TEST_F(EurocRecording, PutsLinesInOrderAndCountsThem) {
+TEST_F(EurocRecording, SortsAndCountsLateLines) {
   write("mav0/cam0/data.csv",
         "#\n100000000,1.png\n300000000,3.png\n200000000,2.png\n200000000,2.png\n400000000,4.png\n");
   const auto recording = open();
@@ -157,7 +157,8 @@ TEST_F(EurocRecording, PutsLinesInOrderAndCountsThem) {
                                                  HasSubstr("1 images have the time stamp of another one")));
 }
 
-// Twelve pairs, 100 ms apart, whose clock is set back by 350 ms before the seventh; wheels and gyroscope have it too.
+// Twelve pairs, 100 ms apart, whose clock is set back by 350 ms before the seventh; wheels and gyroscope share the
+// clock.
 class EurocOfAClockSetBack : public EurocRecording {
  protected:
   EurocOfAClockSetBack() {
@@ -199,7 +200,7 @@ TEST_F(EurocOfAClockSetBack, ContinuesWithWheelsAndGyroscopeInStep) {
   EXPECT_THAT(recording->warnings(), testing::Contains(HasSubstr("wheel.txt: clock set back by 0.350 s at line 29")));
 }
 
-TEST_F(EurocRecording, PairsImagesWithinTheToleranceAskedFor) {
+TEST_F(EurocRecording, PairsImagesWithinTheTolerance) {
   write("mav0/cam1/data.csv", "108000000,1.png\n208000000,2.png\n308000000,3.png\n408000000,4.png\n");
   EXPECT_THAT(open_error(),
               HasSubstr("no right image was taken within 2 ms of a left one; the median distance is 8.000 "
@@ -247,7 +248,6 @@ TEST_F(EurocRecording, MayHoldItsGroundTruth) {
 constexpr const char* kCalib =
     "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\nP1: 20 0 15.5 -10 0 20 11.5 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
 
-// Three stereo pairs, 100 ms apart, in the layout of KITTI odometry.
 TEST_F(EurocRecording, RefusesABaselineInCentimetresUnlessItIsCorrectedOrConfirmed) {
   write("mav0/cam1/sensor.yaml", sensor_yaml(7.6));
   EXPECT_THAT(open_error(), testing::AllOf(HasSubstr(folder_.string()), HasSubstr("baseline of 7.5 m"),
@@ -263,6 +263,7 @@ TEST_F(EurocRecording, RefusesABaselineInCentimetresUnlessItIsCorrectedOrConfirm
   EXPECT_FALSE(open_recording(folder_, {}, options)->calibration().right);
 }
 
+// Three stereo pairs, 100 ms apart, in the layout of KITTI odometry.
 class KittiRecording : public TestFolder {
  protected:
   KittiRecording() {

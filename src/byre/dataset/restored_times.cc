@@ -19,16 +19,16 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 using Times = std::vector<Timestamp>;
 
-constexpr std::size_t kFew = 10;        // most items in a row that are late, or have a wrong stamp
-constexpr std::size_t kWindow = 20;     // items that a delay of reception is taken from
-constexpr double kContinuous = 1.5;     // intervals between two items of one setting of the clock
-constexpr Timestamp kLeastStep = 20ms;  // shorter steps look like jitter
+constexpr std::size_t kFew = 10;        // largest number of late items, or wrong stamps, in a row
+constexpr std::size_t kWindow = 20;     // items over which reception delays are compared
+constexpr double kContinuous = 1.5;     // largest time, in intervals, between two items without a gap
+constexpr Timestamp kLeastStep = 20ms;  // shorter steps cannot be told from jitter
 
-// Stamps beyond are nonsense; the difference of two of them is still a Timestamp.
+// Later stamps are wrong. The difference of two stamps up to this one does not overflow.
 constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);
 
-// Which items have a stamp. Zero is one in recordings whose clock starts there: other stamps are near it, or it is that
-// of the first item alone and all others are within a day.
+// Which items have a stamp. Zero is a valid stamp if the clock starts at zero: other stamps are near it, or only the
+// first item has it and all others are within a day.
 std::vector<bool> which_are_stamped(const Times& stamps) {
   static constexpr Timestamp kNearZero = 10s;
   static constexpr Timestamp kDay = std::chrono::days(1);
@@ -49,16 +49,16 @@ Timestamp scaled(double factor, Timestamp interval) {
   return Timestamp(std::llround(factor * static_cast<double>(interval.count())));
 }
 
-// Groups of neighbours with one value.
+// Number of runs of equal values.
 std::size_t count_runs(const Times& values) {
   std::size_t runs = values.empty() ? 0 : 1;
   for (std::size_t i = 1; i < values.size(); ++i) runs += values[i] != values[i - 1] ? 1 : 0;
   return runs;
 }
 
-// Most items have the stamp of a neighbour.
+// Whether most items have the stamp of a neighbour.
 bool is_coarse(const Times& stamps) {
-  constexpr std::size_t kLeast = 6;  // fewer may be repeated by chance
+  constexpr std::size_t kLeast = 6;  // items; fewer may be repeated by chance
   return stamps.size() >= kLeast && 2 * stamps.size() >= 3 * count_runs(stamps);
 }
 
@@ -66,7 +66,7 @@ bool can_replace_stamps(const Times& received, std::size_t items) {
   return received.size() == items && 2 * items < 3 * count_runs(received);
 }
 
-// Median of the differences that are positive; zero without one.
+// Median of the positive differences; zero without any.
 Timestamp usual_interval(const Times& stamps) {
   Times intervals;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
@@ -75,7 +75,8 @@ Timestamp usual_interval(const Times& stamps) {
   return median_or(std::move(intervals), Timestamp{});
 }
 
-// Items of one stamp are received together: a sender repeats them. Items of a coarse stamp come at the usual rate.
+// Whether items of one stamp are received together, because a sender repeats them. Items of a coarse stamp are received
+// at the usual rate.
 bool is_each_repeated(const Times& stamps, const Times& received) {
   if (received.size() != stamps.size()) return false;
   Times within, between;
@@ -102,7 +103,7 @@ std::vector<StampRun> runs_of(const Times& stamps) {
   return runs;
 }
 
-// The items of each stamp, spread evenly until the next one. The first and the last run may be incomplete.
+// Spreads the items of each stamp evenly until the next stamp. The first and the last run may be incomplete.
 Times spread_evenly(const Times& stamps) {
   const std::vector<StampRun> runs = runs_of(stamps);
   Times starts;
@@ -131,7 +132,7 @@ Times spread_evenly(const Times& stamps) {
   return spread;
 }
 
-// Stamps as one continuous line: clock steps are taken out, wrong stamps marked.
+// Makes stamps continuous: removes clock steps and marks wrong stamps.
 class ContinuousLine {
  public:
   struct Step {
@@ -139,7 +140,7 @@ class ContinuousLine {
     Timestamp by{};
   };
 
-  // received: empty where reception says nothing about the rate of the stamps. Precondition: stamps are not empty.
+  // received: receive times; empty if they do not follow the rate of the stamps. Precondition: stamps are not empty.
   ContinuousLine(const Times& stamps, const Times& received, Timestamp interval, bool is_order_certain)
       : stamps_(stamps),
         received_(received),
@@ -166,7 +167,7 @@ class ContinuousLine {
   int late() const { return late_; }
 
  private:
-  // Deals with item i, and returns the next one.
+  // Handles item i, and possibly items after it. Returns the next item.
   std::size_t advance(std::size_t i) {
     if (end_of_setting_ && *end_of_setting_ == i) {
       return set_clock(i, stamps_[i] - shift_before_);
@@ -194,7 +195,7 @@ class ContinuousLine {
 
   Timestamp front() const { return stamps_[front_]; }
 
-  // First item after i whose stamp is later than all before i; the end without one.
+  // First item after i whose stamp is later than all stamps before i; the number of items without one.
   std::size_t return_after(std::size_t i) const {
     if (latest_from_[i] <= front()) return stamps_.size();
     const auto after = stamps_.begin() + static_cast<std::ptrdiff_t>(i) + 1;
@@ -204,13 +205,13 @@ class ContinuousLine {
 
   bool is_jump(std::size_t i) const { return stamps_[i] - stamps_[i - 1] > scaled(kContinuous, interval_); }
 
-  // Whether the clock has advanced to this stamp in the time of so many items with other stamps.
+  // Whether the stamp continues the clock after a number of items with other stamps.
   bool goes_on(Timestamp stamp, std::size_t without) const {
     const Timestamp passed = stamp - front(), usual = static_cast<Timestamp::rep>(without + 1) * interval_;
     return passed >= scaled(0.3, usual) && passed <= scaled(3.0, usual);
   }
 
-  // Items from i on that are far ahead, before the stamps come back.
+  // Number of items from i on whose stamps are far ahead, until stamps continue; zero without such stamps.
   std::size_t wrong_ahead(std::size_t i) const {
     if (stamps_[i] - front() <= std::max<Timestamp>(static_cast<Timestamp::rep>(kFew) * interval_, kLeastForward))
       return 0;
@@ -221,7 +222,7 @@ class ContinuousLine {
     return 0;
   }
 
-  // Delays of reception from item i on, and before it, the least of them. Preconditions: received_ is not empty.
+  // Reception delays of items from i on, and the least one before. Precondition: received_ is not empty.
   Timestamp delay(std::size_t i) const { return received_[i] - stamps_[i]; }
   Times delays_from(std::size_t i) const {
     Times delays;
@@ -237,12 +238,12 @@ class ContinuousLine {
 
   Timestamp step_back_at(std::size_t i) const { return front() + interval_ - stamps_[i]; }
 
-  // Whether delays from item `from` on are longer by the step.
+  // Whether reception delays from item `from` on are longer by the step.
   bool is_delayed_from(std::size_t from, Timestamp step) const {
     return std::ranges::min(delays_from(from)) - least_delay_before() > step / 2;
   }
 
-  // A burst after a stall is received faster than it was stamped, too, but its items are delayed; those after a step
+  // A burst after a stall is also received faster than it was stamped. But its items are delayed, those after a step
   // are early.
   bool is_step_forward(std::size_t i) const {
     if (received_.empty()) return false;
@@ -259,8 +260,8 @@ class ContinuousLine {
     return received_.empty() ? step >= scaled(kContinuous, interval_) : is_delayed_from(i, step);
   }
 
-  // Items from i to `end` were overtaken: the clock goes on at `end`, and they fill gaps or are few and not very late;
-  // or they are the piece before the first one.
+  // Whether the items from i to `end` are late: the clock continues at `end`, and they fill gaps, or are few and not
+  // very late; or they are the piece before the first item.
   bool are_late(std::size_t i, std::size_t end) const {
     const Timestamp to_first = seen_.front() - stamps_[end - 1];
     const Timestamp near = static_cast<Timestamp::rep>(kFew) * interval_;
@@ -283,7 +284,7 @@ class ContinuousLine {
     return nearest == Timestamp{} || nearest >= scaled(kOwnPlace, interval_);
   }
 
-  // Continuous time of item i if the clock was set just before it.
+  // Continuous time of item i if the clock was set immediately before it.
   Timestamp expected_at(std::size_t i) const {
     Timestamp passed = static_cast<Timestamp::rep>(i - front_) * interval_;
     if (!received_.empty()) {
@@ -333,7 +334,7 @@ class ContinuousLine {
     return count;
   }
 
-  // So many steps are not those of a clock: the list is in no order.
+  // Too many steps for a clock: the list is unordered.
   void give_up() {
     times_ = stamps_;
     is_wrong_.assign(stamps_.size(), false);
@@ -355,18 +356,18 @@ class ContinuousLine {
   Timestamp shift_{};                          // sum of the steps so far
   std::size_t front_ = 0;                      // item with the latest stamp since the last step
   std::vector<std::size_t> placed_;            // items since the last step, without late ones
-  Times seen_;                                 // their stamps and those of late ones, in order
-  std::optional<std::size_t> end_of_setting_;  // where the clock is set back to shift_before_
+  Times seen_;                                 // stamps since the last step, with late ones, in order
+  std::optional<std::size_t> end_of_setting_;  // item at which the clock returns to shift_before_
   Timestamp shift_before_{};
 };
 
-// Whether items were received about as fast as they were stamped.
+// Whether receive times have about the rate of the stamps.
 bool is_at_same_rate(const Times& received, Timestamp interval) {
   const Timestamp other = usual_interval(received);
   return other > scaled(0.8, interval) && other < scaled(1.25, interval) && std::ranges::is_sorted(received);
 }
 
-// Evenly between the neighbours whose time is known; at the usual interval before the first and after the last of them.
+// Spaces unknown times evenly between known ones; at the usual interval before the first and after the last of them.
 void fill_in(Times& times, const std::vector<bool>& is_known, Timestamp interval) {
   const std::size_t size = times.size();
   for (std::size_t begin = 0; begin < size;) {
@@ -391,7 +392,7 @@ Timestamp median_of_delays(const RecordedStamps& recorded, std::size_t begin, st
   return median(std::move(delays));
 }
 
-// Takes over the steps of the other sensor's clock where this is the same clock.
+// Adopts the steps of another sensor's clock if both are the same clock.
 class StepAdoption {
  public:
   StepAdoption(const RecordedStamps& recorded, Timestamp interval, bool has_reception, const SensorClock& other)
@@ -428,7 +429,7 @@ class StepAdoption {
            std::chrono::abs(recorded_.received[own.item] - *shared.received) <= 2s;
   }
 
-  // A step too short for the interval of these items shows in the delays of reception.
+  // First item after a step that is too short for the interval of these items, by reception delays; empty without one.
   std::optional<std::size_t> first_item_after(const SharedClockStep& shared) const {
     constexpr std::size_t kLeast = 5;
     if (!has_reception_ || !shared.received) return std::nullopt;
@@ -438,7 +439,7 @@ class StepAdoption {
     const Timestamp before = median_of_delays(recorded_, item - std::min(item, kWindow), item);
     const Timestamp after = median_of_delays(recorded_, item, std::min(item + kWindow, received.size()));
     if (std::chrono::abs(after - before + shared.by) >= std::chrono::abs(shared.by) / 2) return std::nullopt;
-    while (item > 1) {  // the other sensor's first item after the step came later
+    while (item > 1) {  // the first item of the other sensor after the step may be later than that of this one
       const Timestamp delay = received[item - 1] - recorded_.stamps[item - 1];
       if (std::chrono::abs(delay - after) > std::chrono::abs(delay - before)) break;
       --item;
@@ -541,9 +542,9 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
   const std::string items = names.kind + "s";
   const auto add = [&](const std::string& text) { lines.push_back(names.place + ": " + text); };
   if (corrections.source == TimeSource::receive_times) {
-    add("time stamps are zero, or as coarse as whole seconds: receive times are used for all " + items);
+    add("time stamps are zero, or as coarse as whole seconds; receive times are used for all " + items);
   } else if (corrections.source == TimeSource::even_spacing) {
-    add("time stamps are as coarse as whole seconds: the " + items + " of a stamp are spread evenly");
+    add("time stamps are as coarse as whole seconds; the " + items + " of each stamp are spread evenly");
   }
   constexpr std::size_t kMostListed = 10;
   const auto& steps = corrections.clock_steps;

@@ -24,14 +24,14 @@ using Times = std::vector<Timestamp>;
 constexpr Timestamp kStart = std::chrono::seconds(1'700'000'000);
 constexpr Timestamp kInterval = 50ms;
 
-// When items were really taken, and how recorders see them.
+// True times of items.
 Times steady(int count, Timestamp interval = kInterval) {
   Times times;
   for (int i = 0; i < count; ++i) times.push_back(kStart + i * interval);
   return times;
 }
 
-// Received after a latency that varies by some milliseconds.
+// Receive times, with a latency that varies by some milliseconds.
 Times received_of(const Times& taken, Timestamp latency = 20ms) {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> jitter(0, 8000);
@@ -60,7 +60,7 @@ Timestamp worst_error(const Times& times, const Times& taken) {
   return worst;
 }
 
-// Every item kept, in the order of recording, at about its true time.
+// Expects all items in the order of recording, at their true times within the tolerance.
 void expect_restored(const RestoredTimes& restored, const Times& taken, Timestamp tolerance) {
   EXPECT_EQ(restored.items, counted(taken.size()));
   ASSERT_THAT(restored.times, SizeIs(taken.size()));
@@ -68,7 +68,7 @@ void expect_restored(const RestoredTimes& restored, const Times& taken, Timestam
   for (std::size_t i = 1; i < taken.size(); ++i) EXPECT_GT(restored.times[i], restored.times[i - 1]) << i;
 }
 
-TEST(RestoredTimes, AreTheStampsWhereTheseAscend) {
+TEST(RestoredTimes, AreTheStampsIfTheseAscend) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> interval(1, 200'000);  // microseconds
   Times stamps = {kStart};
@@ -82,7 +82,7 @@ TEST(RestoredTimes, AreTheStampsWhereTheseAscend) {
   }
 }
 
-TEST(RestoredTimes, AreThoseOfAClockThatStartsAtZero) {
+TEST(RestoredTimes, MayStartAtZero) {
   const RestoredTimes restored = restore_times({{0ms, 103ms, 207ms, 310ms, 415ms}});
   EXPECT_THAT(restored.times, ElementsAre(0ms, 103ms, 207ms, 310ms, 415ms));
   EXPECT_FALSE(restored.corrections.any());
@@ -149,7 +149,7 @@ TEST(RestoredTimes, ContinueInARecordingOfALoop) {
   expect_restored(restore_times({stamps}), taken, 1us);
 }
 
-TEST(RestoredTimes, KnowAClockSetForwardFromAPauseByReception) {
+TEST(RestoredTimes, ContinueOverAClockSetForwardByReceiveTimes) {
   const Times taken = steady(140);
   const Times stamps = with_step(taken, 70, 5s);
   const RestoredTimes restored = restore_times({stamps, received_of(taken)});
@@ -160,7 +160,7 @@ TEST(RestoredTimes, KnowAClockSetForwardFromAPauseByReception) {
   EXPECT_EQ(restore_times({stamps}).times, stamps) << "perhaps a pause";
 }
 
-TEST(RestoredTimes, TakeNoBurstAfterAStallForAStep) {
+TEST(RestoredTimes, AreUnchangedByABurstAfterAStall) {
   Times stamps = steady(200);
   stamps.erase(stamps.begin() + 110, stamps.begin() + 150);  // lost during the stall
   Times received = received_of(stamps);
@@ -195,7 +195,7 @@ TEST(RestoredTimes, PutPiecesInOrder) {
   EXPECT_EQ(restore_times({stamps}).times, taken) << "the first third last";
 }
 
-TEST(RestoredTimes, AreInOrderOfAListThatIsInNone) {
+TEST(RestoredTimes, SortAnUnorderedList) {
   Times stamps = steady(100);
   std::ranges::shuffle(stamps, std::mt19937(5));
   EXPECT_EQ(restore_times({stamps}).times, steady(100));
@@ -203,7 +203,7 @@ TEST(RestoredTimes, AreInOrderOfAListThatIsInNone) {
   EXPECT_EQ(restore_times({stamps}).times, steady(100));
 }
 
-TEST(RestoredTimes, LieBetweenTheNeighboursOfZeroAndWrongStamps) {
+TEST(RestoredTimes, ReplaceZeroAndWrongStampsByEvenSpacing) {
   const Times taken = steady(60);
   for (const Timestamp wrong : {Timestamp(0ms), Timestamp(3s), kStart + 5000s, kStart - 100s, Timestamp::max()}) {
     for (const std::size_t first : {0u, 25u, 57u}) {
@@ -233,7 +233,7 @@ Times of_whole_seconds(Times stamps) {
   return stamps;
 }
 
-TEST(RestoredTimes, AreThoseOfReceptionWhereStampsAreOfWholeSeconds) {
+TEST(RestoredTimes, AreReceiveTimesIfStampsAreWholeSeconds) {
   const Times taken = steady(60), received = received_of(taken);
   const RestoredTimes restored = restore_times({of_whole_seconds(taken), received});
   EXPECT_EQ(restored.times, received);
@@ -241,7 +241,7 @@ TEST(RestoredTimes, AreThoseOfReceptionWhereStampsAreOfWholeSeconds) {
   EXPECT_EQ(restored.corrections.repeated, 0);
 }
 
-TEST(RestoredTimes, AreSpreadEvenlyOverWholeSecondsWithoutReception) {
+TEST(RestoredTimes, AreSpreadEvenlyOverWholeSecondsWithoutReceiveTimes) {
   Times taken = steady(67);
   for (Timestamp& time : taken) time += 350ms;  // begins and ends within a second
   for (const Times& received : {Times(), of_whole_seconds(taken)}) {
@@ -251,7 +251,7 @@ TEST(RestoredTimes, AreSpreadEvenlyOverWholeSecondsWithoutReception) {
   }
 }
 
-TEST(RestoredTimes, AreOfTheFirstItemsWhereEachIsRepeated) {
+TEST(RestoredTimes, KeepTheFirstOfRepeatedItems) {
   Times stamps, received;
   for (const Timestamp time : steady(30)) {
     stamps.insert(stamps.end(), {time, time});
@@ -263,13 +263,13 @@ TEST(RestoredTimes, AreOfTheFirstItemsWhereEachIsRepeated) {
   EXPECT_EQ(restored.corrections.source, TimeSource::stamps);
 }
 
-TEST(RestoredTimes, AreOneWhereAllStampsAreOne) {
+TEST(RestoredTimes, KeepOneItemIfAllStampsAreEqual) {
   EXPECT_THAT(restore_times({Times(20, kStart)}).items, SizeIs(1));
   EXPECT_THAT(restore_times({Times(20, Timestamp{})}).items, SizeIs(1));
   EXPECT_EQ(restore_times({Times(20, Timestamp{}), steady(20)}).times, steady(20));
 }
 
-// Wheels at 100 Hz, images at 20 Hz; one clock, whose step comes between two items of each.
+// Wheels at 100 Hz and images at 20 Hz with one clock, which steps between two items of each.
 class TwoSensors : public testing::Test {
  protected:
   static Times stepped(const Times& taken) {
@@ -280,7 +280,7 @@ class TwoSensors : public testing::Test {
   static constexpr Timestamp kSet = kStart + 3487ms, kBy = -620ms;
 };
 
-TEST_F(TwoSensors, StayInStepWhereTheyShareAClock) {
+TEST_F(TwoSensors, StayInStepIfTheyShareAClock) {
   Times images = steady(140), wheels = steady(700, 10ms);
   for (const bool has_reception : {false, true}) {
     if (has_reception) images.erase(images.begin() + 70);  // lost just after the step
@@ -292,13 +292,13 @@ TEST_F(TwoSensors, StayInStepWhereTheyShareAClock) {
   }
 }
 
-TEST_F(TwoSensors, AreLeftAloneWhereTheClocksDiffer) {
+TEST_F(TwoSensors, AreUnchangedIfTheirClocksDiffer) {
   const Times images = steady(140), wheels = steady(700, 10ms);
   const RestoredTimes of_images = restore_times({stepped(images), received_of(images)});
   EXPECT_EQ(restore_times({wheels, received_of(wheels)}, of_images.clock).times, wheels);
 }
 
-TEST_F(TwoSensors, StayInStepWhereTheStepIsShorterThanAnInterval) {
+TEST_F(TwoSensors, StayInStepIfTheStepIsShorterThanAnInterval) {
   const Times images = steady(140), slow = steady(20, 350ms);
   Times stamps = slow;
   for (Timestamp& stamp : stamps) stamp += stamp >= kSet ? -173ms : Timestamp{};
@@ -307,7 +307,7 @@ TEST_F(TwoSensors, StayInStepWhereTheStepIsShorterThanAnInterval) {
   EXPECT_LE(worst_error(of_slow.times, slow), 1us);
 }
 
-TEST(TimeCorrections, AreNamedWithWhatWasDone) {
+TEST(TimeCorrections, AreDescribedWithTheirEffect) {
   TimeCorrections corrections;
   corrections.clock_steps = {{70, -620ms}};
   corrections.late = 2;

@@ -5,7 +5,7 @@
 namespace byre {
 
 StampClock::Reading StampClock::read(Timestamp stamp, Timestamp arrival) {
-  constexpr Timestamp kShortest = std::chrono::milliseconds(1);  // between images around a step
+  constexpr Timestamp kShortest = std::chrono::milliseconds(1);  // least time between the images around a step
   const Last last = last_.value_or(Last{stamp, arrival});
   last_ = Last{stamp, arrival};
   const Timestamp received = std::max(arrival - last.arrival, kShortest);

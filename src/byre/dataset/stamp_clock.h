@@ -7,27 +7,27 @@
 
 namespace byre {
 
-// Stamps that go back by no more than this belong to late messages unless more evidence shows that the clock was set.
+// Stamps that go back by at most this time are of late messages, unless other evidence shows a step of the clock.
 inline constexpr Timestamp kMostLate = std::chrono::milliseconds(500);
-// A clock was set forward where its stamps advance by so much more than the receiver's clock.
+// A clock was set forward if its stamps advance by this time more than the receiver's clock.
 inline constexpr Timestamp kLeastForward = std::chrono::seconds(1);
 
-// Whether a stamp that advances by `stamped` while the receiver's clock advances by `received` shows a clock set
-// forward.
+// Whether a clock was set forward, if its stamps advance by `stamped` while the receiver's clock advances by
+// `received`.
 constexpr bool is_set_forward(Timestamp stamped, Timestamp received) {
   return stamped > kLeastForward && stamped - received > kLeastForward;
 }
 
-// Continuous time from stamps of live images whose clock may be set while they arrive. Recordings, whose later stamps
-// are known, use restore_times.
+// Continuous time from stamps of live images, whose clock may be set meanwhile. For recordings, whose later stamps are
+// known, see restore_times.
 class StampClock {
  public:
   struct Reading {
-    Timestamp time{};               // stamp less all steps so far
+    Timestamp time{};               // stamp minus all steps so far
     std::optional<Timestamp> jump;  // step of the clock at this stamp; negative: set back
   };
 
-  // arrival: by a clock that never goes back.
+  // arrival: by a steady clock.
   Reading read(Timestamp stamp, Timestamp arrival);
 
   // Time of a stamp that another sensor took from the same clock.

@@ -12,10 +12,10 @@ TEST(StampClock, KeepsStampsThatContinue) {
   StampClock clock;
   for (int i = 0; i < 5; ++i) {
     const auto reading = clock.read(Timestamp(100s + i * 50ms), Timestamp(i * 900ms));
-    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "however late they come";
+    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "however late they arrive";
     EXPECT_FALSE(reading.jump);
   }
-  EXPECT_FALSE(clock.read(100s + 100ms, 5s).jump) << "an image of before";
+  EXPECT_FALSE(clock.read(100s + 100ms, 5s).jump) << "a late image";
   EXPECT_FALSE(clock.read(160s, 65s).jump) << "a pause of a minute";
 }
 

@@ -63,7 +63,7 @@ Timestamp pair_tolerance(const OpenOptions& options) {
 void require_times(std::size_t kept, int repeated, const std::string& place) {
   if (kept > 1 || repeated == 0) return;
   throw InputError(place, "all of its " + std::to_string(repeated + 1) + " images have the same time stamp",
-                   "stamp images by a clock that runs, or extract them into a folder and give their rate (--fps)");
+                   "stamp images by a running clock, or extract them into a folder and give their rate (--fps)");
 }
 
 RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::string& place, const SensorClock& other) {

@@ -20,10 +20,10 @@ struct TimedFile {
 
 inline constexpr Timestamp kUsualPairTolerance = std::chrono::milliseconds(2);
 
-// Most time between the stamps of a pair.
+// Largest time between the stamps of a pair.
 Timestamp pair_tolerance(const OpenOptions& options);
 
-// Files of a list with their times, as restore_times makes them.
+// Files of a list with corrected times (restore_times).
 struct RestoredFiles {
   std::vector<TimedFile> files;  // strictly increasing in time
   TimeCorrections corrections;
@@ -31,21 +31,20 @@ struct RestoredFiles {
   std::vector<std::string> warnings;
 };
 
-// place: of the list, in warnings. other: clock of the left images, where these are others. A line that is there twice
-// counts as a repeated stamp. Throws InputError when all files have one time.
+// place: name of the list in warnings. other: clock of the left images, if the files are others. A duplicate line
+// counts as a repeated stamp. Throws InputError if all files have one time.
 RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::string& place,
                             const SensorClock& other = {});
 
-// Throws InputError where more than one item was recorded, but only one time is left.
+// Throws InputError if more than one item was recorded, but all have one time. kept: number of items with a time.
 void require_times(std::size_t kept, int repeated, const std::string& place);
 
-// For each time the number of the other one nearest to it, where that is within the tolerance. Precondition: both
-// ascend.
+// For each time the index of the nearest other one, if that is within the tolerance. Precondition: both ascend.
 std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
                                                          const std::vector<Timestamp>& others, Timestamp tolerance);
 
-// The frames of the left images, each with the right one taken within the tolerance, where there is one. Precondition:
-// both ascend in time.
+// Frames of the left images, each with the right image within the tolerance, if there is one. Precondition: both ascend
+// in time.
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
                                   Timestamp tolerance);
 
@@ -53,11 +52,11 @@ std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std:
 // frame takes the nearest of its own. Precondition: both ascend in time.
 void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& depth);
 
-// Throws InputError with this place when no frame has a right image.
+// Throws InputError with this place if no frame has a right image.
 void require_pairs(const std::vector<FrameFiles>& frames, const std::vector<TimedFile>& right, Timestamp tolerance,
                    const std::string& place);
 
-// Why no right image belongs to a left one. Precondition: both ascend and are not empty.
+// Error for a recording without any pair. Precondition: both ascend and are not empty.
 InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left, const std::vector<Timestamp>& right,
                     Timestamp tolerance);
 

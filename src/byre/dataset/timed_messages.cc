@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Places ascend in the order in which a recorder writes.
+// Key by which messages ascend in the order of writing.
 auto order_in_file(const MessagePlace& place) {
   return std::tuple(place.file, place.chunk.value_or(place.begin), place.begin);
 }

@@ -20,7 +20,7 @@ TimedFile parse_tum_line(const TextLine& line, const fs::path& folder, const std
   return {*time, folder / fields[1]};
 }
 
-// rgb: clock of the colour images, for the depth images.
+// rgb: clock of the colour images, for depth images.
 RestoredFiles read_list(const fs::path& folder, const char* name, const SensorClock& rgb = {}) {
   const fs::path list = folder / name;
   std::vector<TimedFile> files;

@@ -114,7 +114,7 @@ std::optional<ImageFrame> Video::read(int index) {
     if (grab(number) && capture_->retrieve(frame) && !frame.empty()) {
       return ImageFrame{times_[static_cast<std::size_t>(index)], to_grey(frame), std::nullopt};
     }
-  } catch (const cv::Exception& exception) {  // pixels of a kind that cannot be converted
+  } catch (const cv::Exception& exception) {  // pixel formats that cannot be converted
     reason = ": " + exception.err;
   }
   warnings_.push_back(file_.string() + ": frame " + std::to_string(number) + " cannot be decoded" + reason);

@@ -172,7 +172,7 @@ void resize_structs(void**, const ddsi_sertype*, void*, std::size_t, std::size_t
 void free_structs(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
 
 bool equal_types(const ddsi_sertype* one, const ddsi_sertype* other) {
-  return most_bytes_of(one) == most_bytes_of(other);  // called for equal names
+  return most_bytes_of(one) == most_bytes_of(other);  // called for equal names only
 }
 
 std::uint32_t hash_type(const ddsi_sertype* type) {

@@ -14,8 +14,7 @@ namespace byre {
 // without keys and in the first version of the encoding (XCDR1). A message is four bytes that name the encoding and its
 // byte order, then its fields.
 
-// A type for dds_create_topic_sertype, which takes it over; name: as DDS knows it. Received messages of more than
-// most_bytes are dropped.
+// A type for dds_create_topic_sertype, which takes ownership. Received messages of more than most_bytes are dropped.
 ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes);
 
 // A message of a topic's type for dds_writecdr, which takes it over; null without memory.

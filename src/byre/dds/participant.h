@@ -27,7 +27,7 @@ struct TopicQos {
   std::size_t most_bytes = std::size_t{128} << 20;  // longer received messages are dropped
 };
 
-// Bound of received messages without images: commands, poses, camera calibrations, motion, transforms.
+// Largest received message without an image: commands, poses, camera calibrations, motion, transforms.
 inline constexpr std::size_t kMostBytesWithoutImage = std::size_t{256} << 10;
 
 // A 16-byte id of DDS.

@@ -50,21 +50,21 @@ class MatchedByPart {
   std::array<Part, kParts> parts_{};
 };
 
-// From so many pixels of CommonRowError on, a calibration is reported as off.
+// Pixels of CommonRowError above which a calibration is reported as off.
 inline constexpr double kFarOffCalibration = 0.5;
 
-// How far a calibration is off by the rows of a pair: pixels by which features lie off their row that all of a region
-// of the image have in common, root mean square over the regions. Medians, as wrong matches lie anywhere.
+// Row error of a calibration: the median row offset of the features in each region of the image, root mean square over
+// the regions, pixels. Medians are robust against wrong matches.
 class CommonRowError {
  public:
   CommonRowError() : counts_(static_cast<std::size_t>(kImageRegions * kBins)) {}
 
   void note(const Features& features, const Rig& rig);
-  std::optional<double> pixels() const;  // empty where no region has enough features
+  std::optional<double> pixels() const;  // empty if no region has enough features
 
  private:
   static constexpr int kBinsPerPixel = 50;
-  static constexpr int kBins = 9 * kBinsPerPixel;  // no match lies 4.5 pixels off its row
+  static constexpr int kBins = 9 * kBinsPerPixel;  // matches lie less than 4.5 pixels off their row
 
   std::vector<int> counts_;  // features by region, then by row offset
 };

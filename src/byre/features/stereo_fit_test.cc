@@ -68,7 +68,7 @@ TEST(MatchedByPart, ForgetsWhatWasBefore) {
   EXPECT_NEAR(forgets.at_best(), 0.125 / 1.875, 1e-9);
 }
 
-// Features all over an image of 800 x 600 pixels, the right ones off their row by so much in its upper and lower part.
+// Features all over an image of 800 x 600 pixels, with different row offsets in its upper and lower part.
 Features off_their_row(float above, float below) {
   std::vector<Keypoint> keypoints;
   for (float v = 10.0f; v < 600.0f; v += 20.0f) {

@@ -67,7 +67,7 @@ class MqttClient {
   std::atomic<int> connections_ = 0;
   std::atomic<int> under_way_ = 0;  // messages that were handed over and have not left yet
   std::atomic<int> refusal_ = 0;    // code by which the broker refused the last connection
-  std::atomic<int> fault_ = 0;      // MOSQ_ERR of the last connection or attempt, negative: -errno
+  std::atomic<int> fault_ = 0;      // error of the last connection or attempt: MOSQ_ERR, or -errno if negative
   std::jthread thread_;             // runs the client
 };
 

@@ -14,7 +14,7 @@ bool is_usual_baseline(double metres) {
   return metres >= kShortestBaseline && metres <= kLongestBaseline;
 }
 
-// What the baseline is in metres, if its number is in the first smaller unit that gives a usual one.
+// The baseline in metres by the first smaller unit that gives a usual one; empty without such a unit.
 std::optional<double> in_smaller_unit(double number) {
   constexpr std::array<double, 3> kUnits = {0.01, 0.001, 0.0254};  // centimetre, millimetre, inch
   for (const double unit : kUnits) {
@@ -34,7 +34,7 @@ Calibration with_checked_baseline(Calibration calibration, const std::optional<d
   const double baseline = baseline_of(calibration);
   if (confirmed) {
     if (!(*confirmed > 0.0) || !std::isfinite(*confirmed)) {
-      throw InputError(place, "is given a baseline that is no positive number of metres", "see " + option);
+      throw InputError(place, "is given a baseline that is not a positive number of metres", "see " + option);
     }
     if (!calibration.right) {
       throw InputError(place, "is of one camera, which has no baseline", "leave out " + option);
@@ -48,12 +48,13 @@ Calibration with_checked_baseline(Calibration calibration, const std::optional<d
   }
   if (!calibration.right || is_usual_baseline(baseline)) return calibration;
   const auto likely = in_smaller_unit(baseline);
-  throw InputError(place,
-                   fmt::format("has a baseline of {:g} m between left and right camera; usual are {:g} to {:g} m",
-                               baseline, kShortestBaseline, kLongestBaseline),
-                   "check that the extrinsics are in metres; " +
-                       (likely ? fmt::format("correct the baseline by {}{:g}, or ", option, *likely) : std::string()) +
-                       fmt::format("confirm it by {}{:g}", option, baseline));
+  throw InputError(
+      place,
+      fmt::format("has a baseline of {:g} m between left and right camera; usual values are {:g} to {:g} m", baseline,
+                  kShortestBaseline, kLongestBaseline),
+      "check that the extrinsics are in metres; " +
+          (likely ? fmt::format("correct the baseline by {}{:g}, or ", option, *likely) : std::string()) +
+          fmt::format("confirm it by {}{:g}", option, baseline));
 }
 
 }  // namespace byre

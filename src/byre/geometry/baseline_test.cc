@@ -27,14 +27,14 @@ std::string refusal(const Calibration& calibration, const std::optional<double>&
   return "";
 }
 
-TEST(Baseline, OfRobotsAndCarsStays) {
+TEST(Baseline, OfRobotsAndCarsIsAccepted) {
   for (const double metres : {0.005, 0.06, 0.11, 0.54, 1.0}) {
     const Calibration given = pair_with_baseline(metres);
     EXPECT_EQ(with_checked_baseline(given, {}, "", ""), given) << metres;
   }
 }
 
-TEST(Baseline, OfOneCameraIsNotAsked) {
+TEST(Baseline, OfOneCameraIsNotChecked) {
   EXPECT_EQ(with_checked_baseline({}, {}, "", ""), Calibration{});
   EXPECT_THAT(refusal({}, 0.1), HasSubstr("one camera"));
 }

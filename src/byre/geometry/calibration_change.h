@@ -48,8 +48,8 @@ struct RefinedCalibration {
   double shift = 0.0;
 
   bool was_refused() const { return shift > 0.0 && change.isZero(0.0); }
-  // The change asked for is beyond any error of a calibration of these cameras. Calibrations
-  // of real recordings whose change was refused ask for 0.6 to 2.4 pixels.
+  // Whether the refused change is beyond any error of a calibration of these cameras. For calibrations of real
+  // recordings refused changes are 0.6 to 2.4 pixels.
   bool is_implausible() const { return was_refused() && shift >= 3.0; }
 };
 

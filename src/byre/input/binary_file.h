@@ -14,8 +14,8 @@ std::vector<std::byte> read_file(const std::filesystem::path& path);
 // The folder of a file; "." if the path names none.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-// An open file that is read piece by piece. Stays the same file if its path is given to another one. Several threads
-// may read at once.
+// An open file that is read piece by piece. Stays the same file if another one is put in its path. Several threads may
+// read at once.
 class PiecewiseFile {
  public:
   explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError when it cannot be opened

@@ -40,7 +40,7 @@ TEST_F(BinaryFile, ReadsWhatWasWritten) {
   EXPECT_EQ(text_of(read_file(folder_ / "file")), text_of(bytes_of("a\0b")));
 }
 
-TEST_F(BinaryFile, SaysWhatCannotBeRead) {
+TEST_F(BinaryFile, ThrowsIfItCannotBeRead) {
   EXPECT_THROW(read_file(folder_ / "absent"), InputError);
   EXPECT_THROW(read_file(folder_), InputError);
   EXPECT_THROW(MappedFile(folder_ / "absent"), InputError);

@@ -32,7 +32,7 @@ std::string_view first_line(std::string_view text) {
   return text.substr(0, text.find('\n'));
 }
 
-// The first line that says something, or the comment above it where there is nothing else.
+// The first line that is not blank and no comment; without one, the first line.
 std::string_view first_entry(std::string_view text) {
   const std::string_view comment = first_line(text);
   while (!text.empty()) {
@@ -44,10 +44,10 @@ std::string_view first_entry(std::string_view text) {
   return comment;
 }
 
-// In TUM's, EuRoC's or KITTI's format.
+// Whether a line is a pose in TUM, EuRoC or KITTI format, or the header of such a file.
 bool is_pose(std::string_view line) {
   if (line.starts_with("# timestamp tx ty tz") || line.starts_with("#timestamp [ns],p_RS_R_x"))
-    return true;  // no poses
+    return true;  // header of a file without poses
   const bool has_commas = line.find(',') != std::string_view::npos;
   std::string spaced(line);
   std::ranges::replace(spaced, ',', ' ');
@@ -67,13 +67,14 @@ bool begins_with_any(std::string_view text, std::initializer_list<std::string_vi
   return std::ranges::any_of(beginnings, [&](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-// First lines of the text files of COLMAP, and of byre's export.
+// Whether text begins as the text files of COLMAP or of byre's export.
 bool is_colmap_text(std::string_view text) {
   return begins_with_any(text, {"# Camera list", "# Image list", "# 3D point list", "# CAMERA_ID MODEL",
                                 "# IMAGE_ID QW QX", "# POINT3D_ID X Y"});
 }
 
-// A count, and records of 24 bytes or more; cameras.bin, images.bin and points3D.bin have no magic number.
+// Whether bytes begin with a count that fits records of 24 bytes or more. cameras.bin, images.bin and points3D.bin have
+// no magic number.
 bool is_colmap_binary(std::string_view bytes, std::uintmax_t size, const fs::path& name) {
   constexpr std::uint64_t kSmallestRecord = 24;
   std::uint64_t count = 0;
@@ -97,7 +98,7 @@ FileContent content_of_text(std::string_view text, const fs::path& name) {
   return entry.find(',') == std::string_view::npos ? FileContent::text : FileContent::table;
 }
 
-// bytes: the first ones, of so many.
+// bytes: the first bytes. size: of the whole file.
 FileContent content_of_beginning(std::string_view bytes, std::uintmax_t size, const fs::path& name) {
   if (bytes.empty()) return FileContent::nothing;
   if (bytes.starts_with("\x89"

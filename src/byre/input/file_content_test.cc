@@ -18,7 +18,7 @@ std::optional<FileContent> content_of_bytes(const std::string& bytes) {
   return content;
 }
 
-TEST(ContentOf, TellsWhatByreWrites) {
+TEST(ContentOf, RecognisesFilesOfByre) {
   EXPECT_EQ(content_of_bytes("\x89"
                              "BYRE\r\n\x1a"),
             FileContent::map);
@@ -36,7 +36,7 @@ TEST(ContentOf, TellsWhatByreWrites) {
   EXPECT_EQ(content_of_bytes(""), FileContent::nothing);
 }
 
-TEST(ContentOf, TellsOtherTextFromAllThat) {
+TEST(ContentOf, RecognisesOtherText) {
   EXPECT_EQ(content_of_bytes("Dear reader\nthis: is a letter\n"), FileContent::text);
   EXPECT_EQ(content_of_bytes("#!/bin/sh\nrm file\n"), FileContent::text);
   EXPECT_EQ(content_of_bytes("1 2 3 4\n"), FileContent::text);
@@ -65,7 +65,7 @@ TEST(ContentOf, RecognisesPartsOfColmapModelsAndPages) {
   EXPECT_EQ(content("# Title\nname: text, more\n", "report.md"), FileContent::page);
 }
 
-TEST(ContentOf, DecidesWhatMayBeReplaced) {
+TEST(MayReplace, NeedsTheSameKindOrAnEmptyFile) {
   EXPECT_TRUE(may_replace(FileContent::map, FileContent::map));
   EXPECT_TRUE(may_replace(FileContent::nothing, FileContent::map));
   EXPECT_FALSE(may_replace(FileContent::text, FileContent::map));
@@ -73,7 +73,7 @@ TEST(ContentOf, DecidesWhatMayBeReplaced) {
   EXPECT_FALSE(may_replace(FileContent::other, FileContent::other));
 }
 
-TEST(ContentOf, IsUnknownForWhatIsNoFile) {
+TEST(ContentOf, IsEmptyWithoutARegularFile) {
   EXPECT_FALSE(content_of(testing::TempDir()));
   EXPECT_FALSE(content_of("/dev/null"));
   EXPECT_FALSE(content_of("absent"));

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kUnfinished = ".unfinished";
-constexpr std::size_t kMarkLength = 8;  // hexadecimal digits of a temporary name
+constexpr std::size_t kMarkLength = 8;  // hexadecimal digits in a temporary name
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
   throw InputError(path.string(), reason, remedy);
@@ -46,7 +46,7 @@ std::string_view remedy_of(int error) {
       return "allow writing to its folder (chmod u+w), or name a file in another folder";
     case ENOENT:
     case ENOTDIR:
-      return "make its folder, or name a file in another one";
+      return "create its folder, or name a file in another one";
     case EMFILE:
     case ENFILE:
       return "close other files, or raise their limit (ulimit -n)";
@@ -63,17 +63,17 @@ std::string_view remedy_of(int error) {
          remedy_of(error));
 }
 
-// Temporary files of this process, for a signal handler: names in memory that is never freed.
+// Temporary files of this process, for the signal handler. The memory of the names is never freed.
 struct Pending {
   std::atomic<bool> is_taken = false;
   std::atomic<bool> is_there = false;
   std::array<char, 1024> name{};
 };
 std::array<Pending, 16> pending_files;
-static_assert(std::atomic<bool>::is_always_lock_free, "else a signal handler may not read it");
+static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers may read lock-free atomics only");
 
-// Its place in the list; -1 for a long name or a full list. Such a file stays if a signal ends the program, until the
-// next run that writes to the same path.
+// Adds a file to the list and returns its index; -1 for a long name or a full list. Such a file stays if a signal ends
+// the program; the next run that writes the same path removes it.
 int note_pending(const fs::path& file) {
   const std::string& name = file.native();
   if (name.size() >= Pending{}.name.size()) return -1;
@@ -94,8 +94,8 @@ void forget_pending(int& place) {
   place = -1;
 }
 
-// Descriptor that a path such as /dev/stdout or /dev/fd/3 names. Opening the path instead would truncate a file that
-// output is redirected to, and forget its position.
+// The descriptor of a path such as /dev/stdout or /dev/fd/3. Opening the path instead would truncate a file that output
+// is redirected to, and lose its position.
 std::optional<int> named_descriptor(const fs::path& path) {
   const std::string name = path.lexically_normal().string();
   if (name == "/dev/stdout") return STDOUT_FILENO;
@@ -114,18 +114,18 @@ bool is_below(const fs::path& path, std::string_view folder) {
   return path.native().starts_with(folder);
 }
 
-// Folders of the system that hold no files of users. /dev/shm does.
+// Whether the file is in a system folder without user files. /dev/shm has user files.
 bool is_of_system(const fs::path& target) {
   return (is_below(target, "/dev/") && !is_below(target, "/dev/shm/")) || is_below(target, "/proc/") ||
          is_below(target, "/sys/");
 }
 
-// Where and how a path is written.
+// Target of a path, and how it is written.
 struct Destination {
   fs::path target;
   bool is_direct = false;
-  std::optional<int> descriptor{};     // is_direct: an open one
-  std::optional<struct stat> there{};  // regular file that is there
+  std::optional<int> descriptor{};     // open descriptor to write to, if is_direct
+  std::optional<struct stat> there{};  // status of the present regular file; empty without one
 };
 
 void require_replaceable(const fs::path& path, const fs::path& target, FileContent content, const struct stat& there) {
@@ -135,8 +135,7 @@ void require_replaceable(const fs::path& path, const fs::path& target, FileConte
   }
   const auto present = content_of(target);
   if (!present) {
-    refuse(path, "is there and cannot be read, so that it may be of another kind",
-           "name another file, or remove that one first");
+    refuse(path, "is there and cannot be read, so its kind is unknown", "name another file, or remove that one first");
   }
   if (may_replace(*present, content)) return;
   refuse(path, "is there and is no " + std::string(name_of(content)), "name another file, or remove that one first");
@@ -146,13 +145,13 @@ void require_folder(const fs::path& path, const fs::path& target) {
   const fs::path folder = folder_of(target);
   std::error_code unknown;
   if (!fs::is_directory(folder, unknown)) {
-    refuse(path, "cannot be written: its folder does not exist", "make the folder " + folder.string());
+    refuse(path, "cannot be written: its folder does not exist", "create the folder " + folder.string());
   }
   if (access(folder.c_str(), W_OK | X_OK) == 0) return;
   refuse(path, std::string("cannot be written: ") + std::strerror(errno), remedy_of(errno));
 }
 
-// Throws InputError for what may not be written. content: empty for a check of the place alone.
+// Throws InputError if the path may not be written. content: empty for a check of the place alone.
 Destination destination_of(const fs::path& path, std::optional<FileContent> content) {
   if (const auto descriptor = named_descriptor(path)) {
     const int flags = fcntl(*descriptor, F_GETFL);
@@ -166,17 +165,17 @@ Destination destination_of(const fs::path& path, std::optional<FileContent> cont
   Destination to{is_link ? target_of(path) : path};
   const bool is_there = stat(to.target.c_str(), &status) == 0;
   if (!is_there && errno == ELOOP) {
-    refuse(path, "is a link that leads round in a circle", "name a file");
+    refuse(path, "is a circular link", "name a file");
   }
   if (is_there && S_ISDIR(status.st_mode)) refuse(path, "is a folder", "name a file in it");
   if (is_there && !S_ISREG(status.st_mode)) {
     to.is_direct = !is_link && (S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode));
-    if (!to.is_direct) refuse(path, "is no file: a link to a device, a socket or a disk", "name a file");
+    if (!to.is_direct) refuse(path, "is not a file, but a link to a device, a socket or a block device", "name a file");
     if (access(path.c_str(), W_OK) != 0) refuse(path, "may not be written", "check its permissions");
     return to;
   }
   if (is_of_system(target_of(to.target))) {
-    refuse(path, "would be a file in a folder of the system", "name a file in another folder");
+    refuse(path, "is in a system folder", "name a file in another folder");
   }
   require_folder(path, to.target);
   if (!is_there) return to;
@@ -185,13 +184,13 @@ Destination destination_of(const fs::path& path, std::optional<FileContent> cont
   return to;
 }
 
-// A name's beginning that leaves room for the rest of a temporary name.
+// First part of a temporary name, short enough for the rest.
 std::string beginning_of(const fs::path& target) {
-  constexpr std::size_t kMost = 200;  // bytes, of 255 that file systems allow
+  constexpr std::size_t kMost = 200;  // bytes, of the 255 of file systems
   return target.filename().string().substr(0, kMost) + ".";
 }
 
-// The library that writes videos chooses the format by the extension.
+// Last part of a temporary name. The video library chooses the format by the extension.
 std::string ending_of(const fs::path& target, FileContent content) {
   return std::string(kUnfinished) + (content == FileContent::video ? target.extension().string() : "");
 }
@@ -218,7 +217,7 @@ bool is_temporary_of(const fs::path& file, const fs::path& target, FileContent c
                              [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
 
-// Whoever writes a temporary file holds its lock, which ends with the process.
+// A process that writes a temporary file holds its lock, which ends with the process.
 bool lock(int descriptor) {
   return flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
@@ -232,7 +231,7 @@ void remove_if_left(const fs::path& file) {
   close(descriptor);
 }
 
-// Temporary files of earlier writes to the same path whose process was killed.
+// Removes temporary files of killed processes that wrote to the same path.
 void remove_leftovers(const fs::path& target, FileContent content) {
   std::error_code error;
   for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end; entry.increment(error)) {
@@ -240,7 +239,7 @@ void remove_leftovers(const fs::path& target, FileContent content) {
   }
 }
 
-// Gives its descriptor and name.
+// Returns descriptor and name.
 std::pair<int, fs::path> create_temporary(const fs::path& path, const Destination& to, FileContent content) {
   constexpr int kAttempts = 100;
   for (int i = 0; i < kAttempts; ++i) {
@@ -248,7 +247,7 @@ std::pair<int, fs::path> create_temporary(const fs::path& path, const Destinatio
     const int descriptor = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) fail_to_write(path, to.there.has_value(), errno);
-    // Another process may have taken it for a leftover before it was locked. File systems without locks go without.
+    // Another process may have removed it as a leftover before it was locked. File systems without locks are accepted.
     struct stat status {};
     const bool is_locked = lock(descriptor) || (errno != EWOULDBLOCK);
     if (is_locked && fstat(descriptor, &status) == 0 && status.st_nlink > 0) return {descriptor, std::move(name)};
@@ -257,14 +256,14 @@ std::pair<int, fs::path> create_temporary(const fs::path& path, const Destinatio
   fail_to_write(path, to.there.has_value(), EEXIST);
 }
 
-// As far as the system allows it.
+// Takes over owner and mode as far as the system allows.
 void take_over_owner_and_mode(int descriptor, const struct stat& there) {
   constexpr mode_t kPermissions = 0777;
   const bool is_owner_kept = fchown(descriptor, there.st_uid, there.st_gid) == 0;
   if (is_owner_kept) fchmod(descriptor, there.st_mode & kPermissions);
 }
 
-// Some file systems cannot sync a folder, which is no fault of the file.
+// False on failure. File systems that cannot sync a folder are accepted.
 bool sync_descriptor(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
 }
@@ -362,7 +361,7 @@ void keep_as(const fs::path& file, const fs::path& path) {
   if (link(target_of(file).c_str(), temporary.c_str()) != 0) return write_whole(path, read_file(file));
   const bool is_renamed = rename(temporary.c_str(), to.target.c_str()) == 0;
   const int error = errno;
-  unlink(temporary.c_str());  // still there if the two were one file before, or if renaming failed
+  unlink(temporary.c_str());  // still there if both paths were the same file, or renaming failed
   if (!is_renamed) fail_to_write(path, to.there.has_value(), error);
   sync_folder_of(path, to.target);
 }

@@ -10,64 +10,66 @@
 
 namespace byre {
 
-// The way all files of byre are written. What may be written where:
-//   - a new file, in a folder that exists, but not below /dev, /proc and /sys
-//   - in place of an empty file or one of the same content (may_replace) that is not write-protected
-//   - through a link, under these rules for what it leads to; the link stays
-//   - /dev/stdout, /dev/stderr, /dev/fd/N, character devices and pipes, named by themselves: written directly
-// All else is refused. A file is written under a temporary name, NAME.xxxxxxxx.unfinished, in the same folder, which no
-// other file can have (O_EXCL). Then it is synced, renamed, and its folder synced. So the path holds the old file or
-// the new one, whole, whenever the program or the machine stops.
+// All files of byre are written by this header. Permitted are:
+//   - a new file in an existing folder that is not below /dev (except /dev/shm), /proc or /sys
+//   - the replacement of an empty file, or of one with the same kind of content (may_replace), unless write-protected
+//   - a link, if its target is permitted; the link stays
+//   - /dev/stdout, /dev/stderr, /dev/fd/N, character devices and pipes, but not through a link; written directly
+// All else is refused. A file is written under a temporary name in the same folder, NAME.xxxxxxxx.unfinished, which is
+// created exclusively (O_EXCL). Then it is synced and renamed, and its folder is synced. So the path holds the whole
+// old file or the whole new one, whenever the program or the machine stops.
 
-// Throws InputError if no such file may be written there, for a check before the work.
+// Throws InputError if no file with this content may be written there. For a check before the work; content: empty for
+// a check of the place alone.
 void require_writable(const std::filesystem::path& path, std::optional<FileContent> content = {});
 
 enum class Durability : std::uint8_t {
   synced,
-  left_to_system,  // for many files that are of use together, such as images of a recording
+  left_to_system,  // not synced; for one of many files, such as images of a recording
 };
 
-// Writes the whole file. Throws InputError, and leaves the path as it was, if that fails.
+// Writes a file as a whole. Throws InputError on failure; the path is then unchanged.
 void write_whole(const std::filesystem::path& path, std::span<const std::byte> bytes,
                  Durability durability = Durability::synced);
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
-// A file that is written piece by piece. All throw InputError on failure.
+// A file that is written piece by piece. All functions throw InputError on failure.
 class OutputFile {
  public:
   OutputFile(const std::filesystem::path& path, FileContent content, Durability durability = Durability::synced);
-  ~OutputFile();  // removes a file that was not published
+  ~OutputFile();  // removes the temporary file unless published
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Where it is written until it is published; has the extension of the path. For libraries that write by name.
+  // Path of the temporary file, for libraries that write by name; of a video with the extension of the path. Empty once
+  // published, and if written directly.
   const std::filesystem::path& temporary() const { return temporary_; }
 
   void append(std::span<const std::byte> bytes);
   void append(std::string_view text);
   void sync();
-  // Gives it its name. Once; before the first append for a file that others read as it grows.
+  // Renames the temporary file to its path. Call once; before the first append for a file that others read as it grows.
   void publish();
 
  private:
-  std::filesystem::path path_;       // as given
-  std::filesystem::path target_;     // where a link leads, else the path
-  std::filesystem::path temporary_;  // empty when published, and when written directly
+  std::filesystem::path path_;       // path as given
+  std::filesystem::path target_;     // target of a link, else the path
+  std::filesystem::path temporary_;  // empty once published, and if written directly
   Durability durability_;
   bool is_direct_ = false;  // device or pipe
-  bool replaces_ = false;   // there is a file already
+  bool replaces_ = false;   // whether there was a file before
   int descriptor_ = -1;
-  int pending_ = -1;  // place in the list of unpublished files, or -1
+  int pending_ = -1;  // index in the list of unpublished files; -1: not in it
 };
 
-// Gives the content of a file to a second path, by a hard link where the file system has them, else by a copy. The
-// content of that path before is replaced as by write_whole.
+// Keeps the content of a file under a second path, by a hard link if the file system has them, else by a copy. Replaces
+// that path as write_whole does.
 void keep_as(const std::filesystem::path& file, const std::filesystem::path& path);
 
-// Removes all temporary files of this process. May be called by a signal handler that ends the program.
+// Removes all temporary files of this process. Safe in a signal handler that ends the program.
 void remove_unpublished_files() noexcept;
 
-// The file that a path leads to by links, whether it exists or not.
+// The target of a path, with links resolved; it need not exist.
 std::filesystem::path target_of(std::filesystem::path path);
 
 }  // namespace byre

@@ -43,7 +43,7 @@ class OutputFileTest : public testing::Test {
   }
   auto entries() const { return std::distance(fs::directory_iterator(folder_), {}); }
 
-  // Empty if it was written. name: in the folder, or an absolute path.
+  // The refusal of a write; empty if it was written. name: in the folder, or an absolute path.
   std::string refusal(const fs::path& name, const std::string& content) const {
     try {
       write_whole(folder_ / name, content);
@@ -129,15 +129,15 @@ TEST_F(OutputFileTest, IsWrittenThroughALinkUnderTheSameRules) {
   EXPECT_EQ(refusal("dangling.byre", kNewMap), "");
   EXPECT_EQ(read("new.byre"), kNewMap);
   fs::create_symlink("circle", folder_ / "circle");
-  EXPECT_THAT(refusal("circle", kNewMap), HasSubstr("leads round in a circle"));
+  EXPECT_THAT(refusal("circle", kNewMap), HasSubstr("is a circular link"));
   fs::create_symlink("/dev/null", folder_ / "device");
   EXPECT_THAT(refusal("device", kNewMap), HasSubstr("a link to a device"));
 }
 
-TEST_F(OutputFileTest, GoesToDevicesAndPipesDirectlyAndMakesNothingInFoldersOfTheSystem) {
+TEST_F(OutputFileTest, WritesToDevicesAndPipesDirectlyAndCreatesNothingInSystemFolders) {
   EXPECT_EQ(refusal(fs::path("/dev/null"), kNewMap), "");
-  EXPECT_THAT(refusal(fs::path("/dev/byre_null.previous"), kNewMap), HasSubstr("a folder of the system"));
-  EXPECT_THAT(refusal(fs::path("/proc/byre"), kNewMap), HasSubstr("a folder of the system"));
+  EXPECT_THAT(refusal(fs::path("/dev/byre_null.previous"), kNewMap), HasSubstr("is in a system folder"));
+  EXPECT_THAT(refusal(fs::path("/proc/byre"), kNewMap), HasSubstr("is in a system folder"));
   EXPECT_THAT(refusal(fs::path("/dev/fd/999"), kNewMap), HasSubstr("is not open for writing"));
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   const int reader = open((folder_ / "pipe").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -158,8 +158,8 @@ TEST_F(OutputFileTest, ContinuesAFileThatOutputIsRedirectedTo) {
   EXPECT_EQ(read("log"), "before\nin between\nafter\n");
 }
 
-TEST_F(OutputFileTest, SaysWhatToDo) {
-  EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("its folder does not exist (make the folder"));
+TEST_F(OutputFileTest, NamesReasonAndRemedy) {
+  EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("its folder does not exist (create the folder"));
   EXPECT_THAT(refusal(folder_, kNewMap), HasSubstr("is a folder (name a file in it)"));
   EXPECT_THAT(refusal(fs::path(""), kNewMap), HasSubstr("is a folder"));
   EXPECT_THAT(
@@ -182,8 +182,8 @@ TEST_F(OutputFileTest, KeepsThePermissionsOfTheFileItReplaces) {
   EXPECT_EQ(fs::status(folder_ / "barn.byre").permissions(), fs::perms(0640));
 }
 
-TEST_F(OutputFileTest, RemovesWhatAKilledProcessLeftAndNothingElse) {
-  put("barn.byre.0123abcd.unfinished", "of a process that was killed");
+TEST_F(OutputFileTest, RemovesOnlyTemporaryFilesOfKilledProcesses) {
+  put("barn.byre.0123abcd.unfinished", "of a killed process");
   put("barn.byre.unfinished", "another name");
   put("barn.byre.0123abcz.unfinished", "another name");
   put("other.byre.0123abcd.unfinished", "of another file");
@@ -217,7 +217,7 @@ TEST_F(OutputFileTest, IsRemovedByASignalThatEndsTheProgram) {
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_F(OutputFileTest, HasARoomyNameInAnyFolder) {
+TEST_F(OutputFileTest, MayHaveALongName) {
   const std::string longest(250, 'n');
   EXPECT_EQ(refusal(longest, "text"), "");
   EXPECT_EQ(read(longest), "text");

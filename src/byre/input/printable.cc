@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-// A character of UTF-8. Invalid bytes are characters of one byte.
+// A UTF-8 character. An invalid byte counts as a character of one byte.
 struct Utf8Character {
   std::uint32_t code = 0;
   std::size_t bytes = 1;

@@ -10,7 +10,7 @@ namespace {
 
 using std::string_literals::operator""s;
 
-TEST(Printable, LeavesUtf8AsItIs) {
+TEST(Printable, LeavesUtf8Unchanged) {
   for (const char* text : {"", "barn.byre", "Stall 3: Kühe, 牛 🐄", "back\\slash 'quoted'"}) {
     EXPECT_EQ(printable(text), text);
   }
@@ -25,11 +25,11 @@ TEST(Printable, EscapesControlCharacters) {
             "\\xc2\\x9b2J");  // U+009B, the eight-bit form of ESC [
   EXPECT_EQ(printable("\xe2\x80\xae"
                       "gnp.exe"),
-            "\\xe2\\x80\\xaegnp.exe");  // U+202E, writes right to left
+            "\\xe2\\x80\\xaegnp.exe");  // U+202E, right-to-left override
   EXPECT_EQ(printable("a\xe2\x80\xa8"
                       "b"),
             "a\\xe2\\x80\\xa8"
-            "b");  // U+2028, ends a line
+            "b");  // U+2028, line separator
 }
 
 TEST(Printable, EscapesInvalidUtf8) {
@@ -47,7 +47,7 @@ TEST(Printable, CutsLongText) {
   EXPECT_EQ(printable("aaaaa", 5), "aaaaa");
 }
 
-TEST(Printable, OfAnyByteIsPrintableAndStaysTheSame) {
+TEST(Printable, IsIdempotentForAnyByte) {
   for (int byte = 0; byte < 256; ++byte) {
     const std::string once = printable("a"s + static_cast<char>(byte) + "b");
     for (const char each : once) EXPECT_TRUE(each >= 0x20 && each < 0x7f) << byte;

@@ -10,7 +10,7 @@
 
 namespace byre {
 
-// A line of a report: a label padded to a column of 12 characters, and its content, which may be text from outside.
+// A line of a report: a label padded to 12 characters, and content, which may be text from outside.
 inline std::string row(std::string_view label, std::string_view content) {
   return fmt::format("{:12} {}\n", printable(label), printable(content));
 }

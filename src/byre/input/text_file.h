@@ -16,11 +16,11 @@ struct TextLine {
   std::string text;  // text of the line without white space at its ends
 };
 
-// The lines that say something: without blank ones and comments ("#..."). Line ends may be LF or CRLF; a byte order
-// mark is skipped. Throws InputError when the file cannot be read.
+// The lines without blank ones and comments ("#..."). Line ends may be LF or CRLF; a byte order mark is skipped. Throws
+// InputError if the file cannot be read.
 std::vector<TextLine> read_lines(const std::filesystem::path& path);
 
-// Editors of Windows and spreadsheets begin UTF-8 files with a mark. first_line: of a file.
+// Removes the byte order mark with which Windows editors and spreadsheets begin UTF-8 files. first_line: of a file.
 void skip_byte_order_mark(std::string& first_line);
 
 // "file:line", as InputError names a place.

@@ -6,9 +6,8 @@
 
 namespace byre {
 
-// A pose that is not finite changes nothing.
-// Where the body is in the map, and the smooth pose beside that: whatever moves the map, or the pose in it, without the
-// robot moving is taken out again. The smooth pose's frame is that of the body at the start.
+// The pose of the body in the map, and the smooth pose (odometry), which corrections of the map do not move. The frame
+// of the smooth pose is that of the body at the start. Poses that are not finite are ignored.
 class Odometry {
  public:
   const Pose& map_from_body() const { return map_from_body_; }  // last pose, as it was then

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// The cells of the map in view speak for the pose, or there are none.
+// Accepted, and the map cells in view do not contradict the pose.
 bool is_beyond_doubt(const Whereabouts& whereabouts) {
   return whereabouts.place().is_accepted() && whereabouts.place().log_odds() >= 0.0;
 }
@@ -51,7 +51,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     nearby_keyframes_ = std::move(keyframes);
   }
   ReusedVector<PointId> around;
-  constexpr std::size_t kFew = 200;  // points seen by keyframes nearby, of which too few may be in view
+  constexpr std::size_t kFew = 200;  // points of nearby keyframes, of which too few may be in view
   if (nearby_points_.size() < kFew) {
     const Map nothing_online(Origin::online);
     auto reference = track.offline_reference;
@@ -115,8 +115,7 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   if (is_search_by_doubt_ && (is_beyond_doubt(whereabouts) || !is_due)) return;
   last_search_ = sought.frame.time;
   const bool is_hint_to_be_checked = whereabouts.is_by_hint() && mapper.submaps().is_registered();
-  // Where a pose was trusted all the while, a find elsewhere says that it was wrong, so the way from there tells
-  // nothing.
+  // A find elsewhere refutes an accepted pose, so the way measured from that pose must not constrain the search.
   const bool is_way_in_doubt = whereabouts.place().is_accepted() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
                  way = is_way_in_doubt ? std::nullopt : sought.way, hidden = sought.hidden, offline = offline_,

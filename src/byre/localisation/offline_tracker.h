@@ -19,7 +19,7 @@ namespace byre {
 struct OfflineTrackerOptions {
   MissionOptions mission;
   TrackOptions track;
-  LocaliseOptions relocalise;  // where places are looked for beside tracking
+  LocaliseOptions relocalise;  // for place searches beside tracking
   int local_keyframes = 15;    // see SessionOptions
   bool is_planar = false;      // the body is held to the ground that the map was driven on
 };
@@ -70,7 +70,7 @@ class OfflineTracker {
     bool agrees_with_hint = false;                 // it is where a hint had led, and nowhere else
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
-  // What a frame that was tracked in the map's frame shows of it.
+  // The part of the map that a frame, tracked in the map's frame, shows.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // Log-odds of a frame's pose by what that frame alone shows.
   double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
@@ -102,8 +102,8 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
-  ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view
-  ReusedVector<PointId> nearby_points_;        // points that these saw
+  ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view_of
+  ReusedVector<PointId> nearby_points_;        // points seen by these keyframes
   RivalPlace rival_;
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need

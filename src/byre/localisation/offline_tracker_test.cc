@@ -46,7 +46,7 @@ class OnAnOfflineMap : public ::testing::Test {
   }
   struct Way {
     std::size_t begin = 0;    // its first frame
-    bool is_by_hint = false;  // a hint led to where it begins; else it was accepted before
+    bool is_by_hint = false;  // it begins at a pose found by a hint; otherwise at an accepted pose
   };
   // The first frame of a way in which a place 5 m away, which shows much more in each, refutes where tracking is; zero
   // where none does.
@@ -95,7 +95,7 @@ TEST_F(OnAnOfflineMap, LetsItsPointsPutTheCameraTheFartherOffTheLongerTheyDidNot
   EXPECT_GT(mission.limits(false, 0.1).drift.translation, mission.limits(true, 0.1).drift.translation);
 }
 
-TEST_F(OnAnOfflineMap, GivesAnUnprovenFindUpForAPlaceElsewhereThatShowsMore) {
+TEST_F(OnAnOfflineMap, ReplacesAPlaceThatIsNotAcceptedByALikelierOne) {
   note_found(0, view_of_room(2, 8));
   ASSERT_FALSE(whereabouts_.place().is_accepted());
   EXPECT_FALSE(tracker_.consider(place_beside(2.0, -5.0), whereabouts_, mapper_).refutes_pose);
@@ -103,7 +103,7 @@ TEST_F(OnAnOfflineMap, GivesAnUnprovenFindUpForAPlaceElsewhereThatShowsMore) {
   EXPECT_TRUE(tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_).refutes_pose);
 }
 
-TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
+TEST_F(OnAnOfflineMap, KeepsAnAcceptedPlaceAfterOneFindElsewhere) {
   note_found(0);
   ASSERT_TRUE(whereabouts_.place().is_accepted());
   const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_);
@@ -111,13 +111,13 @@ TEST_F(OnAnOfflineMap, KeepsAProvenFindWhateverElseLooksLikeIt) {
   EXPECT_FALSE(consequence.correction);
 }
 
-TEST_F(OnAnOfflineMap, GivesAProvenPlaceUpForARivalThatIsFoundAllAlongTheWay) {
+TEST_F(OnAnOfflineMap, GivesUpAnAcceptedPlaceForARivalFoundAllAlongTheWay) {
   note_found(0);
   ASSERT_TRUE(whereabouts_.place().is_accepted());
   EXPECT_GT(frame_that_refutes({.begin = 4, .is_by_hint = false}), 8U) << "not by one find";
 }
 
-TEST_F(OnAnOfflineMap, BelievesWhatAHintLedToUntilARivalIsFoundAllAlongTheWay) {
+TEST_F(OnAnOfflineMap, KeepsAPlaceFoundByAHintUntilARivalIsFoundAllAlongTheWay) {
   mapper_.begin_where_found(track_of(0));
   EXPECT_GT(frame_that_refutes({.begin = 0, .is_by_hint = true}), 8U) << "not by one find";
 }

@@ -8,27 +8,27 @@
 namespace byre {
 namespace {
 
-// Measured on real and simulated missions, by day, at dusk and with half of the things moved: shares of the cells that
-// show their points, where the pose is right and where it is wrong.
+// Shares of agreeing cells at right and at wrong poses. Measured on real and simulated missions by day, at dusk and
+// with half of the things moved.
 constexpr double kAgreeingWhereRight = 0.55;
 constexpr double kAgreeingWhereWrong = 0.18;
 const double kOfAgreement = std::log(kAgreeingWhereRight / kAgreeingWhereWrong);
 const double kOfDisagreement = std::log((1.0 - kAgreeingWhereRight) / (1.0 - kAgreeingWhereWrong));
-constexpr double kMinExpected = 8.0;  // points in view with which a cell counts
-constexpr double kMinShare = 0.03;    // share of them that are seen where a cell agrees; chance gives a tenth of it
+constexpr double kMinExpected = 8.0;  // expected points from which a cell counts
+constexpr double kMinShare = 0.03;    // least share of seen points of an agreeing cell; chance gives a tenth of it
 
-// One find in ten is of a thing that was moved.
+// Prior: one find in ten is of a moved thing.
 const double kOfMovedThing = std::log(10.0);
 
-constexpr double kReject = -4.0;  // log-odds from which an accepted place is rejected
+constexpr double kReject = -4.0;  // log-odds at which an accepted place is rejected
 
 constexpr int kLengthOfMean = 6;     // frames over which a cell's points are averaged
-constexpr int kFramesToForget = 50;  // frames without a cell in view after which it counts no more
+constexpr int kFramesToForget = 50;  // frames out of view after which a cell is forgotten
 
 using Places = ReusedVector<Eigen::Vector3d>;
 
 Places places_around(const Eigen::Vector3d& middle, const Places& places) {
-  constexpr double kReach = 2.0;  // metres from the middle of a thing to its edge
+  constexpr double kReach = 2.0;  // metres, half the size of a large thing
   Places around;
   for (const Eigen::Vector3d& place : places) {
     if ((place - middle).norm() <= kReach) around.push_back(place);
@@ -42,10 +42,10 @@ Eigen::Vector3d mean_of(const Places& places) {
   return sum / static_cast<double>(places.size());
 }
 
-// How many of the places lie on one plane.
+// Number of places on the plane of least squares; at least three, through which a plane always passes.
 int count_on_plane(const Places& places) {
-  constexpr double kThickness = 0.6;    // metres from the plane
-  constexpr std::size_t kAnyPlane = 3;  // places through which a plane can be laid
+  constexpr double kThickness = 0.6;    // metres from the plane, largest distance of a place on it
+  constexpr std::size_t kAnyPlane = 3;  // places that any plane passes through
   if (places.size() <= kAnyPlane) return static_cast<int>(places.size());
   const Eigen::Vector3d mean = mean_of(places);
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -57,7 +57,7 @@ int count_on_plane(const Places& places) {
   return std::max(static_cast<int>(kAnyPlane), static_cast<int>(on_plane));
 }
 
-// How many of the places one moved thing can hold: those on a plane, no farther apart than a large thing is wide.
+// Largest number of places that one moved thing can cover: those on a plane, within kReach of their middle.
 int most_on_one_thing(const Places& places) {
   int most = 0;
   for (const Eigen::Vector3d& place : places) {
@@ -84,8 +84,8 @@ double PlaceHypothesis::evidence() const {
 void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
   if (is_tracked) frames_to_believe_ = std::max(0, frames_to_believe_ - 1);
   ++frame_;
-  // Where no keyframe has seen the map from about here, walls may hide what is expected: that speaks against a find,
-  // but not against a pose that tracking has led to.
+  // Where no keyframe saw the map from nearby, walls may hide expected points. Missing points then count against a
+  // place that is not accepted, but not against an accepted one.
   if (is_accepted_ && !view.is_near_keyframe) return;
   for (const CellInView& seen : view.cells) {
     auto cell = std::ranges::lower_bound(cells_, seen.cell, {}, &Cell::index);

@@ -12,7 +12,7 @@ PlaceHypothesis observed(PlaceHypothesis place, const PlaceView& view, int frame
   return place;
 }
 
-// The leaf of a gate: cells of one plane, 4 m wide and 4 m high.
+// View of a gate's leaf: cells of one plane, 4 m wide and 4 m high.
 PlaceView view_of_gate() {
   PlaceView view{.is_near_keyframe = true, .cells = {}};
   for (const int y : {0, 1}) {
@@ -93,7 +93,7 @@ TEST(PlaceHypothesis, IgnoresCellsWithFewPoints) {
   EXPECT_DOUBLE_EQ(observed(PlaceHypothesis(0.0, 0), view, 1).log_odds(), 0.0);
 }
 
-TEST(PlaceHypothesis, GoesOnWhereThePoseIsFoundAgain) {
+TEST(PlaceHypothesis, IsKeptWhereThePoseIsFoundAgain) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
   place.find_again(3);
   EXPECT_FALSE(place.is_believed());

@@ -35,9 +35,9 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {
-  Timestamp time{};  // when the frame was taken that was found
+  Timestamp time{};  // time of the frame that was found
   Pose camera_from_offline;
-  double median_depth = 0.0;      // metres, of the points that say so
+  double median_depth = 0.0;      // metres, of the matched points
   double log_odds = 0.0;          // log-odds of the place by this frame alone, see PlaceHypothesis
   double tracked_log_odds = 0.0;  // log-odds of the pose tracked in the same frame
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Views of an offline map made by hand, as the tests of place hypotheses need them.
+// Synthetic views of an offline map for tests of place hypotheses.
 
 #include "byre/slam/place_view.h"
 
@@ -12,7 +12,7 @@ inline CellInView cell_in_view(const std::array<int, 3>& cell, int seen) {
   return {cell, 40, seen, kSide * centre};
 }
 
-// Cells of a room: so many that show their points, then so many that do not. No four of them lie on a thing.
+// Cells of a room, first the agreeing ones, then the others. No four of them fit on one thing.
 inline PlaceView view_of_room(int agreeing, int disagreeing, int seen = 10) {
   PlaceView view{.is_near_keyframe = true, .cells = {}};
   for (int i = 0; i < agreeing + disagreeing; ++i) {

@@ -9,9 +9,9 @@ namespace byre {
 
 bool RivalPlace::note(const FoundPlace& found, const Pose& camera_from_tracked, const RegistrationOptions& options) {
   constexpr double kElsewhere = 0.5;       // metres
-  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to where tracking has the robot
+  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to the tracked pose
   constexpr int kFinds = 5;
-  constexpr double kWay = 2.0;  // metres, for what looks alike from one spot need not do so from the next
+  constexpr double kWay = 2.0;  // metres; places that look alike from one spot differ along a way
   if (agreement_of(found.camera_from_offline, camera_from_tracked).translation <= kElsewhere) {
     forget();
     return false;

@@ -35,11 +35,11 @@ TEST_F(RivalOfAWay, IsNotBelievedFromOneSpot) {
 
 TEST_F(RivalOfAWay, MustBeMuchMoreLikelyThanTheTrackedPose) {
   EXPECT_FALSE(find_along(5.0, 4.0, 2.0));
-  EXPECT_FALSE(find_along(5.0, -1.0, -9.0)) << "as a bay does that looks alike, where much has changed";
+  EXPECT_FALSE(find_along(5.0, -1.0, -9.0)) << "a similar bay, where much has changed";
   EXPECT_TRUE(find_along(5.0, 4.0, -1.0));
 }
 
-TEST_F(RivalOfAWay, IsNoneNearTheWay) {
+TEST_F(RivalOfAWay, IsNotNearTheWay) {
   EXPECT_FALSE(find_along(0.3, 4.0, -2.0));
 }
 

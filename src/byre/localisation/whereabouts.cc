@@ -54,20 +54,20 @@ Matrix6 Whereabouts::bridged_odometry_covariance() const {
                          inverse(odometry_.odometry_from_body()) * odometry_open_->map_from_body);
 }
 
-// The odometry goes by what is measured to a place that was found.
+// The odometry follows measured motion to a place that was found; its covariance is added.
 void Whereabouts::open_odometry(const std::optional<BodyMotion>& led) {
   if (!led) return;
   const Matrix6 covariance = bridged_odometry_covariance() + led->covariance;
   odometry_open_ = {odometry_.odometry_from_body(), covariance};
 }
 
-// Whether the pose goes on from the last one as the camera moved before, within what a body can speed up.
+// Whether the pose continues the camera's motion from the last one, within the acceleration of a body.
 bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const {
   constexpr double kMostAcceleration = 15.0;  // m/s^2
   constexpr double kMostTurning = 30.0;       // radians per second squared
-  constexpr double kShare = 0.05;             // share of the depth of what is seen
+  constexpr double kShare = 0.05;             // share of the median depth of the scene
   constexpr double kTurn = 0.1;               // radians
-  constexpr double kLongest = 0.3;            // seconds between frames, beyond which the motion is no longer known
+  constexpr double kLongest = 0.3;            // seconds between frames for which the velocity predicts the motion
   if (!has_pose_ || trajectory_.empty() || !place_.is_believed()) return false;
   const double seconds = to_seconds(time - trajectory_.back().time);
   if (seconds > kLongest) return false;
@@ -133,14 +133,14 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
-// The test of a pose found without a prediction. It starts anew, and farther away than the robot can have moved with
-// more to prove; near where an accepted pose was shortly before it goes on.
+// The test of a pose found without a prediction. It starts anew, with negative log-odds if the pose is out of the
+// robot's reach. Within a second of an accepted pose, and within reach, the earlier test continues.
 PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body) const {
-  constexpr double kSlack = 0.5;    // metres: error of poses
+  constexpr double kSlack = 0.5;    // metres, error of poses
   constexpr double kShortly = 1.0;  // seconds
   const int frames = registration_.confirmations;
   if (trajectory_.empty() || !last_believed_) return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
-  // A well-known motion leaves no time without a pose.
+  // Frames bridged by a well-known motion do not count as time without a pose.
   const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
   const auto seconds_since = [&](Timestamp then) {
     return to_seconds(time - (is_bridged ? trajectory_.back().time : then));

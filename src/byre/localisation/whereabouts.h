@@ -40,9 +40,9 @@ class Whereabouts {
   void hear(TellReach reach) { reach_ = std::move(reach); }
 
   bool has_pose() const { return has_pose_; }  // in the last frame
-  // Whether the pose lies where the offline map has it.
+  // Test of the pose's place in the offline map.
   const PlaceHypothesis& place() const { return place_; }
-  // The pose was searched for near a hint alone, and is not accepted yet.
+  // The pose was found by a search near a hint only, and is not accepted yet.
   bool is_by_hint() const { return is_by_hint_; }
   const AnchoredTrajectory& trajectory() const { return trajectory_; }
   const MotionModel& motion() const { return motion_; }
@@ -60,13 +60,12 @@ class Whereabouts {
   const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
   Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
   Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
-  // Covariance of the odometry by what bridges to found places left open, beside the drift of what is seen.
+  // Covariance of the odometry by bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
-  // A pose that goes on from the last one, as seen, is never out of reach.
-  // Wheels did not turn as much as they must have to lead there from where the robot was seen last, or led it
-  // elsewhere: it is another place that looks alike. Without an offline map that is asked for half a minute, after
-  // which the robot may have been carried. On an offline map it is asked as long as the motion is measured.
+  // Whether measured motion since the last pose that was seen contradicts the pose of a track: then it is another place
+  // that looks alike. False for a pose that continues the camera's motion, and while the last pose was untrusted.
+  // Without an offline map false after half a minute, when the robot may have been carried.
   bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
   // Prior log-odds that the present submap, not registered yet, lies so in the offline map, by the measured motion up
   // to its beginning. 0 where that is not known.
@@ -87,7 +86,7 @@ class Whereabouts {
     bool is_registered = false;
     std::size_t submap = 0;
     bool is_by_hint = false;          // where it was found from nothing: it was looked for near a hint alone
-    const PlaceView* view = nullptr;  // what it shows of the offline map; nullptr without one
+    const PlaceView* view = nullptr;  // the part of the offline map that it shows; nullptr without a map
   };
   // What a tracked frame changed.
   struct Progress {
@@ -114,9 +113,9 @@ class Whereabouts {
   void turn(const RigTurn& turn, const Map& online);
   void turn_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.remember_offset({}); }
-  // The submap was found to lie in the offline map, which is still to be proven.
+  // The submap was registered in the offline map, and moved by offline_from_online. Starts the test of its place.
   void note_registration(const Pose& offline_from_online, bool is_by_hint);
-  // It was looked for in the whole map too, and found where the hint had led.
+  // A search of the whole map agrees with the pose found by the hint.
   void note_agreement() { is_by_hint_ = false; }
   // By what the map moved the last pose, after_from_before; empty where there is none.
   std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
@@ -169,8 +168,8 @@ class Whereabouts {
     Matrix6 covariance;
   };
   std::optional<Carried> carried_;
-  std::optional<Carried> bridged_beginning_;  // of the present submap on a mission, until it is registered
-  std::optional<Carried> odometry_open_;  // at an odometry pose, what bridges left open up to there
+  std::optional<Carried> bridged_beginning_;  // where a mission's submap began after a bridge, until it is registered
+  std::optional<Carried> odometry_open_;      // covariance by bridges, at the odometry pose where the last one ended
   Odometry odometry_;
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // before the pose was lost

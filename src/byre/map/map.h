@@ -132,9 +132,9 @@ struct Covisible {
   int shared_points = 0;
 };
 
-// What a map leaves in its file until it is looked at. Several threads may look at once. What is handed out stays as
-// long as the source does. A keyframe or points that cannot be read, as the file is damaged there, are noted as
-// damage() and replaced: the keyframe sees no point, the points are seen by no keyframe.
+// The parts of a map that stay in its file until they are accessed. Several threads may access at once. References stay
+// valid as long as the source does. Where the file is damaged, damage() is set and the part is replaced: a keyframe by
+// one that sees no point, points by points that no keyframe sees.
 class MapSource {
  public:
   using WordVisitor = std::function<void(KeyframeId, std::span<const Word>)>;
@@ -144,9 +144,9 @@ class MapSource {
   virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const = 0;
   virtual const ObservedPoint& point(std::uint32_t number) const = 0;
   virtual ReusedVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
-  // As Map does. Throws InputError if they are damaged.
+  // Like Map::visit_words. Throws InputError if the words are damaged.
   virtual void visit_words(const WordVisitor& visit) const = 0;
-  // The first damage that a look met, with file, section and remedy; nullptr without damage.
+  // The first damage found on access, with file, section and remedy; nullptr without damage.
   virtual const InputError* damage() const = 0;
 };
 
@@ -156,9 +156,8 @@ class MapSource {
 // Pointers and references handed out are valid until the next change. Several threads may look at a map at once, while
 // none changes it.
 //
-// A map with a source reads what keyframes see, and points, from it when they are first looked at, and keeps it from
-// then on. damage() reports a source that is damaged. The first change reads all of it, and throws InputError if it is
-// damaged.
+// A map with a source reads sightings and points from it on first access and keeps them. damage() reports a damaged
+// source. The first change reads the whole source, and throws InputError if it is damaged.
 class Map {
  public:
   explicit Map(Origin origin) : origin_(origin) {}

@@ -86,7 +86,7 @@ struct SectionSize {
 };
 
 // The layout is described in docs/map_format.md. Equal maps give equal bytes. Values are rounded, far below their
-// noise; a map that was read from its bytes is written as them again. Throws InputError for a map with a damaged
+// noise; a map that was read from its bytes is written as the same bytes. Throws InputError for a map with a damaged
 // source. Preconditions: ids without gaps, and keyframes whose rigs exist.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
@@ -95,8 +95,8 @@ std::vector<std::byte> write_map(const StoredMap& stored);
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 
-// The same on files. Saving replaces a file as a whole, see write_whole, once the bytes have been read back: a map
-// that could not be loaded again is an InputError, and the old file stays.
+// The same on files. Saving reads the bytes back and then replaces the file as a whole (write_whole). A map that cannot
+// be loaded again is an InputError, and the old file stays.
 StoredMap load_map(const std::filesystem::path& path);
 // As read_map and load_map, but for what keyframes see and points: these are read, and checked, when they are first
 // looked at (see Map), from a file that stays open. Nothing is checked of what is never looked at, but that all

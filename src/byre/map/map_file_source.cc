@@ -15,7 +15,7 @@ using Bytes = std::span<const std::byte>;
 constexpr std::array<std::string_view, kViewSections> kViewNames = {"features", "patches", "observations",
                                                                     "descriptors", "words"};
 
-// With as many features as points that can be read may say that the keyframe has.
+// A keyframe without sightings. It has the number of features to which readable points may refer.
 Keyframe unseeing(const Keyframe& bare, const Rig& rig, std::uint32_t features) {
   const Keypoint anywhere{.pixel = Eigen::Vector2f::Zero()};
   Keyframe keyframe = bare;

@@ -49,7 +49,7 @@ class MapFileSource : public MapSource {
   std::string place_of(std::string_view section) const;
   Keyframe read_keyframe(std::uint32_t number, const Keyframe& bare) const;
   Block read_block(std::uint32_t number) const;
-  // The result of read(); notes damage and gives the substitute if that throws.
+  // The result of read(); if that throws InputError, notes the damage and returns the substitute.
   template <typename Read, typename Substitute>
   auto read_or(Read read, Substitute substitute) const;
 

@@ -181,7 +181,7 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
               AllOf(StartsWith("barn.byre: section features at byte "), HasSubstr("wrong checksum")));
 }
 
-TEST(MapFileSource, GoesOnBesideADamagedKeyframeWhichSeesNothing) {
+TEST(MapFileSource, ReplacesADamagedKeyframeByOneThatSeesNothing) {
   MapBytes bytes = scene_of_size(5);
   const StoredMap sound = read_map(bytes, "");
   const TableEntry section = section_of(bytes, "patches");
@@ -191,7 +191,7 @@ TEST(MapFileSource, GoesOnBesideADamagedKeyframeWhichSeesNothing) {
   const auto sees_points = [](const Keyframe& keyframe) {
     return std::ranges::any_of(keyframe.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); });
   };
-  EXPECT_EQ(opened.map.damage(), nullptr) << "not met yet";
+  EXPECT_EQ(opened.map.damage(), nullptr) << "not accessed yet";
   for (const KeyframeId id : opened.map.keyframe_ids()) {
     const bool was_met = opened.map.damage() != nullptr;
     const Keyframe& keyframe = *opened.map.find_keyframe(id);
@@ -302,7 +302,7 @@ TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   EXPECT_THROW(look_at_all(cut.map), InputError) << "of words";
   ASSERT_NE(cut.map.damage(), nullptr);
   EXPECT_THAT(cut.map.damage()->what(), HasSubstr("has become shorter since it was opened"));
-  EXPECT_THROW(write_map(cut), InputError) << "a part of a map is not saved as if it were the whole";
+  EXPECT_THROW(write_map(cut), InputError) << "a damaged map is not saved as a whole one";
   EXPECT_EQ(untouched.map.damage(), nullptr);
   EXPECT_EQ(write_map(untouched), bytes) << "another file of that name";
   fs::remove(path);

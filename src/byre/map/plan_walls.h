@@ -21,8 +21,8 @@ struct PlanDisc {
 // is a point, so every gap is a door; what lies beyond the plan's image is open.
 class PlanWalls {
  public:
-  // A wall is in each cell that an occupied pixel (100) lies in. Cells are 0.1 m wide, and wide enough that a line of
-  // pixels is one of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
+  // A cell has a wall if it contains an occupied pixel (100). Cells are at least 0.1 m wide, and wide enough that a
+  // line of pixels is a line of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
   PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy);
 
   // Opens the walls along ways that were driven, which may lead through a door that is drawn shut. All that free cells

@@ -111,7 +111,7 @@ TEST(PlanWalls, OpenWhereSomebodyDroveThrough) {
   EXPECT_NEAR(*way, 4.0, 0.3);
 }
 
-TEST(PlanWalls, AreOccupiedPixelsAlone) {
+TEST(PlanWalls, AreOnlyOccupiedPixels) {
   PlanOfRooms rooms;
   rooms.draw(4.9, 0.0, 5.0, 6.0, kUnknownPixel);
   rooms.draw(5.0, 0.0, 5.1, 6.0, 99);

@@ -53,7 +53,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
     if (!recording.refined) recording.refined = RefinedCalibration{.calibration = recording.calibration};
     recording.refined->calibration = byre::scaled(recording.refined->calibration, factor);
   }
-  scaled.notes.erase(kMetresNote);  // another measurement than that of wheels
+  scaled.notes.erase(kMetresNote);  // metres are no longer those of wheels
   note_mounting(byre::scaled(mounting_in(stored.notes), factor), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;

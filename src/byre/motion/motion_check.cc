@@ -16,18 +16,18 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Timestamp kLatestStamp = Timestamp::max() / 2;  // differences of stamps stay in range
-constexpr Timestamp kLeap = 10s;                          // a stamp so far ahead needs a second one
-constexpr int kLateUntilRestarted = 10;                   // stamps in a row
-constexpr double kLeastRecent = 0.02;                     // seconds of a step whose speed is measured: stamps jitter
-constexpr double kFastShareOfUnit = 0.5;  // share of samples beyond the limit from which the unit is wrong
+constexpr Timestamp kLeap = 10s;                          // a larger step ahead needs confirmation by a second stamp
+constexpr int kLateUntilRestarted = 10;                   // ascending stamps in a row
+constexpr double kLeastRecent = 0.02;                     // seconds, least duration for speeds, because stamps jitter
+constexpr double kFastShareOfUnit = 0.5;  // share of samples above the limit from which the unit is wrong
 constexpr double kDegreesPerRadian = 1.0 / kDegree;
 
 bool is_rotation(const Eigen::Quaterniond& rotation) {
-  constexpr double kMostOff = 0.1;  // share of the length 1
+  constexpr double kMostOff = 0.1;  // largest error of the length 1
   return rotation.coeffs().allFinite() && std::abs(rotation.norm() - 1.0) < kMostOff;
 }
 
-// The bits of a unit quaternion stay.
+// Normalises; leaves a unit quaternion unchanged to the last bit.
 Eigen::Quaterniond unit(const Eigen::Quaterniond& rotation) {
   constexpr double kRounding = 1e-9;
   return std::abs(rotation.squaredNorm() - 1.0) < kRounding ? rotation : rotation.normalized();
@@ -41,7 +41,7 @@ double turn(const StampedPose& from, const StampedPose& to) {
   return angle_between(from.world_from_body.rotation, to.world_from_body.rotation);
 }
 
-// Drivers of a base that start again publish exactly this pose first.
+// Restarted drivers of a base publish exactly this pose first.
 bool is_origin(const StampedPose& sample) {
   constexpr double kRounding = 1e-6;  // metres and radians
   return sample.world_from_body.translation.norm() < kRounding &&
@@ -51,8 +51,8 @@ bool is_origin(const StampedPose& sample) {
 }  // namespace
 
 bool is_sound(const BodyMotion& motion) {
-  constexpr double kMostOff = 0.1;        // share of the length 1
-  constexpr double kMostVariance = 1e12;  // square metres and square radians: sums and products stay finite
+  constexpr double kMostOff = 0.1;        // largest error of the length 1
+  constexpr double kMostVariance = 1e12;  // square metres and square radians, so that sums and products stay finite
   const auto& [pose, covariance] = motion;
   return pose.translation.allFinite() && pose.rotation.coeffs().allFinite() && covariance.allFinite() &&
          std::abs(pose.rotation.norm() - 1.0) < kMostOff && (covariance.diagonal().array() >= 0.0).all() &&
@@ -116,13 +116,14 @@ StampCheck::Order MotionCheck::ordered(StampCheck& stamps, MotionSensor sensor, 
   return order;
 }
 
-// A base speeds up within limits, so that a reset of odometry shows also where the base is near its origin.
+// Whether a base can make the step. The speed limit follows the recent speed, so that resets near the origin are
+// detected too.
 bool MotionCheck::is_step(const StampedPose& from, const StampedPose& to) const {
-  constexpr double kSlack = 0.05;       // metres: encoders' ticks and late stamps
+  constexpr double kSlack = 0.05;       // metres, for encoder ticks and late stamps
   constexpr double kSlackTurn = 0.1;    // radians
-  constexpr double kFaster = 1.5;       // times as fast as lately
-  constexpr double kMoreSpeed = 3.0;    // metres per second on top of that: a wheel that begins to spin
-  constexpr double kMoreTurning = 3.0;  // radians per second on top of that
+  constexpr double kFaster = 1.5;       // factor of the recent speed
+  constexpr double kMoreSpeed = 3.0;    // metres per second added to it, for wheels that begin to spin
+  constexpr double kMoreTurning = 3.0;  // radians per second added to the turn rate
   const double seconds = to_seconds(to.time - from.time);
   const double speed = speed_ ? std::min(limits_.max_speed, kFaster * *speed_ + kMoreSpeed) : limits_.max_speed;
   const double turning =
@@ -133,7 +134,7 @@ bool MotionCheck::is_step(const StampedPose& from, const StampedPose& to) const 
 }
 
 void MotionCheck::accept(const StampedPose& sample) {
-  constexpr double kKept = 0.9;  // share of the speed before, a sample later
+  constexpr double kKept = 0.9;  // decay of the recent maximum per sample
   if (last_) {
     const double seconds = std::max(kLeastRecent, to_seconds(sample.time - last_->time));
     speed_ = std::max(distance(*last_, sample) / seconds, kKept * speed_.value_or(0.0));
@@ -143,14 +144,14 @@ void MotionCheck::accept(const StampedPose& sample) {
   suspected_.reset();
 }
 
-// A base that drives does not stand to the last bit a sample later: its driver has stopped.
+// Whether the driver has stopped: the pose stays equal to the last bit although the base drove too fast to brake.
 bool MotionCheck::is_frozen(const StampedPose& sample) {
   constexpr double kHardestBraking = 8.0;  // m/s^2
   constexpr double kLeastSpeed = 0.15;     // metres per second
   constexpr double kLeastRun = 0.055;      // seconds
-  constexpr double kRuns = 3.0;            // times the longest run while driving
-  constexpr double kLongestRun = 0.3;      // seconds: longer ones are stops
-  constexpr double kNew = 0.2;             // weight of a sample
+  constexpr double kRuns = 3.0;            // factor of the longest run while driving
+  constexpr double kLongestRun = 0.3;      // seconds; longer runs are stops
+  constexpr double kNew = 0.2;             // weight of a sample in the mean
   const double seconds = std::max(1e-3, to_seconds(sample.time - raw_->time));
   const double run = pose_since_ ? to_seconds(raw_->time - *pose_since_) : 0.0;
   if (!(sample.world_from_body == raw_->world_from_body)) {
@@ -167,7 +168,7 @@ bool MotionCheck::is_frozen(const StampedPose& sample) {
   return pose_since_ && to_seconds(sample.time - *pose_since_) > kLeastRun + kRuns * longest_run_;
 }
 
-// Speeds beyond the limit for a while are those of another unit: a jump lasts for one sample.
+// Speeds above the limit for many samples mean another unit; a jump lasts for one sample only.
 void MotionCheck::note_speed(Timestamp time, double way, double seconds) {
   constexpr double kSlack = 0.05;  // metres
   constexpr double kNew = 0.04;    // weight of a sample
@@ -179,8 +180,8 @@ void MotionCheck::note_speed(Timestamp time, double way, double seconds) {
   ignored_.insert(MotionSensor::wheels);
   warn_once(
       MotionSensor::wheels, Fault::unit, time,
-      fmt::format("the base moves at {:.3g} m/s, more than motion.max_speed_m_per_s ({:.3g}), for many samples; wheels "
-                  "are ignored",
+      fmt::format("the base moves at {:.3g} m/s, above motion.max_speed_m_per_s ({:.3g}), in many samples; wheels are "
+                  "ignored",
                   speed, limits_.max_speed),
       std::string("give lengths in metres: these look like ") + (speed > kMillimetres ? "millimetres" : "centimetres") +
           ", or raise the limit for a faster vehicle");
@@ -193,7 +194,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   if (!pose.translation.allFinite() || !is_rotation(pose.rotation)) {
     warn_once(kWheels, Fault::not_finite, wheels.time,
               "a pose is not finite, or its quaternion is not of length 1; such poses are dropped",
-              "see what the driver of the base publishes");
+              "check the output of the base driver");
     return {};
   }
   const double farthest = pose.translation.lpNorm<Eigen::Infinity>();  // a norm would overflow
@@ -203,7 +204,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
         fmt::format("a pose is {:.3g} m from the origin, more than motion.max_position_m ({:.3g}); such poses are "
                     "dropped",
                     farthest, limits_.max_position),
-        "see what the driver of the base publishes");
+        "check the output of the base driver");
     return {};
   }
   CheckedPoses result;
@@ -227,10 +228,10 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
     warn_once(kWheels, Fault::frozen, sample.time,
               fmt::format("the pose stays the same to the last bit right after {:.2f} m/s; such poses are not used",
                           speed_before_same_),
-              "see that the driver of the base runs");
+              "check that the base driver is running");
     return result;
   }
-  if (was_frozen) {  // nothing is known of the way meanwhile
+  if (was_frozen) {  // the motion since then is unknown
     result.beginning = sample;
     last_ = sample;
     suspected_.reset();
@@ -251,7 +252,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
               fmt::format("the pose jumps by {:.3g} m and {:.0f} degrees in {:.3f} s; motion across a jump is not used",
                           distance(before, after), turn(before, after) * kDegreesPerRadian,
                           to_seconds(after.time - before.time)),
-              "see why the driver of the base starts again, or whether two nodes publish the topic");
+              "check whether the base driver restarts, or two nodes publish the topic");
     result.beginning = suspected_;
     last_ = suspected_;
     speed_.reset();
@@ -259,8 +260,8 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   } else if (suspected_) {
     warn_once(
         kWheels, Fault::spike, suspected_->time,
-        fmt::format("a single pose lies {:.3g} m off the way; such poses are dropped", distance(*last_, *suspected_)),
-        "look for noise on the wire of the encoders, or for a second publisher of the topic");
+        fmt::format("a single pose lies {:.3g} m off the path; such poses are dropped", distance(*last_, *suspected_)),
+        "check the encoder wiring for noise, and the topic for a second publisher");
   }
   accept(sample);
   result.sample = sample;
@@ -274,17 +275,17 @@ StampCheck::Order MotionCheck::check(const BaseVelocity& wheels) {
   const double speed = std::hypot(wheels.ahead, wheels.left);
   if (!std::isfinite(speed) || !std::isfinite(wheels.turning)) {
     warn_once(kWheels, Fault::not_finite, wheels.time, "a velocity is not finite; such velocities are dropped",
-              "see what the driver of the base publishes");
+              "check the output of the base driver");
     return dropped;
   }
   note_speed(wheels.time, speed * kLeastRecent, kLeastRecent);
   if (are_wheels_ignored()) return dropped;
   if (speed > limits_.max_speed || std::abs(wheels.turning) > limits_.max_turn_rate) {
     warn_once(kWheels, Fault::too_large, wheels.time,
-              fmt::format("a velocity of {:.3g} m/s and {:.3g} rad/s is beyond motion.max_speed_m_per_s ({:.3g}) or "
+              fmt::format("a velocity of {:.3g} m/s and {:.3g} rad/s is above motion.max_speed_m_per_s ({:.3g}) or "
                           "motion.max_turn_rate_rad_per_s ({:.3g}); such velocities are dropped",
                           speed, wheels.turning, limits_.max_speed, limits_.max_turn_rate),
-              "see what the driver of the base publishes");
+              "check the output of the base driver");
     return dropped;
   }
   return ordered(velocity_stamps_, kWheels, wheels.time);
@@ -303,7 +304,7 @@ StampCheck::Order MotionCheck::check(const AngularRate& rate) {
   if (ignored_.contains(kGyroscope)) return dropped;
   if (!rate.rate.allFinite()) {
     warn_once(kGyroscope, Fault::not_finite, rate.time, "a rate is not finite; such rates are dropped",
-              "see what the driver of the IMU publishes");
+              "check the output of the IMU driver");
     return dropped;
   }
   const bool is_fast = !(rate.rate.norm() <= limits_.max_turn_rate);
@@ -311,14 +312,14 @@ StampCheck::Order MotionCheck::check(const AngularRate& rate) {
   if (fast_rate_share_ > kFastShareOfUnit) {
     ignore_gyroscope(
         Fault::unit, rate.time,
-        fmt::format("rates are beyond motion.max_turn_rate_rad_per_s ({:.3g}) for many samples", limits_.max_turn_rate),
+        fmt::format("rates are above motion.max_turn_rate_rad_per_s ({:.3g}) in many samples", limits_.max_turn_rate),
         "give radians per second: these look like degrees per second");
     return dropped;
   }
   if (is_fast) {
     warn_once(
         kGyroscope, Fault::too_large, rate.time,
-        fmt::format("a rate of {:.3g} rad/s is beyond motion.max_turn_rate_rad_per_s ({:.3g}); such rates are dropped",
+        fmt::format("a rate of {:.3g} rad/s is above motion.max_turn_rate_rad_per_s ({:.3g}); such rates are dropped",
                     rate.rate.norm(), limits_.max_turn_rate),
         "give radians per second, or raise the limit");
     return dropped;
@@ -337,26 +338,26 @@ StampCheck::Order MotionCheck::check(const AngularRate& rate) {
 }
 
 bool MotionCheck::note(const Turn& turn) {
-  constexpr Timestamp kSame = 400ms;         // rates equal to the last bit
-  constexpr double kTurn = 0.03;             // radians, more than noise
-  constexpr double kTurnedWhileSame = 0.15;  // radians
-  constexpr double kTurning = 0.05;          // radians, change of the turn from one to the next
-  constexpr double kEnoughDegrees = 0.15;    // radians by the reference
-  constexpr double kEnough = 1.0;            // radians by the reference
+  constexpr Timestamp kSame = 400ms;         // least duration of a run of equal rates
+  constexpr double kTurn = 0.03;             // radians; smaller turns may be noise
+  constexpr double kTurnedWhileSame = 0.15;  // radians by the reference, from which equal rates are a fault
+  constexpr double kTurning = 0.05;          // radians, least change between consecutive turns
+  constexpr double kEnoughDegrees = 0.15;    // radians of change by the reference, to detect degrees
+  constexpr double kEnough = 1.0;            // radians of change, to detect another factor
   constexpr int kFewChanges = 2, kManyChanges = 6;
   if (ignored_.contains(MotionSensor::gyroscope)) return false;
   if (rate_time_ && same_since_ && *rate_time_ - *same_since_ >= kSame && *same_since_ < turn.time) {
     const bool is_turn = turn.reference.norm() >= kTurn;
     if (!is_turn) has_dead_zone_ = true;
-    const bool counts = turn.is_seen || !has_rate_ || !has_dead_zone_;  // one wheel may spin at rest
+    const bool counts = turn.is_seen || !has_rate_ || !has_dead_zone_;  // a wheel may spin at standstill
     if (is_turn && counts) turned_while_same_ += turn.reference.norm();
     if (turned_while_same_ >= kTurnedWhileSame) {
       return ignore_gyroscope(
           Fault::silent, turn.time,
           fmt::format("all rates are {} while the robot turns by {:.0f} degrees",
                       last_rate_->isZero(0.0) ? "zero" : "equal", turned_while_same_ * kDegreesPerRadian),
-          "choose the topic or file of the gyroscope, not that of an accelerometer alone, and see that the sensor "
-          "runs");
+          "choose the topic or file of the gyroscope, not that of an accelerometer alone, and check that the sensor "
+          "works");
     }
   }
   const std::optional<Turn> before = std::exchange(last_turn_, turn);
@@ -376,10 +377,10 @@ bool MotionCheck::note(const Turn& turn) {
   const bool is_enough =
       turn.is_seen && changes_ >= kManyChanges && std::max(measured_change_, reference_change_) >= kEnough;
   if (is_enough && (ratio > 3.0 || ratio < 1.0 / 3.0)) {
-    return ignore_gyroscope(Fault::unit, turn.time,
-                            fmt::format("rates are {:.3g} times the turns that are seen", ratio),
-                            is_in_degrees ? "give radians per second: these are degrees per second"
-                                          : "give radians per second, and see that the sensor is fixed to the cameras");
+    return ignore_gyroscope(
+        Fault::unit, turn.time, fmt::format("rates are {:.3g} times the turns of the camera", ratio),
+        is_in_degrees ? "give radians per second: these are degrees per second"
+                      : "give radians per second, and check that the sensor is fixed to the cameras");
   }
   if (changes_ >= 2 * kManyChanges) {
     measured_change_ *= 0.5;
@@ -389,7 +390,7 @@ bool MotionCheck::note(const Turn& turn) {
   return false;
 }
 
-// By the mean of the first second: motion averages out beside gravity.
+// Checks the unit by the mean length of the first samples, where motion averages out against gravity.
 void MotionCheck::note_unit_of_acceleration(const Acceleration& acceleration) {
   constexpr int kSamples = 100;
   constexpr double kGravity = 9.81;  // m/s^2
@@ -402,8 +403,7 @@ void MotionCheck::note_unit_of_acceleration(const Acceleration& acceleration) {
   ignored_.insert(MotionSensor::accelerometer);
   warn_once(
       MotionSensor::accelerometer, Fault::unit, acceleration.time,
-      fmt::format("accelerations have a mean length of {:.3g}, where gravity has 9.81 m/s^2; the accelerometer is "
-                  "ignored",
+      fmt::format("accelerations have a mean length of {:.3g}, but gravity is 9.81 m/s^2; the accelerometer is ignored",
                   mean),
       is_in_g ? "give m/s^2: these are multiples of g" : "give m/s^2 with gravity in it");
 }
@@ -415,13 +415,12 @@ StampCheck::Order MotionCheck::check(const Acceleration& acceleration) {
   const double length = acceleration.acceleration.norm();
   if (!std::isfinite(length)) {
     warn_once(kAccelerometer, Fault::not_finite, acceleration.time,
-              "an acceleration is not finite; such accelerations are dropped",
-              "see what the driver of the IMU publishes");
+              "an acceleration is not finite; such accelerations are dropped", "check the output of the IMU driver");
     return dropped;
   }
   if (length > limits_.max_acceleration) {
     warn_once(kAccelerometer, Fault::too_large, acceleration.time,
-              fmt::format("an acceleration of {:.3g} m/s^2 is beyond motion.max_acceleration_m_per_s2 ({:.3g}); such "
+              fmt::format("an acceleration of {:.3g} m/s^2 is above motion.max_acceleration_m_per_s2 ({:.3g}); such "
                           "accelerations are dropped",
                           length, limits_.max_acceleration),
               "give m/s^2, or raise the limit");
@@ -444,7 +443,7 @@ std::optional<BodyMotion> MotionCheck::check(const BodyMotion& motion, Timestamp
   const double way = motion.last_from_body.translation.norm();
   if (way > kSlack + limits_.max_speed * std::max(0.0, seconds)) {
     warn_once(MotionSensor::body_motion, Fault::too_large, time,
-              fmt::format("{:.3g} m in {:.3f} s is beyond motion.max_speed_m_per_s ({:.3g}); such motions are left out",
+              fmt::format("{:.3g} m in {:.3f} s is above motion.max_speed_m_per_s ({:.3g}); such motions are left out",
                           way, seconds, limits_.max_speed),
               "give the motion since the last frame in metres, or raise the limit");
     return {};
@@ -455,7 +454,7 @@ std::optional<BodyMotion> MotionCheck::check(const BodyMotion& motion, Timestamp
 }
 
 bool MotionCheck::note_wheel_scale(double metres_per_unit, double sigma, Timestamp time) {
-  constexpr double kLeast = 0.1;  // natural logarithm: worn tyres and rough encoders err by less
+  constexpr double kLeast = 0.1;  // natural logarithm; worn tyres and coarse encoders err by less
   constexpr double kSigmas = 5.0;
   constexpr double kAnotherUnit = 2.0;
   const double off = std::log(metres_per_unit);
@@ -464,12 +463,12 @@ bool MotionCheck::note_wheel_scale(double metres_per_unit, double sigma, Timesta
   if (is_unusable) ignored_.insert(MotionSensor::wheels);
   const char* const unit_seen = metres_per_unit > 300.0  ? "these are millimetres"
                                 : metres_per_unit > 30.0 ? "these are centimetres"
-                                                         : "see to the gear ratio and the wheels' radius";
+                                                         : "check the gear ratio and the wheel radius";
   warn_once(MotionSensor::wheels, is_unusable ? Fault::unit : Fault::scale, time,
-            fmt::format("ways are {:.3g} times as long as the cameras or the map measure them; ", metres_per_unit) +
-                (is_unusable ? "wheels are ignored" : "lengths are those of the cameras or the map"),
+            fmt::format("path lengths are {:.3g} times those of the cameras or the map; ", metres_per_unit) +
+                (is_unusable ? "wheels are ignored" : "lengths of the cameras or the map are used"),
             is_unusable ? std::string("give lengths in metres: ") + unit_seen
-                        : "calibrate the radius of the wheels, or see that the baseline is right");
+                        : "calibrate the wheel radius, or check the baseline");
   return is_unusable;
 }
 
@@ -480,7 +479,7 @@ std::vector<MotionWarning> clock_warnings(const MotionSamples& samples, Timestam
     warnings.push_back(
         {sensor,
          {},
-         fmt::format("all samples are from {:.3f} to {:.3f} s, but the images from {:.3f} to {:.3f} s; none is used",
+         fmt::format("samples are from {:.3f} to {:.3f} s, but images from {:.3f} to {:.3f} s; no sample is used",
                      to_seconds(first), to_seconds(last), to_seconds(first_frame), to_seconds(last_frame)),
          "stamp both by one clock, or shift the times of one"});
   };

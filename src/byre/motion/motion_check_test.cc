@@ -31,7 +31,7 @@ struct Checked {
   std::vector<MotionWarning> warnings;
 };
 
-// Wheel poses of half a metre a second, 50 a second, changed.
+// Checks wheel poses of a drive at half a metre per second, 50 per second, with faults by `change`.
 Checked checked_drive(const Change& change, int samples = 500, const MotionLimits& limits = {}) {
   MotionCheck check(limits);
   Checked result;
@@ -68,7 +68,7 @@ TEST(MotionCheck, PassesSoundWheelsUnchanged) {
   EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, DropsSinglePosesAwayAndBack) {
+TEST(MotionCheck, DropsSingleOutliersOfPoses) {
   for (const double away : {0.5, 50.0, 1e5, kHuge, -kHuge, kNan, std::numeric_limits<double>::infinity()}) {
     const Checked checked = checked_drive([&](int i, StampedPose& sample) {
       if (i > 100 && i % 25 == 1) sample.world_from_body.translation.x() += away;
@@ -98,7 +98,7 @@ TEST(MotionCheck, BeginsASegmentWhereThePoseJumps) {
   }
 }
 
-TEST(MotionCheck, UsesNoPoseOfADriverThatHasStopped) {
+TEST(MotionCheck, DropsPosesOfAStoppedDriver) {
   const Checked checked = checked_drive([](int i, StampedPose& sample) {
     if (i >= 200 && i < 350) sample.world_from_body = Drive::world_from_base(kPeriod * 200);
   });
@@ -110,7 +110,7 @@ TEST(MotionCheck, UsesNoPoseOfADriverThatHasStopped) {
   EXPECT_LT(way_error(checked.track, 7.1, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, UsesPosesThatArePublishedSeveralTimes) {
+TEST(MotionCheck, UsesRepeatedPoses) {
   const Checked checked = checked_drive(
       [](int i, StampedPose& sample) { sample.world_from_body = Drive::world_from_base(kPeriod * (i - i % 5)); });
   EXPECT_GT(checked.used, 495);
@@ -129,7 +129,7 @@ TEST(MotionCheck, UsesPosesOfABaseThatStops) {
   EXPECT_THAT(check.warnings(), IsEmpty());
 }
 
-TEST(MotionCheck, TakesLengthsInAnotherUnitForFaulty) {
+TEST(MotionCheck, IgnoresWheelsInAnotherUnit) {
   struct Unit {
     double per_metre;
     const char* name;
@@ -147,7 +147,7 @@ TEST(MotionCheck, TakesLengthsInAnotherUnitForFaulty) {
   EXPECT_EQ(checked_drive(in_centimetres, 500, limits).used, 500) << "the limit is an option";
 }
 
-TEST(MotionCheck, TakesNoPoseWithoutARotation) {
+TEST(MotionCheck, DropsPosesWithoutARotation) {
   for (const Eigen::Quaterniond& rotation :
        {Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0), Eigen::Quaterniond(kNan, 0.0, 0.0, 0.0),
         Eigen::Quaterniond(5e-324, 0.0, 0.0, 0.0), Eigen::Quaterniond(kHuge, 0.0, 0.0, 0.0)}) {
@@ -159,7 +159,7 @@ TEST(MotionCheck, TakesNoPoseWithoutARotation) {
   }
 }
 
-TEST(MotionCheck, GoesOnAfterAStampFarAhead) {
+TEST(MotionCheck, DropsStampsFarAhead) {
   const Checked checked = checked_drive([](int i, StampedPose& sample) {
     if (i == 100) sample.time += std::chrono::hours(24);
     if (i == 200) sample.time = Timestamp::max();
@@ -169,7 +169,7 @@ TEST(MotionCheck, GoesOnAfterAStampFarAhead) {
   EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, BeginsAnewWhereTheClockIsSetBack) {
+TEST(MotionCheck, RestartsWhereTheClockIsSetBack) {
   const Checked checked = checked_drive([](int i, StampedPose& sample) {
     if (i >= 200) sample.time -= std::chrono::hours(1);
   });
@@ -192,7 +192,7 @@ TEST(MotionCheck, DropsVelocitiesThatNoBaseHas) {
   EXPECT_FALSE(used(0.05, 0.5, 0.1)) << "not later";
 }
 
-// Rates of a robot that swings to both sides, and the turns of half a second that are seen. factor: of the rates.
+// Checks rates of a robot that swings to both sides against turns of half a second by images. factor: of the rates.
 MotionCheck checked_swing(double factor, const Eigen::Vector3d& bias = Eigen::Vector3d(0.02, -0.01, 0.03),
                           double seconds = 20.0) {
   MotionCheck check;
@@ -210,7 +210,7 @@ MotionCheck checked_swing(double factor, const Eigen::Vector3d& bias = Eigen::Ve
   return check;
 }
 
-TEST(MotionCheck, TakesRatesInDegreesForFaulty) {
+TEST(MotionCheck, IgnoresAGyroscopeInDegrees) {
   EXPECT_THAT(checked_swing(1.0).warnings(), IsEmpty());
   const MotionCheck check = checked_swing(180.0 / std::numbers::pi);
   ASSERT_THAT(check.warnings(), testing::Not(IsEmpty()));
@@ -218,7 +218,7 @@ TEST(MotionCheck, TakesRatesInDegreesForFaulty) {
   EXPECT_THAT(check.warnings().back().what, HasSubstr("ignored"));
 }
 
-TEST(MotionCheck, TakesRatesOfZeroForFaultyOnceTheRobotTurns) {
+TEST(MotionCheck, IgnoresZeroRatesOnceTheRobotTurns) {
   MotionCheck check = checked_swing(0.0);
   ASSERT_THAT(check.warnings(), SizeIs(1));
   EXPECT_THAT(check.warnings().front().what, HasSubstr("all rates are zero"));
@@ -232,7 +232,7 @@ TEST(MotionCheck, TakesRatesOfZeroForFaultyOnceTheRobotTurns) {
   EXPECT_EQ(at_rest.check(AngularRate{from_seconds(3.0), {0.0, 0.0, 0.1}}), StampCheck::Order::next);
 }
 
-TEST(MotionCheck, TakesRatesThatStayTheSameForFaulty) {
+TEST(MotionCheck, IgnoresEqualRatesOnceTheRobotTurns) {
   MotionCheck check;
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d rate(0.0, 0.0, i < 100 ? 0.001 * i : 0.02);
@@ -252,10 +252,10 @@ TEST(MotionCheck, ReportsTheUnitOfAccelerations) {
   EXPECT_EQ(warning_of(9.81), "");
   EXPECT_THAT(warning_of(1.0), HasSubstr("multiples of g"));
   EXPECT_THAT(warning_of(0.1), HasSubstr("with gravity in it"));
-  EXPECT_THAT(warning_of(981.0), HasSubstr("beyond motion.max_acceleration_m_per_s2"));
+  EXPECT_THAT(warning_of(981.0), HasSubstr("above motion.max_acceleration_m_per_s2"));
 }
 
-TEST(MotionCheck, TakesASoundMotionOfTheBodyAlone) {
+TEST(MotionCheck, RejectsFaultyMotionOfTheBody) {
   MotionCheck check;
   const Pose step{Eigen::Quaterniond::Identity(), {0.05, 0.0, 0.0}};
   const auto is_used = [&](const BodyMotion& motion) { return check.check(motion, {}, 0.1).has_value(); };

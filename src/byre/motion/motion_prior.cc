@@ -95,7 +95,7 @@ void MotionPrior::begin_with(const KnownMounting& known) {
   if (known.wheels) time_offset_ = known.time_offset;
 }
 
-// Old samples are forgotten also while no frame comes.
+// Forgets old samples also while no frame arrives.
 void MotionPrior::add(const StampedPose& wheels) {
   const bool was_ignored = check_.are_wheels_ignored();
   const auto [is_clock_set_back, beginning, sample] = check_.check(wheels);
@@ -120,7 +120,7 @@ void MotionPrior::add(const Acceleration& acceleration) {
   if (order != StampCheck::Order::dropped) standing_.add(acceleration);
 }
 
-// What the samples gave is forgotten with them, but for what is known from a drive before.
+// Forgets the samples of wheels; once wheels are ignored, also the mounting found on this drive.
 void MotionPrior::drop_wheels() {
   wheels_ = {};
   if (check_.are_wheels_ignored()) {
@@ -148,11 +148,11 @@ void MotionPrior::add(const AngularRate& rate) {
 
 void MotionPrior::presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscope) {
   constexpr double kSigma = 0.03;   // radians
-  constexpr double kMostOff = 0.1;  // share of the length 1
+  constexpr double kMostOff = 0.1;  // largest error of the length 1
   if (!(std::abs(body_from_gyroscope.norm() - 1.0) < kMostOff)) {
     return warn({MotionSensor::gyroscope,
                  {},
-                 "the rotation of its mounting is not finite or not of length 1; it is left out",
+                 "the rotation of its mounting is not finite or not of length 1; it is not used",
                  "give a unit quaternion"});
   }
   presumed_gyroscope_ = GyroscopeMounting{.body_from_gyroscope = body_from_gyroscope.normalized(),
@@ -208,7 +208,7 @@ std::optional<BodyTilt> MotionPrior::tilt(Timestamp time) const {
   return standing_.tilt(time, standing_by_wheels(time), gyroscope_);
 }
 
-// Whether the gyroscope measures the turns of the body: as they are seen, else as wheels measure them.
+// Compares the gyroscope with turns by images, else with turns by wheels. Drops it if it is faulty.
 void MotionPrior::compare_turns(Timestamp time, const std::optional<SeenMotion>& seen) {
   MotionCheck::Turn turn{time, Eigen::Vector3d::Zero(), {}, seen.has_value()};
   const Timestamp begin = seen ? seen->earlier : turns_compared_.value_or(time);
@@ -469,10 +469,10 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   return motion;
 }
 
-// Whether the base moves otherwise than in the span before by more than a body can: wheels spin, or err.
+// Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.
 bool MotionPrior::is_jerk(Timestamp earlier, Timestamp later, const Pose& base) const {
   constexpr double kMostAcceleration = 15.0;  // m/s^2
-  constexpr double kLeast = 0.02;             // metres: ticks of encoders
+  constexpr double kLeast = 0.02;             // metres, for encoder ticks
   constexpr double kMostTurning = 30.0;       // radians per second squared
   constexpr double kLeastTurn = 0.05;         // radians
   const Timestamp span = later - earlier;
@@ -486,8 +486,7 @@ bool MotionPrior::is_jerk(Timestamp earlier, Timestamp later, const Pose& base) 
          angle_between(base.rotation, before->rotation) > kLeastTurn + kMostTurning * squared;
 }
 
-// Whether a turn by the gyroscope is another one than that of the wheels by more than a wheel that spins: one of both
-// is faulty.
+// Whether the turns by gyroscope and wheels differ by more than a spinning wheel explains. Then one of both is faulty.
 bool MotionPrior::contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const {
   constexpr double kMostRate = 3.0;   // radians per second
   constexpr double kLeastTurn = 0.1;  // radians
@@ -497,13 +496,13 @@ bool MotionPrior::contradicts_wheels(Timestamp earlier, Timestamp later, const E
   return apart > kLeastTurn + kMostRate * to_seconds(later - earlier);
 }
 
-// Over a jump of the wheels' pose the body is taken to move on as before, which may be wrong by all of it.
+// Motion across a jump of the wheel pose: that of the previous span, with a standard deviation as large as itself.
 std::optional<BodyMotion> MotionPrior::across_jump(Timestamp earlier, Timestamp later,
                                                    const std::optional<Eigen::Quaterniond>& turn) const {
   const Timestamp offset = from_seconds(time_offset()), span = later - earlier;
   if (span > kMaxFrameGap || !wheels_.has_jump(earlier + offset, later + offset)) return {};
   auto motion = by_wheels(earlier - span, earlier, {});
-  if (!motion) motion = by_wheels(earlier - 2 * span, earlier - span, {});  // the border is right after the frame
+  if (!motion) motion = by_wheels(earlier - 2 * span, earlier - span, {});  // if the jump is right after the frame
   if (!motion) return {};
   forget_way(*motion);
   forget_turn(*motion);

@@ -26,7 +26,7 @@ class MotionPrior {
  public:
   explicit MotionPrior(const MotionLimits& limits = {}) : check_(limits) {}
 
-  // Lengths of the map are metres, known without wheels: a wheel scale that contradicts them is reported.
+  // Lengths of the map are metres without wheels. A wheel scale that contradicts them is reported.
   void expect_metres() { knows_metres_ = true; }
   // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
   // it, it is dropped. Call it before anything is told.
@@ -50,12 +50,12 @@ class MotionPrior {
     tells_before_sight_ = true;
   }
 
-  // Samples are checked (MotionCheck); those that are faulty are left out.
+  // Samples are checked (MotionCheck); faulty ones are dropped.
   void add(const StampedPose& wheels);
   void add(const BaseVelocity& wheels);
   void add(const AngularRate& rate);
   void add(const Acceleration& acceleration);
-  // A motion of the body given by the caller, seconds after the frame before; empty where it is faulty.
+  // A motion of the body given by the caller; empty if it is faulty. seconds: its duration.
   std::optional<BodyMotion> checked(const BodyMotion& motion, Timestamp time, double seconds) {
     return check_.check(motion, time, seconds);
   }
@@ -130,7 +130,7 @@ class MotionPrior {
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
   struct ToldBase {
     Pose motion;                // earlier_from_later, metres
-    bool is_way_known = true;   // wheels turned as the gyroscope measures, or there is none, and without a jerk
+    bool is_way_known = true;   // wheels agree with the gyroscope, if there is one, and have no jerk
     bool is_turn_known = true;  // by the gyroscope, or by wheels without a jerk
   };
   std::optional<ToldBase> told_base(Timestamp earlier, Timestamp later,
@@ -147,7 +147,7 @@ class MotionPrior {
 
   MotionCheck check_;
   bool knows_metres_ = false;
-  std::optional<Timestamp> turns_compared_;  // until when wheels and gyroscope were compared while nothing is seen
+  std::optional<Timestamp> turns_compared_;  // end of the last comparison of wheels and gyroscope without images
   WheelTrack wheels_;
   RateTrack rates_;
   Standing standing_;

@@ -405,7 +405,7 @@ struct Stop {
 MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {
   MotionPrior prior;
   std::mt19937 random(5);
-  // It brakes evenly over half a second. speed: as a share of the one before.
+  // Brakes evenly over half a second. speed: share of the speed before.
   constexpr double kBraking = 0.5;  // seconds
   const auto braked = [&](double t) { return std::clamp(t - stop.at + 0.5 * kBraking, 0.0, kBraking); };
   const auto time_driven = [&](double t) {
@@ -474,7 +474,7 @@ TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
   EXPECT_NEAR(after.wheels()->metres_per_unit, 1.0, 0.01);
 }
 
-// Wheels whose pose begins at the origin again at each of some times, seen all the time or dark from 60 s on.
+// A drive whose wheel pose restarts at the origin at the given times; dark from 60 s on.
 MotionPrior followed_through_resets(const std::vector<double>& resets, double end) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   MotionPrior prior;
@@ -494,19 +494,19 @@ MotionPrior followed_through_resets(const std::vector<double>& resets, double en
 TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheSpeedBefore) {
   const Drive drive{.base_from_body = camera_on_base()};
   const MotionPrior prior = followed_through_resets({20.0, 65.02}, 72.0);
-  EXPECT_EQ(prior.slips(), 0) << "a jump is no motion";
+  EXPECT_EQ(prior.slips(), 0) << "a jump is not a motion";
   const auto across = prior.between(from_seconds(65.0), from_seconds(65.05));
   ASSERT_TRUE(across);
   const Pose truth = true_motion(drive, 65.0, 65.05);
   EXPECT_LT((across->last_from_body.translation - truth.translation).norm(), 0.005);
-  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "it may be wrong by all of it";
+  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "it may be wrong by its whole length";
   const BodyMotion all = over(prior, 60.0, 70.0);
   const Vector6 error = log_pose(inverse(all.last_from_body) * true_motion(drive, 60.0, 70.0));
   EXPECT_LT(error.transpose() * all.covariance.ldlt().solve(error), 12.6) << "within 95 %";
   ASSERT_EQ(prior.warnings().size(), 1U) << "one for both jumps";
 }
 
-// Steps of the body as measured never exceed what their covariance allows, whatever wheels report.
+// Errors of measured steps stay within their covariance, whatever wheels report.
 TEST(MotionPrior, CoversEachStepOfFaultyWheelsByItsCovariance) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   std::mt19937 chance(3);

@@ -21,8 +21,8 @@ void RateTrack::forget_before(Timestamp time) {
   while (!samples_.empty() && samples_.front().time < time) samples_.pop_front();
 }
 
-// Hands out rates and the seconds that each lasts: between two samples the mean of both. False where not all is
-// covered.
+// Calls add(rate, seconds) for each piece of the time span; between two samples with the mean of both. False if samples
+// do not cover the span.
 template <typename Add>
 bool RateTrack::integrate(Timestamp earlier, Timestamp later, const Add& add) const {
   auto next = std::upper_bound(samples_.begin(), samples_.end(), earlier,

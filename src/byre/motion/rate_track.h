@@ -20,7 +20,7 @@ class RateTrack {
   // covered.
   std::optional<Eigen::Quaterniond> between(Timestamp earlier, Timestamp later, const Eigen::Vector3d& bias) const;
 
-  // The rates integrated axis by axis, radians, beyond half a turn too; empty where between() is.
+  // Integral of the rates by axis, radians; may exceed half a turn. Empty where between() is empty.
   std::optional<Eigen::Vector3d> integral(Timestamp earlier, Timestamp later) const;
 
  private:

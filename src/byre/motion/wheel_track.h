@@ -13,7 +13,7 @@ class WheelTrack {
  public:
   // Samples that are not later than the one before are left out.
   void add(const StampedPose& sample);
-  // The first pose of a new segment of odometry: no motion leads to it from the samples before.
+  // Adds the first pose of a new segment of odometry. There is no motion between segments.
   void begin_segment(const StampedPose& first);
   // The base moves on by the mean of two velocities, along an arc. Nobody knows how fast it was while none came for
   // three tenths of a second: no motion is told across such a gap.
@@ -26,9 +26,9 @@ class WheelTrack {
   // The base at a time between two samples at most half a second apart, or up to a quarter of a second after the last
   // one, by which the last motion is taken to go on.
   std::optional<Pose> pose_at(Timestamp time) const;
-  // The base's motion, earlier_from_later; empty where either end is not known, or lies in another segment.
+  // Motion of the base, earlier_from_later; empty if either end is unknown, or both are in different segments.
   std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
-  // A segment ends between the two, and the next one begins within a tenth of a second.
+  // Whether a segment ends between both times and the next one begins within a tenth of a second.
   bool has_jump(Timestamp earlier, Timestamp later) const;
 
   // How far the base went, and turned, to and fro counted; empty unless it was told all along.

@@ -56,7 +56,7 @@ void require_size(const ros::Image& message, const Encoding& encoding, const std
     throw InputError(place,
                      "has an image of " + std::to_string(message.width) + " x " + std::to_string(message.height) +
                          " pixels whose rows of " + std::to_string(message.step) + " bytes are cut or not whole pixels",
-                     "look at width, height, step and data of what the camera's driver sends");
+                     "check width, height, step and data of the images of the camera driver");
   }
 }
 
@@ -88,9 +88,9 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
     cv::Mat written(height, width, CV_8UC1, grey.pixels.data());
     try {
       cv::cvtColor(given, written, *encoding->to_grey);
-    } catch (const cv::Exception& exception) {  // sizes that a conversion does not take
+    } catch (const cv::Exception& exception) {  // sizes that a conversion does not support
       throw InputError(place, "has an image that cannot be converted from '" + message.encoding + "': " + exception.err,
-                       "look at width, height and encoding of what the camera's driver sends");
+                       "check width, height and encoding of the images of the camera driver");
     }
     return grey_image(std::move(message.header), std::move(grey));
   }

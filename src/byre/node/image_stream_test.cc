@@ -1,4 +1,4 @@
-// Images as they come: pairs, and what is said of the cameras.
+// Stream of images: pairs, and findings about the cameras.
 
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_pairs.h"

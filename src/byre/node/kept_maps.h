@@ -4,11 +4,11 @@
 
 namespace byre {
 
-// Path of the version of a map before the present one: of barn.byre barn.previous.byre.
+// Path of the previous version of a map: barn.previous.byre for barn.byre.
 std::filesystem::path previous_map(const std::filesystem::path& map);
 
-// Keeps the map of this path as its previous version, before another one replaces it; does nothing if it is no map
-// file. At any moment there is a whole map under each name. Throws InputError if that cannot be done.
+// Keeps the map of this path as its previous version, before another map replaces it. Does nothing if there is no map
+// file. At any moment each name has a whole map. Throws InputError on failure.
 void keep_as_previous(const std::filesystem::path& map);
 
 }  // namespace byre

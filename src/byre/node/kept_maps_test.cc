@@ -62,7 +62,7 @@ TEST_F(KeptMaps, OutliveWhatAnInterruptedSaveLeft) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
-TEST_F(KeptMaps, DoNotComeOfOtherFilesNorReplaceThem) {
+TEST_F(KeptMaps, LeaveOtherFilesUnchanged) {
   std::ofstream(map_) << "Dear reader";
   keep_as_previous(map_);
   EXPECT_FALSE(fs::exists(previous_map(map_)));
@@ -84,7 +84,7 @@ std::string refusal_of(const NodeConfig& config) {
   }
 }
 
-TEST_F(KeptMaps, AreNoFileThatTheNodeReadsNorOfAnotherKind) {
+TEST_F(KeptMaps, AreRefusedForInputsOfTheNodeAndFilesOfOtherKinds) {
   NodeConfig config;
   config.file = folder_ / "robot.yaml";
   config.map = folder_ / "barn.byre";

@@ -12,8 +12,8 @@
 
 namespace byre {
 
-// The occupancy of a floor plan (DrawnFloorPlan), as ROS' map_server publishes it. Throws InputError when the image
-// cannot be read, or its pixels are no upright squares.
+// The occupancy of a floor plan (DrawnFloorPlan), as ROS' map_server publishes it. Throws InputError if the image
+// cannot be read, or its pixels are not upright squares.
 ros::OccupancyGrid grid_of(const FloorPlan& plan);
 
 // The points of a kept map, as they lie in the frame that is published.

@@ -36,7 +36,7 @@ TEST_F(PlanFile, BecomesAGridFromTheLowestRowUp) {
   EXPECT_THAT(grid.data, ElementsAre(-1, 0, 100, 0, 100, 0));
 }
 
-TEST_F(PlanFile, IsPublishedAsItsYamlReadsIt) {
+TEST_F(PlanFile, IsPublishedByTheRulesOfItsYaml) {
   const std::string lies = "image: plan.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
   const auto grid = [&](const std::string& fields) {
     std::ofstream(folder_ / "plan.yaml") << lies + fields;

@@ -45,7 +45,7 @@ MotionInput::MotionInput(const NodeConfig& config, Participant& participant, Gra
 }
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
-  // The reliability of sensor drivers.
+  // Best effort, like sensor drivers.
   const TopicQos qos{.is_reliable = false, .depth = 1000, .most_bytes = kMostBytesWithoutImage};
   Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
   graph_.add(subscriber);

@@ -21,7 +21,7 @@ class MotionInput {
   void take();
   // Precondition: the runner is running. clock: of the images.
   void tell(const StampClock& clock, SlamRunner& runner);
-  // A fault of a topic, once; empty: nothing new.
+  // Fault of a topic, reported once; empty: nothing new.
   std::string news();
   // Topic of a sensor.
   std::string source_of(MotionSensor sensor) const;
@@ -39,7 +39,7 @@ class MotionInput {
   std::string wheels_type_;
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
-  bool are_rates_unmeasured_ = false;  // by a message
+  bool are_rates_unmeasured_ = false;  // a message marked rates as not measured
   bool is_reported_ = false;
   std::deque<WheelSample> samples_;  // the last seconds of wheels, by their own stamps
   std::deque<ImuSample> imu_;        // the last seconds, by their own stamps

@@ -24,7 +24,7 @@ Timestamp steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-constexpr std::size_t kShownOfText = 100;  // bytes of a message from outside in an answer or a line of the log
+constexpr std::size_t kShownOfText = 100;  // bytes of text from outside shown in an answer or a log line
 
 // Reading and writing a site's map on a slow disk: nothing is tracked meanwhile.
 constexpr std::chrono::minutes kLongestWithFiles{5};

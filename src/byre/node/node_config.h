@@ -41,7 +41,7 @@ struct FleetSettings {
 // What `byre node` is told. Topics that do not begin with a slash are within the node: "/byre/odometry". An empty one
 // is left out. Paths can be opened as they are.
 struct NodeConfig {
-  std::optional<std::filesystem::path> file;  // file of these settings
+  std::optional<std::filesystem::path> file;  // file that these settings were read from
 
   std::string name = "byre";
   std::string name_space = "/";
@@ -67,7 +67,7 @@ struct NodeConfig {
   std::string gyroscope;  // empty: none
 
   std::optional<std::filesystem::path> calibration;  // empty: by camera info
-  std::optional<double> baseline;                    // metres; empty: the calibration's
+  std::optional<double> baseline;                    // metres; empty: that of the calibration
   std::string left_info = "/left/camera_info";
   std::string right_info = "/right/camera_info";
 

@@ -15,9 +15,9 @@ enum class LogLevel : std::uint8_t { error = 3, warning = 4, notice = 5, info = 
 // Told what happens, a line each.
 using NodeLog = std::function<void(LogLevel level, const std::string& line)>;
 
-// Writes lines for people, or for the journal of systemd with their level in front (sd-daemon(3)). Text from outside
-// cannot begin another line. Beyond kAtOnce, and then beyond kPerSecond, lines are left out and counted, as a verdict
-// may change with every frame.
+// Writes lines for a terminal, or for the journal of systemd with their level in front (sd-daemon(3)). Text from
+// outside cannot begin another line. Lines beyond kAtOnce, and then beyond kPerSecond, are left out and counted,
+// because a verdict may change with every frame.
 class NodeLogger {
  public:
   static constexpr double kAtOnce = 30.0;

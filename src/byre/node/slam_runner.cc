@@ -54,8 +54,8 @@ fs::path beside(const fs::path& map, const std::string& name) {
   return map.parent_path() / name;
 }
 
-// slam.save and its previous version are files that may be written, and none that the node reads; but for the map that
-// is extended.
+// Throws InputError if slam.save may not be written, or if it or its previous version is a file that the node reads;
+// the map that is extended is permitted.
 void require_safe_save(const NodeConfig& config) {
   if (!config.save) return;
   NamedFiles files;

@@ -14,8 +14,8 @@ namespace byre {
 // looked for from nothing.
 class SlamRunner {
  public:
-  // Throws InputError for options that cannot be read, and for a file to save that may not be written, see
-  // input/output_file.h, or that the node reads.
+  // Throws InputError for options that cannot be read, and for a file to save that may not be written
+  // (input/output_file.h) or that the node reads.
   explicit SlamRunner(const NodeConfig& config);
 
   // Throws InputError as Slam does, and for a pair of cameras that knows no metres. Where the kept map cannot be used,
@@ -43,7 +43,7 @@ class SlamRunner {
   bool makes_a_map() const { return config_.task != NodeTask::mission; }
 
   // Each throws InputError for what cannot be done, and leaves everything as it was then.
-  // Keeps the map that was there before the first save of this Slam as the previous version. Gives what was done.
+  // Before the first save of this Slam, keeps the present map as its previous version. Returns a report.
   std::string save();
   std::string load(const std::string& name);  // a map beside the one that is loaded, by its file's name alone
   std::string relocalise();                   // looks for the robot from nothing, in the same map
@@ -63,8 +63,8 @@ class SlamRunner {
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
-  bool is_map_sound_ = true;  // false after a start on the previous version, as the map could not be loaded
-  bool has_saved_ = false;    // whether the file is of slam_ already
+  bool is_map_sound_ = true;  // false after a start on the previous version, because the map could not be loaded
+  bool has_saved_ = false;    // whether the file was already saved by slam_
   bool had_pose_ = false;     // whether any frame of slam_ had a pose
 };
 

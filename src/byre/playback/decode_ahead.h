@@ -30,7 +30,7 @@ class DecodeAhead {
   DecodeAhead(const DecodeAhead&) = delete;
   DecodeAhead& operator=(const DecodeAhead&) = delete;
 
-  // Waits for the next frame; empty after the last one. A frame whose reading throws is without images, with a warning.
+  // Waits for the next frame; empty after the last one. A frame whose reading throws has no images, and a warning.
   std::optional<DecodedFrame> next();
 
  private:

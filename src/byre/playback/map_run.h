@@ -34,7 +34,7 @@ struct ToldMotion {
   int stops = 0;                       // times that the body stood still, as accelerations show too
   double stood_s = 0.0;                // seconds that it did
   int tilts_held = 0;                  // bridged frames whose roll and pitch accelerations held
-  std::optional<double> metres_sigma;  // share, of a map whose metres are by wheels alone
+  std::optional<double> metres_sigma;  // standard deviation of metres by wheels alone, as a share
   int led_afterwards = 0;              // final poses of frames that had none, where wheels led from those that had
 };
 
@@ -45,14 +45,13 @@ struct MapRun {
   Trajectory odometry;              // the smooth poses as published, in a frame of their own
   Map map{Origin::offline};         // map as it is kept; of the keyframes made, others were found redundant
   std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
-  std::optional<double>
-      row_error;  // pixels by which the calibration in use is off by the rows of pairs, CommonRowError
+  std::optional<double> row_error;  // row error of the calibration in use, pixels (CommonRowError); empty without pairs
   std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;
   bool is_metric = true;  // lengths of the map and of final poses are metres
-  // Damage of the offline map's file, at which the mission was ended, see Engine::map_damage.
+  // Damage of the offline map's file that ended the mission, see Engine::map_damage.
   std::optional<InputError> map_damage;
   std::vector<std::string> warnings;           // warnings of the recording
   std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer

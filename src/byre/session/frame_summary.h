@@ -41,9 +41,9 @@ struct FrameSummary {
 // A report with the frame's poses, their covariances and the counts of points in it.
 FrameReport described(FrameReport report, const FrameSummary& summary);
 
-// The evidence of the frame alone.
+// Evidence of a frame by itself, without lasting doubts.
 HealthEvidence evidence_of(const FrameSummary& summary);
-// Numbers that are not finite leave no report: such a pose is withheld, and is then not trusted.
+// Removes numbers that are not finite from a report. A pose with such numbers is withheld, with the verdict untrusted.
 void withhold_non_finite(FrameReport& report);
 
 // How far the pose may be relied on. covariance: of the pose in the map.

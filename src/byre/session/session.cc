@@ -253,7 +253,8 @@ Session::Located Session::locate(const InputFrame& input) {
     drop_non_finite();
     // Where measured motion leads elsewhere, a find needs evidence in proportion; until then that motion is followed.
     const auto is_less_likely = [&] {
-      return !mission_ || mission_->log_odds_of(frame, *located.track, rig_, lens_watch_.hidden()) + kLogOddsOfCarried < 0;
+      return !mission_ ||
+             mission_->log_odds_of(frame, *located.track, rig_, lens_watch_.hidden()) + kLogOddsOfCarried < 0;
     };
     if (located.track && !hint_.get() && is_out_of_reach() && is_less_likely()) located.track.reset();
     located.refused = find.refused;

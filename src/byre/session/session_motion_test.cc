@@ -270,8 +270,8 @@ TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
   }
 }
 
-// A motion that is wrong by metres from the 20th frame on, in full light.
-TEST(ToldMotion, DoesNotLoseAPoseThatIsSeen) {
+// A measured motion that is metres off from frame 20 on, while points are visible.
+TEST(ToldMotion, DoesNotLoseATrackedPose) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {
     for (const double metres : {-2.7, 1.0, 30.0}) {
@@ -294,7 +294,7 @@ TEST(ToldMotion, DoesNotLoseAPoseThatIsSeen) {
   }
 }
 
-// After a dark stretch the odometry has gone by what is measured, and keeps what that leaves open.
+// After a dark stretch the odometry keeps the uncertainty of the measured motion.
 TEST(ToldMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
   const SimulatedMission mission = lap();
   const std::vector<FrameReport> told = reports_of(mission, true, true);

@@ -113,7 +113,7 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   if (best && scene.is_pressed) return best;
   // A sudden loss of matches may mean that the prediction led astray: look again without it.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
-  // Wheels that err do not lose a pose: the camera's own motion is tried, then none.
+  // Faulty wheels do not lose a pose: the camera's own velocity is tried, then the last pose.
   const auto by_velocity = motion.told() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
   for (const std::optional<Pose>& pose :
        {by_velocity, by_velocity ? std::optional(last.camera_from_world) : by_velocity}) {

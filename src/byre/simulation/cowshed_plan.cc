@@ -19,7 +19,7 @@ constexpr double kMargin = 1.0;  // metres around the building
 constexpr std::uint8_t kFree = 254;
 constexpr std::uint8_t kOccupied = 0;
 
-// write: fills in the text.
+// write: writes the content to a stream.
 template <typename Write>
 void write_fixed_text(const fs::path& path, Write write) {
   std::ostringstream text;

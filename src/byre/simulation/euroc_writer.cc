@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 void make_folder_of(const fs::path& path) {
   std::error_code failure;
-  fs::create_directories(path.parent_path(), failure);  // writing the file fails otherwise, and says why
+  fs::create_directories(path.parent_path(), failure);  // on failure, writing the file reports the reason
 }
 
 std::ostringstream exact_text() {

@@ -42,7 +42,7 @@ struct HealthEvidence {
 // The doubts about images and calibration, each a LastingDoubt.
 class LastingDoubts {
  public:
-  // The evidence of a frame, with the causes that earlier frames showed and that have not been absent for long enough.
+  // The evidence of a frame, with the causes of earlier frames whose doubts have not ended yet.
   HealthEvidence held(Timestamp time, const HealthEvidence& evidence);
 
  private:
@@ -53,13 +53,13 @@ class LastingDoubts {
   LastingDoubt miscalibrated_;
   LastingDoubt dirty_;
   ImageFault right_fault_ = ImageFault::none;  // the last one
-  bool may_be_timing_ = false;  // the images disagreed while they moved, so only a pair in step ends that doubt
+  bool may_be_timing_ = false;  // the images disagreed while they moved: only a pair in step ends that doubt
 };
 
 // By how much the position may be off, metres: sigmas of the pose and drift together.
 double position_error(const Health& measured, const HealthOptions& options);
 
-// Dirt hides so much of an image that what is left may be one thing that has moved.
+// Whether dirt hides so much of an image that a single moved thing may fill the rest.
 bool is_mostly_hidden(double hidden_share);
 
 // The verdict and its reason. Uncertainty and drift together must stay within what trust promises; beyond that a pose

@@ -207,7 +207,7 @@ TEST(NoteOnDirt, TellsWhichLensesToClean) {
   EXPECT_EQ(note_on_dirt(health), "dirt hides 1 % of the right image: clean the lens");
 }
 
-// So many frames, 20 a second, with the same evidence; the number of frames of which a doubt is left.
+// Notes a number of frames, 20 per second, with the same evidence. Returns the number of frames with a doubt.
 template <typename IsRaised>
 int raised_frames(LastingDoubts& doubts, int first, int count, const HealthEvidence& evidence, IsRaised is_raised) {
   int raised = 0;
@@ -227,7 +227,7 @@ bool is_frozen(const HealthEvidence& evidence) {
 
 constexpr HealthEvidence kInStep{.pose_found = true, .input = {.out_of_step = Sign::absent}};
 
-TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndsOnlyWhereMotionShowsItInStep) {
+TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndOnlyWhereMotionShowsItInStep) {
   LastingDoubts doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
@@ -237,21 +237,21 @@ TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndsOnlyWhereMotionShowsItIn
   EXPECT_LE(raised, 25);
 }
 
-TEST(LastingDoubts, OfAPairThatDisagreedAtAStandstillEndsThere) {
+TEST(LastingDoubts, OfAPairThatDisagreedAtAStandstillEndThere) {
   LastingDoubts doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.is_still = true, .cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
   EXPECT_LE(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, are_cameras_at_odds), 25);
 }
 
-TEST(LastingDoubts, OfAPairIsRaisedByItsTimingAlone) {
+TEST(LastingDoubts, OfAPairAreRaisedByItsTimingAlone) {
   LastingDoubts doubts;
   EXPECT_EQ(
       raised_frames(doubts, 0, 1, {.pose_found = true, .input = {.out_of_step = Sign::present}}, are_cameras_at_odds),
       1);
 }
 
-TEST(LastingDoubts, OfAFrozenImageDoesNotEndWhileItStandsStill) {
+TEST(LastingDoubts, OfAFrozenImageDoNotEndAtAStandstill) {
   LastingDoubts doubts;
   EXPECT_EQ(raised_frames(doubts, 0, 1, {.input = {.is_still = true, .is_frozen = true}}, is_frozen), 1);
   EXPECT_EQ(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, is_frozen), 200);
@@ -273,7 +273,7 @@ TEST(LastingDoubts, KeepTheFaultOfTheRightCamera) {
   EXPECT_GE(raised_frames(doubts, 1, 100, kPose, fault), 10);
 }
 
-TEST(LastingDoubts, LeaveSoundFramesAlone) {
+TEST(LastingDoubts, AreNoneForSoundFrames) {
   LastingDoubts doubts;
   const HealthEvidence held = doubts.held(from_seconds(1.0), kInStep);
   EXPECT_EQ(judged(good(), held, {}).verdict, Verdict::trusted);

@@ -11,18 +11,18 @@ namespace byre {
 // Evidence against the images of a frame themselves.
 struct InputEvidence {
   bool is_repeated = false;                   // the image is the last one again, bit by bit
-  bool is_still = false;                      // the image stands still: it cannot show whether the camera is frozen
-  bool is_frozen = false;                     // the image stands still although the camera moves
-  double frozen_seconds = 0.0;                // time that the image has been repeated or frozen
+  bool is_still = false;                      // the image is at standstill: it cannot show whether it is frozen
+  bool is_frozen = false;                     // the image is at standstill although the camera moves
+  double frozen_seconds = 0.0;                // time for which the image has been repeated or frozen
   ImageFault right_fault = ImageFault::none;  // fault of the right image, where the left one has none
   // The right image hardly shows what the left one does, or on other rows; not where dirt hides much of it.
   bool cameras_disagree = false;
   Sign out_of_step = Sign::unclear;  // one image of the pair is older than the other
 };
 
-// What is known of the motion that a frame ends.
+// Known motion up to a frame.
 struct KnownMotion {
-  std::optional<BodyMotion> measured{};  // motion of the body since the frame before, by wheels or a gyroscope
+  std::optional<BodyMotion> measured{};  // motion of the body since the frame before, by wheels or gyroscope
   CameraMotion before{};                 // motion of the camera up to the frame before
 };
 
@@ -33,7 +33,7 @@ class InputWatch {
 
   // Rows are judged by the calibration that the frame's features were made, or made anew, by.
   InputEvidence look_at(const Frame& frame, const Rig& rig, const KnownMotion& motion = {});
-  // Whether the images of the pair are out of step, once the frame is tracked. tracked: nullptr where it has no pose.
+  // Whether the images of the pair are out of step; call after tracking. tracked: nullptr if the frame has no pose.
   Sign out_of_step(const Frame& frame, const Rig& rig, const TrackedFrame* tracked, const MapView& map);
 
  private:

@@ -5,7 +5,7 @@
 namespace byre {
 
 void LastingDoubt::note(Timestamp time, Sign sign) {
-  constexpr double kLongestStep = 0.5;  // seconds that one frame stands for, however long none came before
+  constexpr double kLongestStep = 0.5;  // seconds, largest time that one frame counts for, also after a gap
   const double seconds = last_ ? std::clamp(to_seconds(time - *last_), 0.0, kLongestStep) : 0.0;
   last_ = time;
   if (sign == Sign::present) {

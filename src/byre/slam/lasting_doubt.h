@@ -7,16 +7,15 @@
 
 namespace byre {
 
-// Evidence of one frame for the cause of a doubt. unclear: the frame could not have shown the cause.
+// Evidence of one frame for the cause of a doubt. unclear: the frame cannot show whether the cause is present.
 enum class Sign : std::uint8_t { unclear, absent, present };
 
 inline Sign sign_of(bool is_present) {
   return is_present ? Sign::present : Sign::absent;
 }
 
-// A doubt that lasts as long as its cause. The first present sign raises it. It ends once absent signs cover
-// kLeastSeconds more than present ones did, kMostSeconds at most, and kLeastFrames frames. Unclear signs neither
-// raise nor end it.
+// A doubt that lasts as long as its cause. The first present sign raises it. It ends after kLeastFrames absent signs
+// that cover kLeastSeconds more than the present ones did, at most kMostSeconds. Unclear signs do not change it.
 class LastingDoubt {
  public:
   static constexpr double kLeastSeconds = 1.0;
@@ -29,8 +28,8 @@ class LastingDoubt {
 
  private:
   std::optional<Timestamp> last_;
-  double seconds_to_go_ = 0.0;  // seconds of absence until it ends
-  int frames_to_go_ = 0;        // absent signs, until it ends
+  double seconds_to_go_ = 0.0;  // seconds of absent signs until it ends
+  int frames_to_go_ = 0;        // absent signs until it ends
 };
 
 }  // namespace byre

@@ -9,7 +9,7 @@ constexpr double kStep = 0.05;  // seconds between frames
 
 class Doubted : public ::testing::Test {
  protected:
-  // So many frames with the same sign; the number of frames of which the doubt was raised.
+  // Notes a number of frames with the same sign. Returns the number of frames at which the doubt was raised.
   int note(int frames, Sign sign, double step = kStep) {
     int raised = 0;
     for (int i = 0; i < frames; ++i) {
@@ -28,7 +28,7 @@ TEST_F(Doubted, IsNotRaisedWithoutACause) {
   EXPECT_EQ(note(100, Sign::absent) + note(100, Sign::unclear), 0);
 }
 
-TEST_F(Doubted, IsRaisedByTheFirstSignAndLastsASecondBeyondIt) {
+TEST_F(Doubted, IsRaisedByTheFirstSignAndLastsASecondLonger) {
   EXPECT_EQ(note(1, Sign::present), 1);
   const int frames = note(100, Sign::absent);
   EXPECT_GE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) - 1);
@@ -62,7 +62,7 @@ TEST_F(Doubted, IsNotEndedByFramesThatCannotShowItsCause) {
   EXPECT_EQ(note(1000, Sign::unclear), 1000);
 }
 
-TEST_F(Doubted, IsNotEndedByATimeWithoutFrames) {
+TEST_F(Doubted, IsNotEndedByAGapInTime) {
   note(1, Sign::present);
   EXPECT_EQ(note(1, Sign::absent, 3600.0), 1);
 }

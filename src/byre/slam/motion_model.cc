@@ -9,9 +9,9 @@
 namespace byre {
 namespace {
 
-// Whether the way may be wrong by all of it, as where wheels spin or their pose jumps.
+// Whether the translation may be off by its whole length, for example where wheels spin or their pose jumps.
 bool is_way_open(const BodyMotion& motion) {
-  constexpr double kShare = 0.9;  // share of the way
+  constexpr double kShare = 0.9;  // share of the length
   constexpr double kLeast = 0.1;  // metres
   const double sigma = std::sqrt(motion.covariance.topLeftCorner<3, 3>().trace());
   return sigma > std::max(kLeast, kShare * motion.last_from_body.translation.norm());

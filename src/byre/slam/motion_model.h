@@ -32,10 +32,10 @@ class MotionModel {
   // The camera's, per second: exp_pose(velocity * dt) * camera_from_world. Zero where it is not known.
   Vector6 velocity() const { return velocity_.value_or(Vector6::Zero()); }
 
-  // camera_from_world so many seconds after the last pose. A measured motion that may be wrong by all of its way gives
-  // way to the velocity.
+  // camera_from_world at a time after the last pose, by measured motion. If that may be off by its whole length, or is
+  // unknown, by the velocity.
   Pose predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const;
-  // The same by the velocity alone; empty while it is not known.
+  // The same by the velocity alone; empty while it is unknown.
   std::optional<Pose> predict_by_velocity(const Pose& last_camera_from_world, double seconds) const;
 
  private:

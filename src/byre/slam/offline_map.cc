@@ -83,7 +83,7 @@ OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<Source
 }
 
 ReusedVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
-                                                   int max_count) const {
+                                                    int max_count) const {
   constexpr double kMaxAngle = 1.0;  // radians: beyond it hardly a point is in both views
   const Pose world_from_camera = inverse(camera_from_world);
   const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();

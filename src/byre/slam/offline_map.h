@@ -23,7 +23,7 @@ struct PlacedWalls {
 // deep inside: then the plan, or the registration, is of something else.
 std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls);
 
-// A grid of cubes over the points of a map.
+// Grid of cubes (2 m) over the points of a map.
 class MapCells {
  public:
   explicit MapCells(const Map& map);
@@ -34,7 +34,7 @@ class MapCells {
 
  private:
   std::vector<std::uint32_t> cell_of_point_;  // by the point's number
-  std::vector<std::array<int, 3>> indices_;   // by the cell, ascending
+  std::vector<std::array<int, 3>> indices_;   // by cell, ascending
 };
 
 // A kept map as missions use it. Never changed once made, so that any number of sessions and threads may share it.

@@ -9,10 +9,10 @@
 namespace byre {
 namespace {
 
-constexpr double kTimingMemory = 0.9;  // share of earlier frames that is kept from frame to frame
+constexpr double kTimingMemory = 0.9;  // factor of the weight of earlier frames, per frame
 
 Sign sign_of_slope(const std::optional<SlopeSum::Slope>& slope) {
-  constexpr double kOutOfStep = 0.5;    // frames
+  constexpr double kOutOfStep = 0.5;    // frames of delay
   constexpr double kSurePresent = 5.0;  // sigmas
   constexpr double kSureAbsent = 3.0;   // sigmas
   if (!slope) return Sign::unclear;
@@ -40,11 +40,11 @@ void SlopeSum::add(double motion, const Others& others, double value) {
 }
 
 std::optional<SlopeSum::Slope> SlopeSum::slope(double least_motion) const {
-  constexpr double kEnough = 50.0;       // values
-  constexpr double kShared = 3.0;        // factor of sigmas: neighbouring points err alike
-  constexpr double kLeastSquare = 0.01;  // pixels squared, of a value
+  constexpr double kEnough = 50.0;       // weight of all values
+  constexpr double kShared = 3.0;        // factor of sigmas, as errors of neighbouring points are correlated
+  constexpr double kLeastSquare = 0.01;  // pixels squared, least variance of a value
   if (count_ < kEnough) return std::nullopt;
-  // A value of 1e-3 for each parameter keeps the equations solvable.
+  // Damping of 1e-3 keeps the equations solvable.
   const Eigen::Matrix<double, kSize, kSize> information =
       information_ + 1e-3 * Eigen::Matrix<double, kSize, kSize>::Identity();
   const Eigen::LDLT<Eigen::Matrix<double, kSize, kSize>> factored(information);
@@ -56,8 +56,8 @@ std::optional<SlopeSum::Slope> SlopeSum::slope(double least_motion) const {
 }
 
 Sign PairTiming::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map) {
-  constexpr double kMostRowMotion = 1.0;  // pixels at octave 0: more than that is not found on its row
-  constexpr double kGate = 4.0;           // pixels, and frames of motion, by which a disparity may be off
+  constexpr double kMostRowMotion = 1.0;  // pixels at octave 0; points with more are not matched on their row
+  constexpr double kGate = 4.0;           // largest disparity error, in pixels plus frames of motion
   rows_.begin_frame();
   disparities_.begin_frame();
   now_.clear();

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// Least squares of value = slope * motion + others, older frames counting less.
+// Least squares of value = slope * motion + coefficients * others, with weights that decay from frame to frame.
 class SlopeSum {
  public:
   static constexpr int kOthers = 4;
@@ -22,7 +22,7 @@ class SlopeSum {
     double value = 0.0;
     double sigma = 0.0;
   };
-  // Empty where motion differs too little from the others. least_motion: root mean square of what is left of it.
+  // Empty if the others explain too much of the motion. least_motion: least root mean square of the remaining motion.
   std::optional<Slope> slope(double least_motion) const;
 
  private:
@@ -33,23 +33,23 @@ class SlopeSum {
   double count_ = 0.0;
 };
 
-// Estimates by how many frames the right image is later than the left one. A late image shows each point where it was:
-// rows and disparities are off in proportion to the motion of points in the image. Errors of the calibration that are
-// linear in the image, and constant ones of rows, are estimated beside that.
+// Estimates the delay of the right image against the left one, in frames. A late image shows each point at an earlier
+// position, so row and disparity errors are proportional to the image motion of the points. Calibration errors that are
+// linear in the image, and a constant one of rows, are estimated as well.
 class PairTiming {
  public:
-  // A frame with a right image that has a pose: present where the images are out of step, absent where they are in
-  // step, unclear where the image hardly moves.
+  // Adds a tracked frame with a right image. present: the images are out of step; absent: they are in step; unclear:
+  // the image hardly moves.
   Sign note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map);
   // The frame has no pose, or no right image.
   void skip() { last_.clear(); }
 
-  // The delay in frames; empty while the image hardly moves.
+  // Delay in frames by row and by disparity errors; empty while the image hardly moves.
   std::optional<SlopeSum::Slope> by_rows() const { return rows_.slope(kLeastRowMotion); }
   std::optional<SlopeSum::Slope> by_disparities() const { return disparities_.slope(kLeastColumnMotion); }
 
  private:
-  // Pixels per frame. Constant errors of disparities look like a turn of the camera, and are small beside that.
+  // Least motion, pixels per frame. Constant errors of disparities look like a turn of the camera, and are smaller.
   static constexpr double kLeastRowMotion = 0.3;
   static constexpr double kLeastColumnMotion = 1.5;
 
@@ -61,8 +61,8 @@ class PairTiming {
 
   SlopeSum rows_;
   SlopeSum disparities_;
-  std::vector<Sight> last_;  // in the frame before, ascending by point
-  std::vector<Sight> now_;   // memory
+  std::vector<Sight> last_;  // sights of the frame before, ascending by point
+  std::vector<Sight> now_;   // buffer
 };
 
 }  // namespace byre

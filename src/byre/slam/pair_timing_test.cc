@@ -11,14 +11,14 @@ namespace {
 
 constexpr int kFrames = 80;
 
-// A drive round a room whose right images are older than the left ones, or younger.
+// A drive round a room whose right images are earlier or later than the left ones.
 class LatePair {
  public:
   explicit LatePair(double laps = 0.15)
       : mission_(simulate_mission(simulated_rig(), circling_trajectory(kFrames, 20.0, 2.0, laps), options())),
         map_(true_map(mission_, 5, Origin::online)) {}
 
-  // late: frames by which the right image is late. row_error: pixels by which the calibration errs, at the image's rim.
+  // late: delay of the right image, frames. row_error: row error of the calibration at the image border, pixels.
   std::vector<Sign> signs(int late, double row_error = 0.0) {
     const MapView view(nullptr, map_);
     std::vector<Sign> signs;
@@ -37,12 +37,12 @@ class LatePair {
  private:
   static SimulationOptions options() {
     SimulationOptions options;
-    options.pixel_sigma = 0.03;  // low, as both images of a pair show the noise of one left image here
+    options.pixel_sigma = 0.03;  // low, because here both images of a pair have the noise of one left image
     options.disparity_sigma = 0.1;
     return options;
   }
 
-  // A left image with the right columns and rows of another frame.
+  // A left image with the right columns and rows of another frame, for every third feature.
   Frame taken(int left, int right, double row_error) const {
     const auto l = static_cast<std::size_t>(left), r = static_cast<std::size_t>(right);
     std::map<int, Keypoint> in_right;
@@ -54,7 +54,7 @@ class LatePair {
     for (std::size_t i = 0; i < keypoints.size(); ++i) {
       Keypoint& keypoint = keypoints[i];
       const auto seen = in_right.find(mission_.landmark_of_feature[l][i]);
-      const bool is_tried = i % 3 == 0;  // the others hold the pose
+      const bool is_tried = i % 3 == 0;  // the others determine the pose
       const bool is_matched =
           is_tried && keypoint.has_disparity() && seen != in_right.end() && seen->second.has_disparity();
       const float row = is_matched ? seen->second.pixel.y() - keypoint.pixel.y() : 0.0f;
@@ -102,18 +102,18 @@ TEST(PairTiming, FindsImagesThatAreLateByTwo) {
   EXPECT_GT(count(signs, Sign::present), 30);
 }
 
-TEST(PairTiming, TakesNoErrorOfTheCalibrationForOne) {
+TEST(PairTiming, DoesNotReportCalibrationErrorsAsDelay) {
   LatePair pair;
   EXPECT_EQ(count(pair.signs(0, 0.7), Sign::present), 0);
 }
 
-TEST(PairTiming, LeavesOpenWhatNoMotionShows) {
+TEST(PairTiming, IsUnclearWithoutMotion) {
   LatePair pair(1e-4);
   EXPECT_EQ(count(pair.signs(0), Sign::unclear), kFrames - 6);
 }
 
-// A hundred points of a frame whose motion in the image differs, or is the same everywhere; values are off by the delay
-// times the motion, and by an error of the calibration.
+// A hundred points of a frame, with different or equal image motion. Values are the delay times the motion plus an
+// error of the calibration.
 SlopeSum values_with(double delay, bool does_motion_differ) {
   SlopeSum sum;
   sum.begin_frame();
@@ -125,7 +125,7 @@ SlopeSum values_with(double delay, bool does_motion_differ) {
   return sum;
 }
 
-TEST(SlopeSum, IsTheDelayBesideErrorsOfTheCalibration) {
+TEST(SlopeSum, IsTheDelayDespiteCalibrationErrors) {
   for (const double delay : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
     const auto slope = values_with(delay, true).slope(0.3);
     ASSERT_TRUE(slope) << delay;
@@ -134,9 +134,9 @@ TEST(SlopeSum, IsTheDelayBesideErrorsOfTheCalibration) {
   }
 }
 
-TEST(SlopeSum, IsEmptyWhereMotionIsNotToldApartFromErrorsOfTheCalibration) {
+TEST(SlopeSum, IsEmptyWhereCalibrationErrorsExplainTheMotion) {
   EXPECT_FALSE(values_with(1.0, false).slope(0.3));
-  EXPECT_FALSE(values_with(1.0, true).slope(3.0)) << "less motion than is asked for";
+  EXPECT_FALSE(values_with(1.0, true).slope(3.0)) << "too little motion";
 }
 
 TEST(SlopeSum, IsEmptyWithoutEnoughValues) {

@@ -21,7 +21,7 @@ ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& 
 }  // namespace
 
 ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
-  constexpr double kNear = 1.0;     // metres, with a metre for each radian between viewing directions
+  constexpr double kNear = 1.0;     // metres, plus a metre per radian between viewing directions
   constexpr double kMaxTurn = 0.6;  // radians
   constexpr int kKeyframes = 3;
   ReusedVector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
@@ -46,7 +46,7 @@ ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const
 }
 
 PlaceView view_of_place(const PlaceViewQuery& query) {
-  constexpr std::size_t kEnough = 60;  // points seen by keyframes nearby
+  constexpr std::size_t kEnough = 60;  // points of nearby keyframes in view
   const Map nothing_online(Origin::online);
   const MapView map(&query.offline.map(), nothing_online);
   const Pose& pose = query.tracked.camera_from_world;

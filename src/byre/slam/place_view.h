@@ -11,23 +11,23 @@
 
 namespace byre {
 
-// Offline points of one cell of the map that should be in view, and those of them that are.
+// Offline points of one map cell that should be in view, and those that are seen.
 struct CellInView {
-  std::array<int, 3> cell{};  // its index along x, y and z, see MapCells
+  std::array<int, 3> cell{};  // index along x, y and z, see MapCells
   int expected = 0;
-  int seen = 0;  // inliers whose very patch was found, not just a similar corner
+  int seen = 0;  // inliers with the same image patch, not only a similar corner
   Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
 };
 
-// What a frame shows of the offline map from a pose.
+// The part of the offline map that a frame shows from a pose.
 struct PlaceView {
-  // Keyframes have looked at the map from about there: what they saw should be in view, unless it is covered, moved or
-  // lit otherwise. Elsewhere all points in the frustum are expected, though walls may hide them.
+  // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
+  // them. False: all points in the frustum are expected, though walls may hide them.
   bool is_near_keyframe = false;
   ReusedVector<CellInView> cells;  // ascending
 };
 
-// Keyframes that looked at the map from about a pose, ascending, and the points that they saw, ascending.
+// Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.
 ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
 ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
 
@@ -35,11 +35,11 @@ struct PlaceViewQuery {
   const OfflineMap& offline;
   const Rig& rig;
   const Frame& frame;
-  const TrackedFrame& tracked;                 // its camera_from_world is the pose, in the offline map's frame
+  const TrackedFrame& tracked;                 // pose and inliers, in the offline map's frame
   std::span<const PointId> nearby;             // points_of_place of the pose
-  std::span<const PointId> candidates;         // offline points around, where those are too few
-  HiddenCells hidden{};                        // where no points are expected
-  std::function<bool(PointId)> is_left_out{};  // points not expected anywhere; empty: none
+  std::span<const PointId> candidates;         // offline points around the pose, used if nearby ones are too few
+  HiddenCells hidden{};                        // image cells without expected points
+  std::function<bool(PointId)> is_left_out{};  // points that are never expected; empty: none
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);

@@ -43,7 +43,7 @@ class ViewOfAPlace : public ::testing::Test {
   const ReusedVector<PointId> nearby_ = points_of_place(*offline_, keyframes_of_place(*offline_, pose_));
 };
 
-TEST_F(ViewOfAPlace, ExpectsWhatKeyframesNearbySaw) {
+TEST_F(ViewOfAPlace, ExpectsPointsOfNearbyKeyframes) {
   const TrackedFrame tracked = tracked_at(pose_);
   const PlaceView view = view_of_place(query(tracked));
   EXPECT_TRUE(view.is_near_keyframe);
@@ -54,7 +54,7 @@ TEST_F(ViewOfAPlace, ExpectsWhatKeyframesNearbySaw) {
   EXPECT_TRUE(std::ranges::is_sorted(view.cells, {}, &CellInView::cell));
 }
 
-TEST_F(ViewOfAPlace, ExpectsTheCandidatesWhereNoKeyframeWasNear) {
+TEST_F(ViewOfAPlace, ExpectsTheCandidatesWithoutNearbyKeyframes) {
   const Pose ten_metres_up = pose_ * Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, -10.0}};
   EXPECT_TRUE(keyframes_of_place(*offline_, ten_metres_up).empty());
   const TrackedFrame tracked = tracked_at(pose_);
@@ -71,7 +71,7 @@ TEST_F(ViewOfAPlace, SeesNothingOfAFrameThatMatchedNothing) {
   EXPECT_EQ(counts_of(view_of_place(query(tracked))).seen, 0);
 }
 
-TEST_F(ViewOfAPlace, LeavesPointsOutThatAreNotExpectedAnywhere) {
+TEST_F(ViewOfAPlace, LeavesOutPointsThatAreNeverExpected) {
   const TrackedFrame tracked = tracked_at(pose_);
   PlaceViewQuery all_moved = query(tracked);
   all_moved.is_left_out = [](PointId) { return true; };

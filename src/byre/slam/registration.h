@@ -9,10 +9,10 @@
 namespace byre {
 
 struct RegistrationOptions {
-  int confirmations = 3;         // frames that must say the same before it is believed
+  int confirmations = 3;         // frames that must agree before a place is used for mapping
   double accept_log_odds = 2.5;  // log-odds from which a place found is trusted, nats; see PlaceHypothesis
-  double max_speed = 3.0;        // metres a second, highest speed of the robot
-  int max_misses = 2;            // frames that say something else, before it is given up
+  double max_speed = 3.0;        // metres per second, highest speed of the robot
+  int max_misses = 2;            // contradicting frames before a place is given up
 };
 
 inline constexpr int kConfirmationsOfJump = 10;  // frames, where the robot was carried or went faster than it can

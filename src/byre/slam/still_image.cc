@@ -10,11 +10,11 @@ namespace byre {
 namespace {
 
 constexpr int kMostSamples = 300;    // corners that are compared
-constexpr int kFewestSamples = 30;   // corners from which a standstill is found
-constexpr int kCoarsestOctave = 3;   // beyond, a corner is too vague
-constexpr float kStays = 1.5f;       // octave pixels that noise moves a corner at most
-constexpr int kAlike = 64;           // bits, descriptors of one corner under noise
-constexpr double kStillShare = 0.4;  // share of corners that stay in an image that stands still
+constexpr int kFewestSamples = 30;   // corners that a decision needs
+constexpr int kCoarsestOctave = 3;   // corners of coarser octaves are too inexact
+constexpr float kStays = 1.5f;       // pixels of the octave, largest shift of a corner by noise
+constexpr int kAlike = 64;           // bits, largest distance of descriptors of one corner under noise
+constexpr double kStillShare = 0.4;  // least share of corners that stay at a standstill
 
 bool stays_at(const Features& features, const Keypoint& keypoint, const Descriptor& descriptor) {
   int least = std::numeric_limits<int>::max();
@@ -24,16 +24,16 @@ bool stays_at(const Features& features, const Keypoint& keypoint, const Descript
   return least <= kAlike;
 }
 
-// Pixels by which the motion would have moved the corner.
+// Shift of a corner by the motion, pixels. then: its position in the camera before the motion.
 Eigen::Vector2d shift_by(const Eigen::Vector2d& pixel, const Eigen::Vector3d& then, const Pose& now_from_then,
                          const Rig& rig) {
-  constexpr double kNearest = 0.05;  // lengths of the map
+  constexpr double kNearest = 0.05;  // least depth, map units
   Eigen::Vector3d in_camera = now_from_then * then;
   in_camera.z() = std::max(kNearest, in_camera.z());
   return rig.project(in_camera).head<2>() - pixel;
 }
 
-// The least motion that the measurement allows, by three sigmas of its length and of its angle.
+// The smallest motion within three sigmas of the measured one, in length and in angle.
 Pose least_motion(const BodyMotion& measured) {
   constexpr double kSigmas = 3.0;
   const auto share_left = [](double size, double variance) {
@@ -46,19 +46,19 @@ Pose least_motion(const BodyMotion& measured) {
           share_left(way.norm(), covariance.topLeftCorner<3, 3>().trace()) * way};
 }
 
-// now_from_then of the camera.
+// The motion of the camera, now_from_then.
 Pose of_camera(const Pose& then_from_now_of_body, const Rig& rig) {
   return inverse(inverse(rig.body_from_camera) * then_from_now_of_body * rig.body_from_camera);
 }
 
-// A trusted pose may be off by as much, and more.
+// Within the error that a trusted pose may have.
 bool is_small(const Pose& motion) {
   constexpr double kMetres = 0.1;
   constexpr double kRadians = 0.05;
   return motion.translation.norm() < kMetres && rotation_log(motion.rotation).norm() < kRadians;
 }
 
-// Whether the measurement says more of the motion than going on as before does.
+// Whether the measurement is more certain than a prediction by the velocity.
 bool is_known_better(const BodyMotion& measured, const Vector6& velocity, double seconds) {
   constexpr double kShare = 0.3;
   constexpr double kLeast = 1e-3;  // metres and radians
@@ -70,7 +70,7 @@ bool is_known_better(const BodyMotion& measured, const Vector6& velocity, double
 
 }  // namespace
 
-// depth: of corners without a disparity.
+// depth: depth of corners without a disparity, map units.
 void StillImage::compare(const Features& features, const Rig& rig, double depth) {
   corners_.clear();
   for (const auto& [keypoint, descriptor] : reference_) {
@@ -82,12 +82,12 @@ void StillImage::compare(const Features& features, const Rig& rig, double depth)
   }
 }
 
-// Enough corners that the motion would have moved are where they were.
+// Whether enough of the corners that the motion would have moved stay.
 bool StillImage::is_contradicted_by(const Pose& now_from_then, const Rig& rig) const {
   constexpr double kLeastShift = 4.0;           // pixels
-  constexpr double kLeastShiftOfWidth = 0.008;  // share of the image's width
-  constexpr double kLeastMoved = 0.15;          // share of the corners
-  constexpr double kStaying = 0.4;              // share of those that should have moved
+  constexpr double kLeastShiftOfWidth = 0.008;  // share of the image width
+  constexpr double kLeastMoved = 0.15;          // least share of corners that should have moved
+  constexpr double kStaying = 0.4;              // least share of these that stay
   const double least = std::max(kLeastShift, kLeastShiftOfWidth * rig.width);
   int moved = 0, staying = 0;
   for (const Corner& corner : corners_) {
@@ -99,10 +99,11 @@ bool StillImage::is_contradicted_by(const Pose& now_from_then, const Rig& rig) c
          staying >= kStaying * moved;
 }
 
-// The camera moved steadily up to the reference, and no robot stops so fast. later: velocity at the reference.
+// Whether the camera moved steadily up to the reference and then stopped faster than a robot can. later: velocity at
+// the reference.
 bool StillImage::is_sudden_stop(const Vector6& later, double seconds, const Rig& rig) const {
-  constexpr double kDeceleration = 3.0;  // metres (lengths of the map), and radians, per second squared
-  constexpr double kSteady = 0.4;        // change as a share of the motion in the image
+  constexpr double kDeceleration = 3.0;  // map units (metres) and radians per second squared
+  constexpr double kSteady = 0.4;        // largest change as a share of the image motion
   if ((later.head<3>().norm() + later.tail<3>().norm()) < kDeceleration * seconds) return false;
   double motion = 0.0, change = 0.0;
   for (const Corner& corner : corners_) {
@@ -132,7 +133,7 @@ void StillImage::restart(const Frame& frame, const Vector6& velocity) {
 
 Stillness StillImage::note(const Frame& frame, const Rig& rig, const std::optional<BodyMotion>& measured,
                            const CameraMotion& before) {
-  constexpr double kLongest = 0.3;  // seconds for which motion is taken to go on
+  constexpr double kLongest = 0.3;  // seconds for which the velocity predicts motion
   if (reference_.empty()) {
     restart(frame, before.velocity);
     return {};

@@ -13,10 +13,10 @@ namespace {
 constexpr double kRate = 10.0;  // frames per second
 constexpr int kFreeze = 20;     // frame from which the image is repeated
 
-// A quarter of a circle of 2 m radius at 0.8 m/s, of which the tests repeat or keep frames.
+// A drive on a quarter of a circle of 2 m radius at 0.8 m/s, some frames of which are repeated.
 class StillImageOnADrive : public ::testing::Test {
  protected:
-  // The frame's features as sensor noise moves them: by a pixel at most, some bits of each descriptor, some not found.
+  // A frame with sensor noise: pixels moved by at most one, one bit of each descriptor changed, a fifth not found.
   Frame with_noise(int image, int at) {
     const Features& features = *mission_.frames[static_cast<std::size_t>(image)].features;
     std::vector<Keypoint> keypoints;
@@ -41,14 +41,14 @@ class StillImageOnADrive : public ::testing::Test {
     return inverse(pose(from)) * pose(to);
   }
 
-  // Velocity of the camera between frames that follow each other.
+  // Velocity of the camera between consecutive frames.
   CameraMotion velocity(int from, int to) const {
     const Pose change = true_camera_from_world(mission_, static_cast<std::size_t>(to)) *
                         inverse(true_camera_from_world(mission_, static_cast<std::size_t>(from)));
     return {kRate * log_pose(change), 3.0};
   }
 
-  // Up to the freeze.
+  // Drives up to the freeze.
   void drive(bool has_wheels) {
     for (int i = 2; i <= kFreeze; ++i) {
       const auto wheels = has_wheels ? std::optional(moved(i - 1, i)) : std::nullopt;
@@ -62,7 +62,7 @@ class StillImageOnADrive : public ::testing::Test {
   std::mt19937 random_{1};
 };
 
-TEST_F(StillImageOnADrive, FindsARepeatedImageByWheelsThatMove) {
+TEST_F(StillImageOnADrive, DetectsARepeatedImageByWheels) {
   drive(true);
   for (int i = kFreeze + 1; i < 40; ++i) {
     const Stillness found = watch_.note(with_noise(kFreeze, i), mission_.rig, moved(i - 1, i), {});
@@ -72,7 +72,7 @@ TEST_F(StillImageOnADrive, FindsARepeatedImageByWheelsThatMove) {
   }
 }
 
-TEST_F(StillImageOnADrive, HoldsItWhileWheelsStandAfterwards) {
+TEST_F(StillImageOnADrive, StaysFrozenWhileWheelsStandAfterwards) {
   drive(true);
   for (int i = kFreeze + 1; i < 40; ++i) watch_.note(with_noise(kFreeze, i), mission_.rig, moved(i - 1, i), {});
   for (int i = 40; i < 80; ++i) {
@@ -89,7 +89,7 @@ TEST_F(StillImageOnADrive, EndsOnceTheImageMovesAgain) {
   }
 }
 
-TEST_F(StillImageOnADrive, BelievesWheelsThatStand) {
+TEST_F(StillImageOnADrive, IsNotFrozenWhileWheelsStand) {
   drive(true);
   for (int i = kFreeze + 1; i < 200; ++i) {
     const Stillness found =
@@ -99,7 +99,7 @@ TEST_F(StillImageOnADrive, BelievesWheelsThatStand) {
   }
 }
 
-TEST_F(StillImageOnADrive, FindsARepeatedImageByASuddenStopWithoutWheels) {
+TEST_F(StillImageOnADrive, DetectsARepeatedImageByASuddenStopWithoutWheels) {
   drive(false);
   for (int i = kFreeze + 1; i < 40; ++i) {
     const CameraMotion before = i == kFreeze + 1 ? velocity(kFreeze - 1, kFreeze) : CameraMotion{};
@@ -108,7 +108,7 @@ TEST_F(StillImageOnADrive, FindsARepeatedImageByASuddenStopWithoutWheels) {
   }
 }
 
-TEST_F(StillImageOnADrive, TrustsARobotThatBrakesWithoutWheels) {
+TEST_F(StillImageOnADrive, IsNotFrozenWhereTheRobotBrakesWithoutWheels) {
   drive(false);
   const Vector6 velocity_before = velocity(kFreeze - 2, kFreeze - 1).velocity;
   // The last frame before the stop moved by a quarter of the others.
@@ -122,13 +122,13 @@ TEST_F(StillImageOnADrive, TrustsARobotThatBrakesWithoutWheels) {
   }
 }
 
-TEST_F(StillImageOnADrive, TrustsARobotThatStandsFromTheBeginning) {
+TEST_F(StillImageOnADrive, IsNotFrozenFromTheBeginning) {
   for (int i = 0; i < 100; ++i) {
     EXPECT_FALSE(watch_.note(with_noise(0, i), mission_.rig, {}, {}).is_frozen) << i;
   }
 }
 
-TEST_F(StillImageOnADrive, DoesNotRelyOnAMotionThatIsHardlyKnown) {
+TEST_F(StillImageOnADrive, IgnoresAnUncertainMotion) {
   drive(true);
   for (int i = kFreeze + 1; i < 40; ++i) {
     BodyMotion vague = moved(i - 1, i);

@@ -180,14 +180,13 @@ void Engine::measure_by_wheels() {
   constexpr double kMaxTurnScale = 0.1;  // natural logarithm
   const auto& wheels = prior_.wheels();
   if (!wheels || wheels->scale_sigma > kMaxSigma) return;
-  // Wheels whose radius is wrong measure ways and turns too long alike.
+  // A wrong wheel radius scales path lengths and turns by the same factor.
   if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
-    prior_.warn(
-        {MotionSensor::wheels,
-         {},
-         fmt::format("wheels measure turns {:.3g} times as large as the camera sees them; the map has no metres",
-                     1.0 / wheels->turn_errors.scale),
-         "calibrate the radius and the distance of the wheels, or measure the map: byre scale"});
+    prior_.warn({MotionSensor::wheels,
+                 {},
+                 fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metres",
+                             1.0 / wheels->turn_errors.scale),
+                 "calibrate the wheel radius and the track width, or measure the map: byre scale"});
     return;
   }
   const double factor = wheels->metres_per_unit;

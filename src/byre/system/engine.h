@@ -43,7 +43,7 @@ struct EngineOptions {
   KnownMounting mounting;
   bool use_known_mounting = true;
   MotionLimits motion_limits;
-  // Standard deviation of the metres of a map that one camera made, where wheels alone measure them, as a share.
+  // Least standard deviation of metres that wheels alone measure for a map by one camera, as a share.
   double wheel_scale_sigma = 0.02;
   double frame_deadline_ms = 0.0;             // wall time that a frame may take, see FrameBudget
   std::shared_ptr<const OfflineMap> offline;  // a mission on this map; what is mapped beside it is not finished
@@ -99,7 +99,7 @@ class Engine {
     prior_.presume_gyroscope(body_from_left_ * left_from_gyroscope);
   }
 
-  // A motion of the body from the last frame to a time, as a caller gives it; empty where it is faulty.
+  // A motion of the body from the last frame to a time, given by the caller; empty if it is faulty.
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
   // Faults of motion inputs so far.
   const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
@@ -115,8 +115,8 @@ class Engine {
   // After finish(), where there is a vocabulary and no offline map; faults are not looked for.
   Finishing finish_map(const FinishHooks& hooks);
   double finish_mission(const FinishHooks& hooks);  // finishes a mission, after finish(); wall time, seconds
-  // Why the offline map cannot be read further, with file, section and remedy; nullptr without damage. What was read
-  // before stays in use, and all later reports are untrusted.
+  // Damage of the offline map's file, with file, section and remedy; nullptr without damage. Parts read before stay in
+  // use, and all later reports are untrusted.
   const InputError* map_damage() const { return offline_ ? offline_->map().damage() : nullptr; }
 
   const Rig& rig() const { return extractor_.rig(); }
@@ -128,13 +128,13 @@ class Engine {
   Trajectory trajectory() const { return prior_.completed(session_.final_trajectory()); }
   // By which the map lies; empty where nothing but what was given is known.
   std::optional<RefinedCalibration> calibration() const;
-  // How far the calibration that images are rectified by is off, by the rows of all pairs so far.
+  // Row error of the calibration that rectifies images, over all pairs so far.
   const CommonRowError& row_error() const { return row_error_; }
   KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep(), metres_sigma_}; }
   // Whether lengths are metres. What one camera maps has them once it is finished, where wheels have told them.
   bool is_metric() const { return is_metric_; }
-  // Standard deviation of metres that wheels alone measure, as a share; empty where lengths are no metres, or cameras
-  // or a map measure them.
+  // Standard deviation of metres that wheels alone measure, as a share; empty if lengths are not metres, or are
+  // measured by cameras or a map.
   std::optional<double> wheel_scale_sigma() const { return metres_sigma_; }
   // What is kept of the map by now.
   Map kept_map() const;

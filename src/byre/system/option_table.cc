@@ -294,7 +294,7 @@ void add_mission(Table& table) {
   table.push_back(number(
       "mission.accept_log_odds", "nats", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.registration.accept_log_odds; },
-      "log-odds of a place found, by which cells of the map are seen, from which it is trusted"));
+      "log-odds of a place found, by the map cells in view, from which it is trusted"));
   table.push_back(number(
       "mission.plane_margin_m", "metres", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin; },
@@ -338,21 +338,22 @@ void add_motion(Table& table) {
   table.push_back(number(
       "motion.max_speed_m_per_s", "metres a second", 0.01, 1e3,
       [](auto& o) -> auto& { return o.motion_limits.max_speed; },
-      "highest speed of the robot's base: faster wheel samples are dropped, and many of them are taken for another "
-      "unit"));
+      "highest speed of the robot's base: faster wheel samples are dropped; if most are, wheels are ignored"));
   table.push_back(number(
       "motion.max_turn_rate_rad_per_s", "radians a second", 0.01, 1e3,
       [](auto& o) -> auto& { return o.motion_limits.max_turn_rate; },
-      "highest turn rate of base and gyroscope, likewise"));
+      "highest turn rate of base and gyroscope: faster samples are dropped; if most rates are, the gyroscope is "
+      "ignored"));
   table.push_back(number(
       "motion.max_acceleration_m_per_s2", "m/s^2", 10, 1e4,
-      [](auto& o) -> auto& { return o.motion_limits.max_acceleration; }, "largest acceleration that is used"));
+      [](auto& o) -> auto& { return o.motion_limits.max_acceleration; },
+      "largest acceleration by the accelerometer: larger ones are dropped"));
   table.push_back(number(
       "motion.max_position_m", "metres", 1, 1e9, [](auto& o) -> auto& { return o.motion_limits.max_position; },
       "distance from the origin of wheel odometry beyond which a pose is dropped"));
   table.push_back(number(
       "motion.wheel_scale_sigma", "share of the length", 0, 1, [](auto& o) -> auto& { return o.wheel_scale_sigma; },
-      "standard deviation of the metres of a map by one camera that wheels alone measure, beside the fit"));
+      "standard deviation of metres that wheels alone measure for a map by one camera, added to that of the fit"));
 }
 
 void add_health(Table& table) {

@@ -22,8 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGivenCalibration = "the calibration given to Slam";
 
-// Throws InputError for values that no camera has. Files were checked when they were read; these may come from
-// anywhere.
+// Throws InputError for values that no camera has. Calibrations from files were checked on reading; others were not.
 void require_sense(const Calibration& calibration, const SlamOptions& options) {
   const auto refuse = [](std::string_view reason) {
     throw InputError(kGivenCalibration, reason, "see byre/calibration.h");
@@ -40,7 +39,7 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
 }
 
-// The calibration with the baseline that the options confirm. Throws InputError where the calibration makes no sense.
+// The calibration with the baseline of the options. Throws InputError for an invalid calibration.
 Calibration checked(const Calibration& calibration, const SlamOptions& options) {
   require_sense(calibration, options);
   return with_checked_baseline(calibration, options.baseline, kGivenCalibration, "SlamOptions::baseline = ");
@@ -113,7 +112,7 @@ struct Slam::Parts {
   StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
   std::shared_ptr<const OfflineMap> offline;
   bool is_extended = false;
-  std::optional<fs::path> mission_map;   // map that a mission is on
+  std::optional<fs::path> mission_map;   // file of the map of a mission
   std::optional<PlanRegistration> plan;  // place of the map that poses are in on its floor plan
 
   Engine engine;
@@ -295,8 +294,7 @@ void Slam::save(const fs::path& path) const {
   }
   std::error_code none_there;
   if (parts_->mission_map && fs::equivalent(path, *parts_->mission_map, none_there)) {
-    throw InputError(path.string(), "is the map that the mission is on, so it may not be replaced",
-                     "name another file");
+    throw InputError(path.string(), "is the map of the mission, which may not be replaced", "name another file");
   }
   save_for_use(parts_->kept(), parts_->vocabulary, parts_->options.site, path);
 }

@@ -119,7 +119,7 @@ TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
   EXPECT_GT(slam.trajectory().size(), 10u);
 }
 
-// The file stays the same one, as when a disk fails.
+// Overwrites the bytes of a file in place, as a failing disk does.
 void zero_in_place(const fs::path& file) {
   const std::string zeros(fs::file_size(file), '\0');
   std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << zeros;
@@ -137,7 +137,7 @@ TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
       Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
       for (std::size_t i = 0; i < frames.size(); ++i) {
         if (i == good_frames) damage(map_);
-        const bool was_damaged = slam.map_damage().has_value();  // a search beside tracking may meet it meanwhile
+        const bool was_damaged = slam.map_damage().has_value();  // a search beside tracking may find it first
         const FrameReport report = slam.process(view_of(frames[i]));
         const bool is_damaged = report.health.doubt == Doubt::map_damaged;
         EXPECT_TRUE(is_damaged || !was_damaged) << i;
@@ -162,7 +162,7 @@ TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
   causal(slam, shared_frames());
   ASSERT_GT(slam.keyframes(), 0);
   const auto time = fs::last_write_time(map_);
-  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map that the mission is on"));
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map of the mission"));
   EXPECT_EQ(fs::last_write_time(map_), time);
   const fs::path letter = map_.string() + ".txt";
   std::ofstream(letter) << "Dear reader";
@@ -374,7 +374,7 @@ TEST(Slam, TracksOwnFeaturesAsItsOwn) {
   }
 }
 
-// Values that break what does not expect them.
+// Extreme and invalid values.
 const std::vector<double>& hostile_values() {
   static const std::vector<double> values = {std::numeric_limits<double>::quiet_NaN(),
                                              std::numeric_limits<double>::infinity(),
@@ -410,7 +410,7 @@ Pose hostile_pose(std::mt19937& random) {
   return pose;
 }
 
-// Samples of every motion input before a frame, sound or hostile, also with times that go back or leave the clock.
+// Adds samples of each motion input before a frame, sound or invalid, also with times out of order or range.
 void tell_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
   const auto value = [&] { return hostile_values()[random() % hostile_values().size()]; };
   const std::vector<Timestamp> times = {
@@ -438,7 +438,7 @@ std::optional<BodyMotion> hostile_motion(std::mt19937& random) {
 TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
   map_shared();
   std::vector<ImageFrame> frames = shared_frames();
-  for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // so that what is measured leads on
+  for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // so that measured motion bridges frames
     std::ranges::fill(frames[i].left.pixels, std::uint8_t{0});
     if (frames[i].right) std::ranges::fill(frames[i].right->pixels, std::uint8_t{0});
   }
@@ -455,7 +455,7 @@ TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
         expect_finite(report);
         poses += report.map_from_body ? 1 : 0;
       }
-      EXPECT_GE(poses, static_cast<int>(frames.size() / 3)) << "hostile samples lose no pose that is seen";
+      EXPECT_GE(poses, static_cast<int>(frames.size() / 3)) << "invalid samples lose no tracked pose";
       EXPECT_FALSE(slam.motion_warnings().empty());
       slam.finish();
       for (const StampedPose& pose : slam.trajectory()) EXPECT_TRUE(is_finite(pose.world_from_body));

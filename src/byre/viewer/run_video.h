@@ -30,7 +30,7 @@ class RunVideo {
   // Cut off, or filled up with white, where it is of another size.
   void add(const Picture& picture);
 
-  // Gives the file its name. Once, after the last picture.
+  // Gives the file its name. Call once, after the last picture.
   void finish();
 
   bool plays_in_browsers() const { return is_h264_; }

@@ -18,7 +18,7 @@ class MadeOnce {
   MadeOnce(const MadeOnce&) = delete;
   MadeOnce& operator=(const MadeOnce&) = delete;
 
-  // nullptr if it is not made yet.
+  // The thing; nullptr if it is not made yet.
   const Thing* find(std::size_t index) const { return things_[index].load(std::memory_order_acquire); }
 
   // make() gives the thing; what it throws goes to the caller, and the thing is made by who asks next.

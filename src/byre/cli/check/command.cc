@@ -32,7 +32,8 @@ constexpr const char* kCheckFooter = R"(Examples:
 
 Looks at some frames, a few seconds' work, and tells what would spoil a mission: rate and gaps, images that are dark,
 blurred or repeated, left and right images that do not fit together, a calibration that is off or not of these cameras;
-faults of wheels, gyroscope and accelerometer (--gyroscope); and what to do about each. "byre map" and "byre run" print its summary when they begin.
+faults of wheels, gyroscope and accelerometer (--gyroscope); and what to do about each. "byre map" and "byre run" print
+its summary when they begin.
 
 Exit codes: 0 nothing is in the way, 1 something is to be mended first, 3 the recording cannot be read.)";
 

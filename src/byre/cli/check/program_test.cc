@@ -37,7 +37,7 @@ TEST_F(CheckProgram, OfOneCameraSaysNothingOfAPair) {
   EXPECT_EQ(told.at("without_right"), 0);
 }
 
-TEST_F(CheckProgram, TakesABaselineInPlaceOfTheCalibrations) {
+TEST_F(CheckProgram, ReplacesTheBaselineOfTheCalibration) {
   const Outcome sound = run("check " + rendered_room() + " --samples 3 --baseline 0.5");
   EXPECT_EQ(sound.exit_code, 0) << sound.errors;
   EXPECT_THAT(sound.output, HasSubstr("baseline     0.5000 m"));

@@ -181,7 +181,7 @@ TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
     EXPECT_EQ(outcome.exit_code, 1) << poses;
     EXPECT_THAT(outcome.errors, HasSubstr("byre: error: 9 of 24 frames could not be read, see the warnings: torn/"))
         << poses;
-    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or leave them out by --frames)"))
+    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or leave them out with --frames)"))
         << poses;
     EXPECT_GT(load_map(folder_ / "torn.byre").map.keyframe_count(), 0) << "all files are written";
   }

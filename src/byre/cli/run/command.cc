@@ -69,8 +69,8 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   return protocol;
 }
 
-// Written frame by frame, unlike the other outputs, so that they are kept however the program ends. A failure to write
-// is reported at once, as another program may wait for events.
+// Events, written frame by frame, so that they are kept however the program ends. A failure to write is reported at
+// once, because another program may wait for events.
 class EventFile {
  public:
   explicit EventFile(const std::optional<fs::path>& path) : path_(path) {
@@ -98,7 +98,7 @@ class EventFile {
  private:
   std::optional<fs::path> path_;  // empty: nothing is noted
   std::optional<OutputFile> file_;
-  std::ostringstream text_;  // lines not yet in the file
+  std::ostringstream text_;  // lines not yet written
   EventLog log_{text_};
   std::optional<std::string> fault_;
 };

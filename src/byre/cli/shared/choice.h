@@ -12,8 +12,8 @@
 
 namespace byre::cli {
 
-// Transforms a name into its value, which is an enumerator, a bool or a string. Other text is refused with the list of
-// names.
+// Transforms a name into the text of its value, which is an enumerator, a bool or a string. Other text is refused with
+// the list of names.
 template <typename Value>
 CLI::Validator one_of(const std::map<std::string, Value>& by_name) {
   const auto transform = [by_name](std::string& text) {

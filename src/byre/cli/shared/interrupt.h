@@ -6,9 +6,9 @@
 namespace byre::cli {
 
 // During its life the first Ctrl-C (SIGINT), request to end (SIGTERM) or loss of the terminal (SIGHUP) is only noted. A
-// second one ends the program at once with 128 and the signal's number as exit code, and removes temporary files, so
-// that outputs stay as they were. SIGHUP never ends the program, as a terminal that closes sends several. A signal that
-// is ignored, as by nohup, stays ignored. One at a time.
+// second one removes temporary files, so that outputs are unchanged, and ends the program with exit code 128 plus the
+// signal's number. SIGHUP never ends the program, because a closing terminal sends several. An ignored signal, as by
+// nohup, stays ignored. Only one may exist at a time.
 class InterruptCatcher {
  public:
   InterruptCatcher();

@@ -45,7 +45,7 @@ class ProgramTest : public testing::Test {
   }
   ~ProgramTest() override { std::filesystem::remove_all(folder_); }
 
-  // Temporary files of outputs in the folder.
+  // Whether the folder has temporary files of outputs.
   bool has_unfinished_files() const {
     const auto is_unfinished = [](const auto& entry) { return entry.path().extension() == ".unfinished"; };
     return std::any_of(std::filesystem::directory_iterator(folder_), {}, is_unfinished);

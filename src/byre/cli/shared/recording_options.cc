@@ -42,7 +42,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--baseline", options.baseline,
-                  "Distance of left and right camera, in place of the calibration's; confirms one beyond 1 m")
+                  "Baseline of the cameras, replaces that of the calibration; confirms one outside 2 mm to 1 m")
       ->type_name("METRES")
       ->check(between(1e-4, 1e3));
   command
@@ -65,7 +65,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
   add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");
   command
       .add_option("--pair-tolerance", options.pair_tolerance_s,
-                  "Most time between the stamps of a left and a right image of one pair (0.002)")
+                  "Largest difference between the stamps of a left and a right image of a pair (0.002)")
       ->type_name("SECONDS")
       ->check(between(0.0, 0.5));
 }

@@ -14,9 +14,8 @@ namespace byre::cli {
 inline constexpr const char* kRecordingHelp =
     "Folder of a recording (EuRoC, KITTI odometry, TUM RGB-D, images), a video file, or a bag of ROS 1 or ROS 2";
 
-// --camera, --calibration, --baseline, --fps, --wheels, --no-wheels, --gyroscope, --wheels-topic, --imu-topic, --left,
-// --right and
-// --pair-tolerance: how a command reads a recording. The options must outlive the parsing of the command line.
+// Declares --camera, --calibration, --baseline, --fps, --wheels, --no-wheels, --gyroscope, --wheels-topic, --imu-topic,
+// --left, --right and --pair-tolerance. The options must outlive the parsing of the command line.
 void declare_open_options(CLI::App& command, OpenOptions& options);
 
 // --start, --end, --frames and --stride: which frames of a recording a command works on. The range must outlive the
