@@ -157,6 +157,7 @@ for log in "${failure_logs[@]}"; do
 done
 echo
 printf '%s\n' "${parts[@]}"
+python3 tools/product_size.py
 $arm64 || echo "Left out: the unit tests for 64-bit ARM, which scripts/test.sh --arm64 runs too"
 ((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"

@@ -23,15 +23,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path twin_folder() {
-  if (const char* const named = std::getenv("BYRE_TWIN")) return named;
-  const char* const home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : "/") / ".cache" / "byre" / "twin";
+// Rendered recordings: where they are, and the file of theirs that is written last.
+struct RenderedFolder {
+  const char* variable;  // environment variable that may name it
+  const char* cached;    // its name in ~/.cache/byre
+  const char* last_file;
+};
+
+const RenderedFolder& rendered_folder(Source source) {
+  static constexpr RenderedFolder kTwin{"BYRE_TWIN", "twin", "twin.yaml"};
+  static constexpr RenderedFolder kBarns{"BYRE_BARNS", "barns", "complete"};
+  return source == Source::twin ? kTwin : kBarns;
 }
 
-// The renderer writes this file last.
-bool is_complete_twin(const fs::path& folder) {
-  return fs::is_regular_file(folder / "twin.yaml");
+fs::path rendered_path(const RecordingName& name) {
+  const RenderedFolder& folder = rendered_folder(name.source);
+  if (const char* const named = std::getenv(folder.variable)) return fs::path(named) / name.name;
+  const char* const home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : "/") / ".cache" / "byre" / folder.cached / name.name;
 }
 
 fs::path folder_of(const RecordingName& name) {
@@ -149,14 +158,16 @@ KnownMap with(Map map, const KnownMap& known) {
 
 std::optional<fs::path> find(const RecordingName& name) {
   if (name.source == Source::real) return find_recording(name.name);
-  const fs::path folder = twin_folder() / name.name;
-  return is_complete_twin(folder) ? std::optional(folder) : std::nullopt;
+  const fs::path folder = rendered_path(name);
+  return fs::is_regular_file(folder / rendered_folder(name.source).last_file) ? std::optional(folder) : std::nullopt;
 }
 
 std::string why_missing(const RecordingName& name) {
   if (name.source == Source::real) return missing(name.name);
-  return "no complete recording at " + (twin_folder() / name.name).string() +
-         "; BYRE_TWIN may name the folder that holds " + name.name;
+  const std::string remedy =
+      name.source == Source::barn ? "render it by tests/missions/render_barns.sh, or set " : "set ";
+  return "no complete recording at " + rendered_path(name).string() + "; " + remedy +
+         rendered_folder(name.source).variable + " to the folder that holds " + name.name;
 }
 
 std::string name_of(const MapRecipe& recipe) {

@@ -15,8 +15,8 @@
 namespace byre {
 
 // Real recordings are looked for in $BYRE_DATA, or in ../shared/data beside the project's folder; rendered ones in
-// $BYRE_TWIN, or in ~/.cache/byre/twin.
-enum class Source : std::uint8_t { real, twin };
+// $BYRE_TWIN, or in ~/.cache/byre/twin; those of render_barns.sh in $BYRE_BARNS, or in ~/.cache/byre/barns.
+enum class Source : std::uint8_t { real, twin, barn };
 
 struct RecordingName {
   Source source = Source::real;

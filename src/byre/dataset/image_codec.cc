@@ -2,6 +2,7 @@
 
 #include "byre/dataset/opencv_library.h"
 #include "byre/input/output_file.h"
+#include "byre/input_error.h"
 
 #include <fstream>
 #include <iterator>
@@ -32,7 +33,10 @@ std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pix
                                               "_ZN2cv8imencodeERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE"
                                               "RKNS_11_InputArrayERSt6vectorIhSaIhEERKSB_IiSaIiEE"));
   std::vector<std::uint8_t> bytes;
-  encode(extension, pixels, bytes, parameters);
+  if (!encode(extension, pixels, bytes, parameters)) {
+    throw InputError("image", std::string("cannot be encoded as ") + extension,
+                     "give a name that ends in .png or .jpg");
+  }
   return bytes;
 }
 

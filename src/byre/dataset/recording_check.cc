@@ -244,10 +244,6 @@ void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
     findings.push_back({false, fmt::format("a field of view of {:.0f} degrees", check.field_of_view_deg),
                         "see that the calibration is of this camera at this resolution"});
   }
-  if (check.baseline_m > 0.0 && (check.baseline_m < 0.01 || check.baseline_m > 2.0)) {
-    findings.push_back({false, fmt::format("a baseline of {:.4f} m", check.baseline_m),
-                        "see that the extrinsic calibration is in metres"});
-  }
   if (check.features < 200.0 && check.left.of_no_use() <= check.left.images / 2) {
     findings.push_back({false, fmt::format("only {:.0f} features in an image", check.features),
                         "look at things with texture; clean the lens; see to light and focus"});

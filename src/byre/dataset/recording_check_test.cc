@@ -214,7 +214,6 @@ INSTANTIATE_TEST_SUITE_P(
                     "the calibration is off by about 0.62 px"},
         FindingCase{[](RecordingCheck& check) { check.field_of_view_deg = 3.4; }, false,
                     "a field of view of 3 degrees"},
-        FindingCase{[](RecordingCheck& check) { check.baseline_m = 7.5; }, false, "a baseline of 7.5000 m"},
         FindingCase{[](RecordingCheck& check) { check.features = 20.4; }, false, "only 20 features in an image"}));
 
 TEST(RecordingCheck, HasNoFindingWithoutProblems) {

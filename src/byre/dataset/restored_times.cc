@@ -551,7 +551,7 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
   for (std::size_t i = 0; i < std::min(steps.size(), kMostListed); ++i) {
     const double by = to_seconds(steps[i].by);
     add(fmt::format("clock set {} by {:.3f} s at {} {}: times after it are shifted to continue",
-                    by < 0.0 ? "back" : "forward", std::abs(by), names.counted.c_str(), steps[i].frame));
+                    by < 0.0 ? "back" : "forward", std::abs(by), names.counted, steps[i].frame));
   }
   if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
   if (corrections.unstamped > 0) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include <fmt/core.h>
+
 namespace byre {
 namespace {
 
@@ -130,10 +132,10 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
   const double baseline = disparity_baseline(calibration);
-  constexpr double kLongestBaseline = 10.0;  // metres, that any robot carries
-  if (baseline > kLongestBaseline) {
-    throw InputError("calibration", "the baseline is " + std::to_string(baseline) + " m long",
-                     "check the unit of the extrinsic calibration: lengths are in metres");
+  constexpr double kMost = 1000.0;  // metres; also of a baseline that a user confirms
+  if (baseline > kMost) {
+    throw InputError("calibration", fmt::format("has a baseline of {:g} m", baseline),
+                     "give lengths of the extrinsic calibration in metres");
   }
   Rectification result;
   if (is_rectified(calibration)) {

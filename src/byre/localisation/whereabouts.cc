@@ -253,6 +253,8 @@ void Whereabouts::lose() {
 
 void Whereabouts::give_up() {
   lose();
+  place_before_ = {};
+  last_accepted_.reset();
   is_way_known_ = false;
   bridge_.reset();
 }

@@ -242,6 +242,52 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
       << "the smooth pose goes as the robot does, wherever it is taken to be";
 }
 
+TEST_F(TrueWhereabouts, ExpectASubmapToLieWhereTheBridgeLedToItsBeginning) {
+  Pose far;
+  far.translation.x() = 20.0;
+  const auto begin_after = [&](std::size_t bridged_frames) {
+    Whereabouts whereabouts({}, {}, {}, true);
+    whereabouts.tell({});
+    whereabouts.note({mission_.frames[0], track_of(0), false, true, 0, false, &view_}, mission_.rig, map_);
+    whereabouts.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
+    for (std::size_t i = 1; i <= bridged_frames; ++i) {
+      whereabouts.tell(Pose{});
+      whereabouts.lose();
+      EXPECT_TRUE(whereabouts.go_on(mission_.frames[i].time, mission_.rig, map_));
+    }
+    whereabouts.begin({map_.keyframe_ids()[2]}, 1, mission_.rig, map_);
+    return whereabouts;
+  };
+  EXPECT_EQ(begin_after(0).log_odds_of_registration(far), 0.0) << "no bridge tells where it begins";
+  Whereabouts bridged = begin_after(3);
+  EXPECT_EQ(bridged.log_odds_of_registration(Pose{}), 0.0);
+  EXPECT_EQ(bridged.log_odds_of_registration(far), kLogOddsOfCarried);
+  Whereabouts hinted = bridged;
+  hinted.note_registration(far, true);
+  EXPECT_EQ(hinted.place().log_odds(), 0.0) << "a hint outweighs the bridge";
+  bridged.note_registration(far, false);
+  bridged.tell({});
+  bridged.note({mission_.frames[12], track_of(12), false, true, 1, false, &view_}, mission_.rig, map_);
+  hinted.tell({});
+  hinted.note({mission_.frames[12], track_of(12), false, true, 1, false, &view_}, mission_.rig, map_);
+  EXPECT_NEAR(bridged.place().log_odds(), hinted.place().log_odds() + kLogOddsOfCarried, 1e-9);
+}
+
+TEST_F(TrueWhereabouts, TestAPlaceAnewAfterTheLastOneWasRefuted) {
+  find_and_believe(0);
+  ASSERT_TRUE(place().is_accepted());
+  const std::size_t next = whereabouts_.trajectory().size();
+  Whereabouts lost = whereabouts_;
+  lost.lose();
+  lost.tell({});
+  lost.note({mission_.frames[next], track_of(next), true, true, 0}, mission_.rig, map_);
+  EXPECT_TRUE(lost.place().is_accepted()) << "shortly lost, it is where it was";
+  whereabouts_.give_up();
+  whereabouts_.tell({});
+  whereabouts_.note({mission_.frames[next], track_of(next), true, true, 0}, mission_.rig, map_);
+  EXPECT_FALSE(place().is_accepted());
+}
+
 TEST_F(TrueWhereabouts, BelieveASubmapThatBeginsAtOnce) {
   whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
   EXPECT_TRUE(whereabouts_.has_pose());

@@ -507,12 +507,19 @@ std::vector<MotionWarning> check_motion(const MotionSamples& samples, Timestamp 
     if (next) wheels.add(*next);
   }
   for (const BaseVelocity& sample : samples.velocities) {
-    if (check.check(sample) != StampCheck::Order::dropped) wheels.add(sample);
+    const StampCheck::Order order = check.check(sample);
+    if (order == StampCheck::Order::restarted) wheels = {};
+    if (order != StampCheck::Order::dropped) wheels.add(sample);
   }
   RateTrack rates;
   Timestamp begin = first_frame;
   for (const AngularRate& sample : samples.rates) {
-    if (check.check(sample) != StampCheck::Order::dropped) rates.add(sample);
+    const StampCheck::Order order = check.check(sample);
+    if (order == StampCheck::Order::restarted) {
+      rates = {};
+      begin = sample.time;
+    }
+    if (order != StampCheck::Order::dropped) rates.add(sample);
     if (sample.time - begin < kStride) continue;
     const auto turned = wheels.between(begin, sample.time);
     if (turned) check.note({sample.time, rotation_log(turned->rotation), rates.integral(begin, sample.time)});

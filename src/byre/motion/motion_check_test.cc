@@ -278,7 +278,8 @@ TEST(MotionCheck, RejectsFaultyMotionOfTheBody) {
   EXPECT_THAT(check.warnings(), SizeIs(2)) << "each kind once";
 }
 
-TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
+// Wheels and gyroscope of a drive of 20 s.
+MotionSamples samples_of_drive() {
   MotionSamples samples;
   for (int i = 0; i < 1000; ++i)
     samples.wheels.push_back({from_seconds(kPeriod * i), Drive::world_from_base(kPeriod * i)});
@@ -288,6 +289,11 @@ TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
         rotation_log((inverse(Drive::world_from_base(t)) * Drive::world_from_base(t + 0.01)).rotation);
     samples.rates.push_back({from_seconds(t), turn / 0.01});
   }
+  return samples;
+}
+
+TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
+  MotionSamples samples = samples_of_drive();
   EXPECT_THAT(check_motion(samples, {}, from_seconds(20.0)), IsEmpty());
   MotionLimits limits;
   limits.max_turn_rate = 100.0;
@@ -295,6 +301,22 @@ TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
   const std::vector<MotionWarning> warnings = check_motion(samples, {}, from_seconds(20.0), limits);
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_THAT(warnings.front().what, HasSubstr("57 times"));
+}
+
+TEST(CheckMotion, ComparesRatesWithWheelsAlsoAfterTheClockWasSetBack) {
+  MotionSamples samples = samples_of_drive();
+  for (StampedPose& sample : samples.wheels) {
+    if (sample.time >= from_seconds(2.0)) sample.time -= std::chrono::hours(1);
+  }
+  for (AngularRate& sample : samples.rates) {
+    if (sample.time < from_seconds(2.0)) continue;
+    sample.time -= std::chrono::hours(1);
+    sample.rate *= 180.0 / std::numbers::pi;
+  }
+  MotionLimits limits;
+  limits.max_turn_rate = 100.0;
+  const std::vector<MotionWarning> warnings = check_motion(samples, from_seconds(-3600.0), from_seconds(20.0), limits);
+  EXPECT_THAT(warnings, Contains(Field(&MotionWarning::what, HasSubstr("57 times"))));
 }
 
 TEST(CheckMotion, FindsSamplesOfAnotherClock) {

@@ -208,9 +208,9 @@ void Session::take_turn(const RigTurn& turn) {
 InputFrame Session::input_of(const Frame& rectified, const std::optional<BodyMotion>& motion) {
   Frame frame = mapper_.corrected(rectified);
   if (mission_) frame = mission_->corrected(frame);
+  const InputEvidence evidence = input_watch_.look_at(frame, rig_, {motion, whereabouts_.camera_motion()});
   frame = shutter_.corrected(frame, rig_, whereabouts_.camera_motion());
   const ImageFault fault = frame.condition ? fault_of(*frame.condition, options_.image) : ImageFault::none;
-  const InputEvidence evidence = input_watch_.look_at(frame, rig_, {motion, whereabouts_.camera_motion()});
   mapper_.note_images(evidence.cameras_disagree);
   return {std::move(frame), fault, evidence};
 }

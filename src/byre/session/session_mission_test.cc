@@ -351,6 +351,56 @@ TEST(Mission, FindsItselfWhereItWasCarried) {
   EXPECT_LT(worst_trusted(reports, truth), 0.03);
 }
 
+// Frames 30 to 39 show nothing; wheels measure all motion, and the body's pose then is that of these frames.
+struct BlindedDrive {
+  std::vector<Frame> frames;
+  Trajectory by_wheels;
+};
+
+std::vector<FrameReport> reports_of(Session& session, const BlindedDrive& drive) {
+  session.hear({}, [](Timestamp, Timestamp) { return std::optional(100.0); });
+  std::vector<FrameReport> reports;
+  for (std::size_t i = 0; i < drive.frames.size(); ++i) {
+    std::optional<BodyMotion> motion;
+    if (i > 0) motion = inverse(drive.by_wheels[i - 1].world_from_body) * drive.by_wheels[i].world_from_body;
+    const bool is_blind = i >= 30 && i < 40;
+    reports.push_back(session.process(is_blind ? without_features(drive.frames[i]) : drive.frames[i], motion));
+  }
+  return reports;
+}
+
+TEST(Mission, FollowsWheelsWhereLittleSpeaksForAPlaceElsewhere) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session session = session_on(mapped(1.0));
+  BlindedDrive drive{{}, {}};
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Frame elsewhere = at_time_of(left_third_of(thinned(mission.frames[i + 40])), mission.frames[i]);
+    drive.frames.push_back(i < 40 ? mission.frames[i] : elsewhere);
+    drive.by_wheels.push_back(mission.truth[i]);
+  }
+  const auto reports = reports_of(session, drive);
+  for (std::size_t i = 40; i < reports.size(); ++i) {
+    ASSERT_TRUE(reports[i].map_from_body) << i;
+    EXPECT_LT((reports[i].map_from_body->translation - mission.truth[i].world_from_body.translation).norm(), 0.3) << i;
+  }
+}
+
+TEST(Mission, FindsItselfWhereItWasCarriedThoughWheelsStoodStill) {
+  const SimulatedMission mission = circling(1.0, 2);
+  Session session = session_on(mapped(1.0));
+  BlindedDrive drive{{}, {}};
+  Trajectory truth;
+  for (std::size_t i = 0; i < 80; ++i) {
+    const std::size_t place = i < 30 ? i : i + 40;
+    drive.frames.push_back(at_time_of(mission.frames[place], mission.frames[i]));
+    drive.by_wheels.push_back(mission.truth[std::min<std::size_t>(i, 29)]);
+    truth.push_back(mission.truth[place]);
+  }
+  const auto reports = reports_of(session, drive);
+  for (std::size_t i = 60; i < reports.size(); ++i) EXPECT_EQ(reports[i].health.verdict, Verdict::trusted) << i;
+  EXPECT_LT(worst_trusted(reports, truth), 0.03);
+}
+
 TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   const SimulatedMission mission = circling(1.0, 2);
   Map map = true_map(circling(1.0, 1), 4, Origin::offline);

@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/simulation/calibration_error.h"
+#include "byre/simulation/divided_camera.h"
 #include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/seeded_draws.h"
 
@@ -24,11 +25,22 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   require(options.duration_s > 0.0 && options.duration_s <= 36000.0, "the duration must be from 0 to 36000 seconds");
   require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
   require(options.image_divisor >= 1 && options.image_divisor <= 16, "images can be divided by 1 to 16");
+  require(!options.image_size || std::ranges::all_of(*options.image_size, [](int n) { return n >= 32 && n <= 4096; }),
+          "images must be from 32 to 4096 pixels wide and high");
   require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");
   require(options.night.light > 0.0 && options.night.light <= 10.0, "the share of light must be from 0 to 10");
   require(options.night.headlight >= 0.0 && options.night.headlight <= 100.0, "the headlight must be from 0 to 100");
   require_sensible(options.camera);
   return options;
+}
+
+Calibration calibration_of(const CowshedRecordingOptions& options) {
+  if (!options.image_size) return feeding_robot_calibration(options.image_divisor);
+  Calibration calibration = feeding_robot_calibration(1);
+  const auto [width, height] = *options.image_size;
+  calibration.left = resized_camera(calibration.left, width, height);
+  calibration.right->camera = resized_camera(calibration.right->camera, width, height);
+  return calibration;
 }
 
 // The clocks of missions do not overlap.
@@ -93,7 +105,7 @@ struct CowshedRecording::Scene {
         pictures(draw_barn_pictures(options.barn.seed, options.threads)),
         still(lit(barn, options.threads)),
         renderer(still, pictures, barn.air, options.threads),
-        calibration(feeding_robot_calibration(options.image_divisor)),
+        calibration(calibration_of(options)),
         told_calibration(perturbed(calibration, options.camera.calibration_level, options.camera.calibration_seed)) {
     const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
     add_camera(options, calibration.left, calibration.body_from_left, StereoSide::left);

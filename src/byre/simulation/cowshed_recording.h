@@ -28,8 +28,9 @@ struct CowshedRecordingOptions {
   double duration_s = 40.0;
   TurnKind turn = TurnKind::arc;
   double frame_rate_hz = 20.0;
-  int image_divisor = 1;  // 1: 752 x 480 pixels
-  double dirt = 0.0;      // dirt on the lenses: 0 none, 1 a dozen of soft spots each
+  int image_divisor = 1;                           // 1: 752 x 480 pixels
+  std::optional<std::array<int, 2>> image_size{};  // width and height in pixels; empty: by the divisor
+  double dirt = 0.0;                               // dirt on the lenses: 0 none, 1 a dozen of soft spots each
   NightOptions night;
   CameraImperfection camera;
   std::optional<MotionSensorOptions> motion{};  // wheels and gyroscope that are recorded too; their seed is the barn's

@@ -393,6 +393,9 @@ TEST_F(WrittenCowshed, IsRefusedWhenItsOptionsMakeNoSense) {
   options.image_divisor = 0;
   EXPECT_THROW(CowshedRecording{options}, InputError);
   options = {};
+  options.image_size = {640, 0};
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+  options = {};
   options.camera.gain = 0.0;
   EXPECT_THROW(CowshedRecording{options}, InputError);
   options = {};

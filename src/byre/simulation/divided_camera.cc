@@ -20,4 +20,15 @@ Camera divided_camera(Camera camera, int divisor) {
   return camera;
 }
 
+Camera resized_camera(Camera camera, int width, int height) {
+  const double scale = static_cast<double>(width) / camera.width;
+  camera.fx *= scale;
+  camera.fy *= scale;
+  camera.cx = (camera.cx + 0.5) * scale - 0.5;
+  camera.cy = (camera.cy + 0.5 - 0.5 * camera.height) * scale + 0.5 * height - 0.5;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
 }  // namespace byre

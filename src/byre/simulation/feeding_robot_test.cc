@@ -1,6 +1,7 @@
 #include "byre/simulation/feeding_robot.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/simulation/divided_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +36,18 @@ TEST(FeedingRobot, SeesTheSameWithSmallerImages) {
   const Vector3d point(0.4, -0.2, 2.0);
   const Eigen::Vector2d expected = (whole.project(point).value().array() + 0.5) / 4.0 - 0.5;
   EXPECT_LT((small.project(point).value() - expected).norm(), 1e-9);
+}
+
+TEST(FeedingRobot, SeesAsWideWithImagesOfAnotherShape) {
+  const Camera whole = feeding_robot_calibration(1).left;
+  const Camera wide = resized_camera(whole, 1280, 720);
+  EXPECT_EQ(wide.width, 1280);
+  EXPECT_EQ(wide.height, 720);
+  const Vector3d point(0.4, -0.2, 2.0);
+  const Eigen::Vector2d from_middle = whole.project(point).value() - Eigen::Vector2d(375.5, 239.5);
+  const Eigen::Vector2d expected = Eigen::Vector2d(639.5, 359.5) + 1280.0 / 752.0 * from_middle;
+  EXPECT_LT((wide.project(point).value() - expected).norm(), 1e-9);
+  EXPECT_EQ(resized_camera(whole, 752, 480).cy, whole.cy);
 }
 
 TEST(FeedingCourse, ReturnsToWhereItBeganAndAMetreFurther) {

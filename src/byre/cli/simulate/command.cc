@@ -6,8 +6,11 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/simulate/imperfection_options.h"
+#include "byre/input/printable.h"
 #include "byre/input/report_row.h"
 
+#include <array>
+#include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -137,6 +140,20 @@ void declare_night(CLI::App& command, NightOptions& night) {
   out->needs(add_time("--lights-on", night.lights_on, "When it is on again")->needs(out));
 }
 
+// Throws CLI::ValidationError unless the text is a width and a height.
+std::array<int, 2> size_of(const std::string& text) {
+  std::array<int, 2> size{};
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size[0]);
+  const bool has_height = width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_height ? std::from_chars(width.ptr + 1, end, size[1]) : width;
+  if (!has_height || height.ec != std::errc{} || height.ptr != end) {
+    throw CLI::ValidationError("--size",
+                               "must be WIDTHxHEIGHT in pixels, such as 640x480, not \"" + printable(text) + "\"");
+  }
+  return size;
+}
+
 void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
   command.add_option("--duration", options.duration_s, "Of the drive; a longer one goes farther, then round again")
       ->type_name("SECONDS")
@@ -154,6 +171,12 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
       ->type_name("N")
       ->check(between(1, 16))
       ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--size", [&options](const std::string& text) { options.image_size = size_of(text); },
+          "Of images in pixels, as wide a view as without; such as 640x480")
+      ->type_name("WxH")
+      ->excludes("--divide");
   command.add_option("--threads", options.threads, "To render with (0: as many as the machine has)")
       ->type_name("N")
       ->check(between(0, 256))

@@ -30,6 +30,17 @@ TEST_F(SimulateProgram, RendersARecordingThatByreReads) {
   EXPECT_TRUE(fs::exists(folder_ / "barn" / "plan" / "picks.csv"));
 }
 
+TEST_F(SimulateProgram, RendersImagesOfTheSizeAskedFor) {
+  const std::string quick = "simulate cowshed --duration 0.2 --rate 10 ";
+  EXPECT_EQ(run(quick + "--size 96x80 -o barn --quiet").exit_code, 0);
+  const auto recording = open_recording(folder_ / "barn", {});
+  EXPECT_EQ(recording->calibration().left.width, 96);
+  EXPECT_EQ(recording->calibration().left.height, 80);
+  const Outcome refused = run(quick + "--size 96:80 -o barn2");
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_THAT(refused.errors, HasSubstr("--size: must be WIDTHxHEIGHT in pixels, such as 640x480, not \"96:80\""));
+}
+
 TEST_F(SimulateProgram, WritesTheSameBytesForTheSameOptions) {
   EXPECT_EQ(run(kSmall + "--threads 1 -o one --quiet").exit_code, 0);
   EXPECT_EQ(run(kSmall + "--threads 2 -o two --quiet").exit_code, 0);

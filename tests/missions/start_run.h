@@ -1,0 +1,56 @@
+#pragma once
+
+#include "imperfection.h"
+#include "mission_score.h"
+
+#include "byre/recording.h"
+#include "byre/slam/offline_map.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace byre {
+
+// Missions that start at regular times of a recording, on a map.
+struct StartPlan {
+  double every_s = 0.5;                                // seconds between starts
+  double length_s = 11.0;                              // duration of each mission, seconds
+  double from_s = 0.0;                                 // first start, seconds of the recording
+  double to_s = 1e9;                                   // last start
+  std::optional<std::pair<double, double>> cover_s{};  // seconds after each start between which images are black
+};
+
+struct StartedMission {
+  double start_s = 0.0;  // seconds of the recording
+  std::vector<MissionFrame> frames;
+  MissionScore score;
+  // The map was in view for kMaxTimeToFind, and no pose was trusted in that time.
+  bool is_found_late = false;
+};
+
+// Sums over all starts.
+struct StartTotals {
+  int starts = 0;
+  int frames = 0;
+  int with_pose = 0;
+  int trusted_right = 0;             // frames that are trusted and within kMaxTrustedError
+  int trusted_wrong = 0;             // frames that are trusted and farther off
+  int starts_wrong = 0;              // starts with such a frame
+  int found_late = 0;                // starts that are found late
+  double worst_trusted_error = 0.0;  // metres
+
+  void add(const StartedMission& mission);
+};
+
+inline constexpr double kMaxTimeToFind = 3.0;  // seconds
+inline constexpr int kPointsInView = 60;       // points that keyframes near the true pose saw: the map is in view
+
+// Starts missions with the recording's images, extracted once, and its wheels and gyroscope where they were opened.
+// each: called after each mission. Throws InputError for damaged data.
+StartTotals run_starts(Recording& recording, const Trajectory& truth, std::shared_ptr<const OfflineMap> map,
+                       const Similarity& truth_from_map, const Imperfection& imperfection, const StartPlan& plan,
+                       const std::function<void(const StartedMission&)>& each);
+
+}  // namespace byre
