@@ -132,7 +132,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
   const double baseline = disparity_baseline(calibration);
-  constexpr double kMost = 1000.0;  // metres; also of a baseline that a user confirms
+  constexpr double kMost = 10.0;  // metres; also of a baseline that a user confirms
   if (baseline > kMost) {
     throw InputError("calibration", fmt::format("has a baseline of {:g} m", baseline),
                      "give lengths of the extrinsic calibration in metres");

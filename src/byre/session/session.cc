@@ -241,9 +241,15 @@ Session::Located Session::locate(const InputFrame& input) {
   };
   drop_non_finite();
   if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
-  const auto is_out_of_reach = [&] { return whereabouts_.is_out_of_reach(frame, *located.track, rig_, map()); };
+  // Measured motion leads elsewhere, and the offline points in view do not outweigh that. Then the motion is followed.
+  const auto contradicts_motion = [&] {
+    const HybridTrack& track = *located.track;
+    if (!whereabouts_.is_out_of_reach(frame, track, rig_, map())) return false;
+    if (!mission_ || track.offline_inliers == 0) return true;
+    return mission_->log_odds_of(frame, track, rig_, lens_watch_.hidden()) + kLogOddsOfCarried < 0.0;
+  };
   const bool is_sure = whereabouts_.place().is_believed();
-  if (located.track && (is_out_of_reach() || (!is_sure && tracker_.is_doubtful(*located.track, scene)))) {
+  if (located.track && (contradicts_motion() || (!is_sure && tracker_.is_doubtful(*located.track, scene)))) {
     located.track.reset();
   }
   located.from_nothing = located.track && is_led_back;
@@ -251,12 +257,7 @@ Session::Located Session::locate(const InputFrame& input) {
     Tracker::Find find = tracker_.find(frame, scene);
     located.track = std::move(find.track);
     drop_non_finite();
-    // Where measured motion leads elsewhere, a find needs evidence in proportion; until then that motion is followed.
-    const auto is_less_likely = [&] {
-      return !mission_ ||
-             mission_->log_odds_of(frame, *located.track, rig_, lens_watch_.hidden()) + kLogOddsOfCarried < 0;
-    };
-    if (located.track && !hint_.get() && is_out_of_reach() && is_less_likely()) located.track.reset();
+    if (located.track && !hint_.get() && contradicts_motion()) located.track.reset();
     located.refused = find.refused;
     located.from_nothing = located.track.has_value();
     located.is_by_hint = located.from_nothing && hint_.get();

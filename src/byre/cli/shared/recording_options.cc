@@ -44,7 +44,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
       .add_option("--baseline", options.baseline,
                   "Baseline of the cameras, replaces that of the calibration; confirms one outside 2 mm to 1 m")
       ->type_name("METRES")
-      ->check(between(1e-4, 1e3));
+      ->check(between(1e-4, 10.0));
   command
       .add_option_function<std::string>(
           "--fps", set_frame_rate,
