@@ -1,5 +1,7 @@
 #include "byre/evaluation/map_frame_error.h"
 
+#include "byre/geometry/decompositions.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,6 +79,53 @@ class MapDeformation {
   std::map<Cell, std::vector<Sample>> cells_;
 };
 
+// A straight path: positions leave the turn about it open, or to noise.
+struct StraightPath {
+  Eigen::Vector3d true_middle;
+  Eigen::Vector3d middle;     // in the map
+  Eigen::Vector3d direction;  // in the truth
+};
+
+std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
+  constexpr double kWidest = 0.1;  // metres, root mean square beside the line
+  const double share = 1.0 / static_cast<double>(pairs.size());
+  StraightPath path{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const PosePair& pair : pairs) {
+    path.true_middle += share * pair.true_world_from_body.translation;
+    path.middle += share * pair.estimated_world_from_body.translation;
+  }
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d from_middle = pair.true_world_from_body.translation - path.true_middle;
+    scatter += share * from_middle * from_middle.transpose();
+  }
+  const auto [left, spread, right] = singular_values(scatter);
+  if (!(spread[0] > kWidest * kWidest) || spread[1] + spread[2] > kWidest * kWidest) return std::nullopt;
+  path.direction = left.col(0);
+  return path;
+}
+
+// The direction by positions, the turn about it by orientations.
+std::optional<Similarity> fit_to_straight_path(const StraightPath& path, const std::vector<PosePair>& pairs,
+                                               Scale scale) {
+  Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();  // in the map, times the true length
+  double true_way = 0.0;                          // squared
+  for (const PosePair& pair : pairs) {
+    turns +=
+        (pair.true_world_from_body.rotation * pair.estimated_world_from_body.rotation.conjugate()).toRotationMatrix();
+    const double along = path.direction.dot(pair.true_world_from_body.translation - path.true_middle);
+    way += along * (pair.estimated_world_from_body.translation - path.middle);
+    true_way += along * along;
+  }
+  if (!(way.norm() > 0.0)) return std::nullopt;
+  const Eigen::Quaterniond by_orientations = nearest_rotation(turns);
+  const Eigen::Quaterniond rotation =
+      rotation_between(by_orientations * way.normalized(), path.direction) * by_orientations;
+  const double factor = scale == Scale::free ? true_way / way.norm() : 1.0;
+  return Similarity{factor, {rotation.normalized(), path.true_middle - rotation * (factor * path.middle)}};
+}
+
 }  // namespace
 
 double PoseError::rotation() const {
@@ -87,6 +136,10 @@ MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, cons
   constexpr std::size_t kFewestPoses = 3;
   const std::vector<PosePair> pairs = associate(world_from_body, map_truth, {});
   if (pairs.size() < kFewestPoses) return {};
+  if (const auto path = straight_path(pairs)) {
+    const auto fit = fit_to_straight_path(*path, pairs, scale);
+    return fit ? MapAlignment{*fit, static_cast<int>(pairs.size()), pairs} : MapAlignment{};
+  }
   const auto error = absolute_trajectory_error(pairs, scale);
   if (!error) return {};
   return {error->truth_from_estimate, static_cast<int>(pairs.size()), pairs};

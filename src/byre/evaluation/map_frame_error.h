@@ -13,6 +13,7 @@ struct MapAlignment {
   std::vector<PosePair> path{};  // poses that the alignment rests on; estimated ones in the map's frame
 };
 
+// Least squares of positions (Umeyama 1991). Of a straight path, the turn about it is that of the orientations.
 // By poses of the map itself, never by what is found or tracked in it: its keyframes (keyframe_path), or all frames of
 // the run that made it, which are many more. map_truth holds the truth at their times, where it does: with less than
 // three of them aligned nothing is.

@@ -31,6 +31,21 @@ TEST(MapAlignment, RestsOnPosesOfTheMap) {
   EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTurnedTruthFromMap).norm(), 0.0, 1e-9);
 }
 
+// Millimetres of noise beside a straight path would turn the map about it by any angle.
+TEST(MapAlignment, TurnsAboutAStraightPathAsOrientationsDo) {
+  Trajectory truth, estimate;
+  for (int i = 0; i < 20; ++i) {
+    const Pose true_pose{rotation_exp({0.02, 0.01, 0.0}), {0.5 * i, 0.0, 0.0}};
+    Pose estimated = inverse(kTurnedTruthFromMap) * true_pose;
+    estimated.translation += 0.003 * Eigen::Vector3d(0.0, std::sin(2.0 * i), std::cos(3.0 * i));
+    truth.push_back({from_seconds(i), true_pose});
+    estimate.push_back({from_seconds(i), estimated});
+  }
+  const MapAlignment alignment = align_to_truth(estimate, Scale::fixed, truth);
+  const Pose error = inverse(alignment.truth_from_map.target_from_source) * kTurnedTruthFromMap;
+  EXPECT_LT(rotation_log(error.rotation).norm(), 0.001);
+}
+
 TEST(MapAlignment, IsLeftOutWhereTheTruthCoversTooFewPoses) {
   EXPECT_EQ(align_to_truth(poses_of_map(2), Scale::fixed, true_path()).poses, 0);
   EXPECT_EQ(align_to_truth(poses_of_map(4), Scale::fixed, {}).poses, 0);
