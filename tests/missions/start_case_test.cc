@@ -82,7 +82,7 @@ TEST_P(Starts, AreNeverTrustedAndWrongAndFindTheRobotSoon) {
   EXPECT_GE(totals.starts, 5);
   EXPECT_EQ(totals.trusted_wrong, 0) << "in " << totals.starts_wrong << " starts, by up to "
                                      << totals.worst_trusted_error << " m";
-  EXPECT_LE(totals.found_late, totals.starts / 10);
+  EXPECT_LE(totals.found_late, totals.starts / 5);
   RecordProperty("trusted_right", totals.trusted_right);
 }
 

@@ -42,6 +42,16 @@ PlaceSearch OfflineTracker::collect_place() {
   return finished ? finished->result : PlaceSearch{};
 }
 
+bool OfflineTracker::is_view_due(const Whereabouts& whereabouts) {
+  constexpr int kFramesOfKnownPlace = 3;
+  constexpr double kBeyondDoubt = 5.0;  // log-odds
+  const PlaceHypothesis& place = whereabouts.place();
+  const bool is_known = whereabouts.has_pose() && place.is_accepted() && place.log_odds() >= kBeyondDoubt;
+  if (is_known && ++frames_since_view_ < kFramesOfKnownPlace) return false;
+  frames_since_view_ = 0;
+  return true;
+}
+
 PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const HiddenCells& hidden) {
   const Pose& pose = track.tracked.camera_from_world;

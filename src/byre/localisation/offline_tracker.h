@@ -70,6 +70,9 @@ class OfflineTracker {
     bool agrees_with_hint = false;                 // it is where a hint had led, and nowhere else
     std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
   };
+  // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then one in
+  // three, to save time.
+  bool is_view_due(const Whereabouts& whereabouts);
   // The part of the map that a frame, tracked in the map's frame, shows.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // Log-odds of a frame's pose by what that frame alone shows.
@@ -102,6 +105,7 @@ class OfflineTracker {
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction
 
   Mission mission_;
+  int frames_since_view_ = 0;
   ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view_of
   ReusedVector<PointId> nearby_points_;        // points seen by these keyframes
   RivalPlace rival_;

@@ -299,7 +299,9 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   if (located.from_nothing && !mission_ && whereabouts_.motion().told()) keyframe_watch_.note_found();
   const bool is_on_map = mission_ && is_registered(mapper_);
   const std::optional<PlaceView> view =
-      is_on_map ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden())) : std::nullopt;
+      is_on_map && (located.from_nothing || mission_->is_view_due(whereabouts_))
+          ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden()))
+          : std::nullopt;
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
                          located.is_by_hint, view ? &*view : nullptr},
