@@ -99,7 +99,10 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
   }
   std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
   log_odds_ = prior_ + evidence();
-  if (log_odds_ >= accept_) is_accepted_ = true;
+  if (log_odds_ >= accept_) {
+    is_accepted_ = true;
+    prior_ = std::max(prior_, 0.0);  // outweighed by cells that may be forgotten before it is
+  }
   if (log_odds_ <= kReject) is_accepted_ = false;
 }
 

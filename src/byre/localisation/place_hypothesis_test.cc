@@ -72,6 +72,12 @@ TEST(PlaceHypothesis, NeedsMoreEvidenceForAPlaceOutOfReach) {
   EXPECT_TRUE(observed(PlaceHypothesis(against, 0), view_of_room(16, 0), 1).is_accepted());
 }
 
+TEST(PlaceHypothesis, StaysAcceptedWhereCellsThatOutweighedItsPriorAreForgotten) {
+  PlaceHypothesis place = observed(PlaceHypothesis(-10.0, 0), view_of_room(16, 0), 1);
+  ASSERT_TRUE(place.is_accepted());
+  EXPECT_TRUE(observed(place, view_of_room(2, 0), 200).is_accepted());
+}
+
 TEST(PlaceHypothesis, IsRejectedOnceTheMapIsNoLongerSeen) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
   ASSERT_TRUE(place.is_accepted());
