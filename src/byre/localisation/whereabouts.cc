@@ -135,17 +135,18 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
 
 // The test of a pose found without a prediction. It starts anew, with negative log-odds if the pose is out of the
 // robot's reach. Within a second of an accepted pose, and within reach, the earlier test continues.
-PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body) const {
+PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig,
+                                                const MapView& map) const {
   constexpr double kSlack = 0.5;    // metres, error of poses
   constexpr double kShortly = 1.0;  // seconds
   const int frames = registration_.confirmations;
-  if (trajectory_.empty() || !last_believed_) return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
+  if (trajectory_.believed_count() == 0 || !last_believed_)
+    return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
+  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
   // Frames bridged by a well-known motion do not count as time without a pose.
   const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
-  const auto seconds_since = [&](Timestamp then) {
-    return to_seconds(time - (is_bridged ? trajectory_.back().time : then));
-  };
-  const double shift = (body.translation - odometry_.map_from_body().translation).norm();
+  const auto seconds_since = [&](Timestamp then) { return to_seconds(time - (is_bridged ? believed.time : then)); };
+  const double shift = (body.translation - body_pose(rig, camera_from_world(map, believed)).translation).norm();
   if (shift > kSlack + registration_.max_speed * seconds_since(*last_believed_)) {
     return PlaceHypothesis(kLogOddsOfCarried, kConfirmationsOfJump, registration_.accept_log_odds);
   }
@@ -188,7 +189,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
   Progress progress{0.0, place_.is_accepted(), last_believed_.has_value()};
   if (seen.from_nothing && on_offline_map_) {
-    place_ = hypothesis_of_find(seen.frame.time, body);
+    place_ = hypothesis_of_find(seen.frame.time, body, rig, map);
     is_by_hint_ = seen.is_by_hint;
     bridged_beginning_.reset();
   }
@@ -241,7 +242,8 @@ void Whereabouts::begin(const std::vector<KeyframeId>& keyframes, std::size_t su
 }
 
 void Whereabouts::lose() {
-  if (has_pose_) place_before_ = std::exchange(place_, {});
+  if (has_pose_ && place_.is_believed() && place_.is_accepted()) place_before_ = place_;
+  if (has_pose_) place_ = {};
   has_pose_ = false;
   is_by_hint_ = false;
   motion_.lose();

@@ -125,7 +125,7 @@ class Whereabouts {
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:
-  PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body) const;
+  PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig, const MapView& map) const;
   void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const;
@@ -172,7 +172,7 @@ class Whereabouts {
   std::optional<Carried> odometry_open_;      // covariance by bridges, at the odometry pose where the last one ended
   Odometry odometry_;
   PlaceHypothesis place_;
-  PlaceHypothesis place_before_;  // before the pose was lost
+  PlaceHypothesis place_before_;  // the last one that was believed and accepted, before its pose was lost
   bool is_by_hint_ = false;
   std::optional<Timestamp> last_believed_;  // in the reports' frame
   std::optional<Timestamp> last_accepted_;  // in the reports' frame

@@ -275,6 +275,24 @@ TEST_F(TrueWhereabouts, ExpectASubmapToLieWhereTheBridgeLedToItsBeginning) {
   EXPECT_NEAR(bridged.place().log_odds(), hinted.place().log_odds() + kLogOddsOfCarried, 1e-9);
 }
 
+TEST_F(TrueWhereabouts, MeasureTheReachOfAFindFromTheLastBelievedPose) {
+  whereabouts_ = Whereabouts({.max_speed = 0.5}, {}, {}, true);
+  find_and_believe(0);
+  ASSERT_TRUE(place().is_accepted());
+  const std::size_t next = whereabouts_.trajectory().size();
+  const auto find_elsewhere = [&](double seconds_later) {
+    Frame seen = mission_.frames[next];
+    seen.time += from_seconds(seconds_later);
+    whereabouts_.lose();
+    whereabouts_.tell({});
+    whereabouts_.note({seen, track_of(39), true, true, 0}, mission_.rig, map_);
+  };
+  find_elsewhere(0.0);
+  EXPECT_EQ(place().log_odds(), kLogOddsOfCarried);
+  find_elsewhere(1.5);
+  EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near a find that was not believed";
+}
+
 TEST_F(TrueWhereabouts, TestAPlaceAnewAfterTheLastOneWasRefuted) {
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
