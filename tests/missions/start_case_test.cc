@@ -86,8 +86,11 @@ TEST_P(Starts, AreNeverTrustedAndWrongAndFindTheRobotSoon) {
   RecordProperty("trusted_right", totals.trusted_right);
 }
 
-INSTANTIATE_TEST_SUITE_P(Barn, Starts, testing::ValuesIn(start_cases()),
-                         [](const testing::TestParamInfo<StartCase>& info) { return info.param.name; });
+std::string name_of_start(const testing::TestParamInfo<StartCase>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Barn, Starts, testing::ValuesIn(start_cases()), name_of_start);
 
 }  // namespace
 }  // namespace byre

@@ -390,9 +390,9 @@ const std::vector<double>& hostile_values() {
 }
 
 void expect_finite(const FrameReport& report) {
-  if (report.map_from_body) EXPECT_TRUE(is_finite(*report.map_from_body));
-  if (report.odometry_from_body) EXPECT_TRUE(is_finite(*report.odometry_from_body));
-  if (report.correction) EXPECT_TRUE(is_finite(*report.correction));
+  EXPECT_TRUE(!report.map_from_body || is_finite(*report.map_from_body));
+  EXPECT_TRUE(!report.odometry_from_body || is_finite(*report.odometry_from_body));
+  EXPECT_TRUE(!report.correction || is_finite(*report.correction));
   EXPECT_TRUE(report.covariance.allFinite());
   EXPECT_TRUE(report.odometry_covariance.allFinite());
   const Health& health = report.health;
