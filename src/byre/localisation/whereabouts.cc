@@ -4,8 +4,11 @@
 #include "byre/slam/keyframes.h"
 #include "byre/slam/planar_prior.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 namespace byre {
 namespace {
@@ -133,6 +136,24 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
+// Log-odds of a find by its Mahalanobis distance from where measured motion leads since the last trusted pose. 0 where
+// that is not known, or the distance is usual.
+double Whereabouts::log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const {
+  constexpr double kSlack = 0.05;  // share of the depth of what was seen, and radians
+  constexpr double kUsual = 6.0;   // squared distance, expected of six numbers
+  if (!reach_ || !since_believed_ || quality_.verdict == Verdict::untrusted || trajectory_.believed_count() == 0) {
+    return 0.0;
+  }
+  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
+  const Pose led = body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body;
+  Matrix6 covariance = (bridge_ ? *bridge_ * *since_believed_ : *since_believed_).covariance;
+  covariance.diagonal().head<3>().array() += std::pow(kSlack * scene_depth_, 2);
+  covariance.diagonal().tail<3>().array() += kSlack * kSlack;
+  const Vector6 apart = log_pose(inverse(led) * body);
+  const double distance = apart.dot(covariance.ldlt().solve(apart));
+  return std::isfinite(distance) ? std::max(kLogOddsOfCarried, -0.5 * std::max(0.0, distance - kUsual)) : 0.0;
+}
+
 // The test of a pose found without a prediction. It starts anew, with negative log-odds if the pose is out of the
 // robot's reach. Within a second of an accepted pose, and within reach, the earlier test continues.
 PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig,
@@ -150,8 +171,9 @@ PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body
   if (shift > kSlack + registration_.max_speed * seconds_since(*last_believed_)) {
     return PlaceHypothesis(kLogOddsOfCarried, kConfirmationsOfJump, registration_.accept_log_odds);
   }
-  if (!last_accepted_ || seconds_since(*last_accepted_) > kShortly)
-    return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
+  if (!last_accepted_ || seconds_since(*last_accepted_) > kShortly) {
+    return PlaceHypothesis(log_odds_of_way(body, rig, map), frames, registration_.accept_log_odds);
+  }
   PlaceHypothesis found_again = place_before_;
   found_again.find_again(frames);
   return found_again;

@@ -125,6 +125,7 @@ class Whereabouts {
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:
+  double log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const;
   PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig, const MapView& map) const;
   void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);

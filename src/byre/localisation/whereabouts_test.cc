@@ -293,6 +293,27 @@ TEST_F(TrueWhereabouts, MeasureTheReachOfAFindFromTheLastBelievedPose) {
   EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near a find that was not believed";
 }
 
+TEST_F(TrueWhereabouts, DoubtAFindManySigmasFromWhereMeasuredMotionLed) {
+  whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
+  find_and_believe(0);
+  whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
+  const std::size_t here = whereabouts_.trajectory().size() - 1;
+  const auto log_odds_of_find = [&](std::size_t frame, bool is_measured) {
+    Whereabouts whereabouts = whereabouts_;
+    whereabouts.lose();
+    BodyMotion standing = Pose{};
+    standing.covariance = 0.01 * Matrix6::Identity();
+    whereabouts.tell(is_measured ? std::optional(standing) : std::nullopt);
+    Frame seen = mission_.frames[here];
+    seen.time += from_seconds(2.0);  // in which the robot may have driven there
+    whereabouts.note({seen, track_of(frame), true, true, 0}, mission_.rig, map_);
+    return whereabouts.place().log_odds();
+  };
+  EXPECT_EQ(log_odds_of_find(39, true), kLogOddsOfCarried);
+  EXPECT_EQ(log_odds_of_find(39, false), 0.0);
+  EXPECT_EQ(log_odds_of_find(here, true), 0.0);
+}
+
 TEST_F(TrueWhereabouts, TestAPlaceAnewAfterTheLastOneWasRefuted) {
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
