@@ -305,7 +305,7 @@ TEST_F(TrueWhereabouts, DoubtAFindManySigmasFromWhereMeasuredMotionLed) {
     standing.covariance = 0.01 * Matrix6::Identity();
     whereabouts.tell(is_measured ? std::optional(standing) : std::nullopt);
     Frame seen = mission_.frames[here];
-    seen.time += from_seconds(2.0);  // in which the robot may have driven there
+    seen.time += from_seconds(2.0);  // enough to drive there
     whereabouts.note({seen, track_of(frame), true, true, 0}, mission_.rig, map_);
     return whereabouts.place().log_odds();
   };
