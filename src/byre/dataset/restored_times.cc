@@ -22,7 +22,7 @@ using Times = std::vector<Timestamp>;
 constexpr std::size_t kFew = 10;        // largest number of late items, or wrong stamps, in a row
 constexpr std::size_t kWindow = 20;     // items over which reception delays are compared
 constexpr double kContinuous = 1.5;     // largest time, in intervals, between two items without a gap
-constexpr Timestamp kLeastStep = 20ms;  // shorter steps cannot be told from jitter
+constexpr Timestamp kLeastStep = 20ms;  // a shorter step looks like jitter
 
 // Later stamps are wrong. The difference of two stamps up to this one does not overflow.
 constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);

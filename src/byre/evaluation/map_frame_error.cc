@@ -79,7 +79,7 @@ class MapDeformation {
   std::map<Cell, std::vector<Sample>> cells_;
 };
 
-// A straight path: positions leave the turn about it open, or to noise.
+// A straight path. Its positions determine the rotation about it only by their noise.
 struct StraightPath {
   Eigen::Vector3d true_middle;
   Eigen::Vector3d middle;     // in the map
@@ -105,7 +105,7 @@ std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
   return path;
 }
 
-// The direction by positions, the turn about it by orientations.
+// Takes the direction of the path from positions, and the rotation about it from orientations.
 std::optional<Similarity> fit_to_straight_path(const StraightPath& path, const std::vector<PosePair>& pairs,
                                                Scale scale) {
   Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();

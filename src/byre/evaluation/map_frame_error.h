@@ -13,10 +13,10 @@ struct MapAlignment {
   std::vector<PosePair> path{};  // poses that the alignment rests on; estimated ones in the map's frame
 };
 
-// Least squares of positions (Umeyama 1991). Of a straight path, the turn about it is that of the orientations.
-// By poses of the map itself, never by what is found or tracked in it: its keyframes (keyframe_path), or all frames of
-// the run that made it, which are many more. map_truth holds the truth at their times, where it does: with less than
-// three of them aligned nothing is.
+// Aligns a map to the truth by its own poses: its keyframes (keyframe_path), or all frames of the run that made it, but
+// never poses found or tracked in it. Least squares of positions (Umeyama 1991). The positions of a straight path leave
+// the rotation about it open, so that rotation is taken from the orientations. Fewer than three poses with truth are
+// not aligned. map_truth: true poses at their times.
 MapAlignment align_to_truth(const Trajectory& world_from_body, Scale scale, const Trajectory& map_truth);
 
 // How far an estimated pose is from the truth.

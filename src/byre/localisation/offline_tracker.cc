@@ -74,9 +74,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
 
 double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                    const HiddenCells& hidden) {
-  PlaceHypothesis place(0.0, 0);
-  place.observe(view_of(frame, track, rig, hidden), true);
-  return place.log_odds();
+  return byre::log_odds_of(view_of(frame, track, rig, hidden));
 }
 
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,

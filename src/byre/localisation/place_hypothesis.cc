@@ -106,4 +106,10 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
   if (log_odds_ <= kReject) is_accepted_ = false;
 }
 
+double log_odds_of(const PlaceView& view) {
+  PlaceHypothesis place(0.0, 0);
+  place.observe(view, true);
+  return place.log_odds();
+}
+
 }  // namespace byre

@@ -60,4 +60,7 @@ class PlaceHypothesis {
   std::vector<Cell> cells_;  // ascending by index
 };
 
+// Log-odds of a pose by one frame alone, without a prior.
+double log_odds_of(const PlaceView& view);
+
 }  // namespace byre

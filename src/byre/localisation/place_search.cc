@@ -62,14 +62,13 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
   if (!found.tracked) return {std::nullopt, refused};
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
-  PlaceHypothesis place(0.0, 0);
   const ReusedVector<PointId> around =
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
   const ReusedVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  place.observe(view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden}),
-                true);
-  return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, place.log_odds()}, Doubt::none};
+  const PlaceView view =
+      view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
+  return {FoundPlace{sought.frame.time, found.tracked->camera_from_world, depth, log_odds_of(view)}, Doubt::none};
 }
 
 }  // namespace byre

@@ -81,6 +81,14 @@ bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, 
          rotation_log(apart.rotation).norm() <= kTurn + kMostTurning * seconds * seconds;
 }
 
+std::optional<Whereabouts::MeasuredPose> Whereabouts::measured_pose(const Rig& rig, const MapView& map) const {
+  if (!since_believed_ || trajectory_.believed_count() == 0) return std::nullopt;
+  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
+  const BodyMotion since_seen = bridge_ ? *bridge_ * *since_believed_ : *since_believed_;
+  return MeasuredPose{body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body,
+                      since_seen.covariance};
+}
+
 bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                   const MapView& map) const {
   constexpr Timestamp kLongest = std::chrono::seconds(30);
@@ -89,22 +97,16 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
   const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
   const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : believed;
   if (!on_offline_map_ && frame.time - last_seen.time > kLongest) return false;
-  std::optional<BodyMotion> told = since_believed_;  // since the last pose that was seen
-  if (told && bridge_) told = *bridge_ * *told;
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
   if (is_continued(frame.time, now, rig, map)) return false;
-  const auto is_elsewhere = [&] {
-    const Pose led = body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body;
-    return is_beyond(told->covariance, inverse(led) * now);
-  };
-  if (on_offline_map_) {
-    return quality_.verdict != Verdict::untrusted && told && is_elsewhere();
-  }
+  const std::optional<MeasuredPose> measured = measured_pose(rig, map);
+  const bool is_elsewhere = measured && is_beyond(measured->covariance, inverse(measured->map_from_body) * now);
+  if (on_offline_map_) return quality_.verdict != Verdict::untrusted && is_elsewhere;
   const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
   const double carried = std::sqrt(carried_covariance().topLeftCorner<3, 3>().trace());
   const Pose before = body_pose(rig, byre::camera_from_world(map, last_seen));
-  return (now.translation - before.translation).norm() > *reach + kSigmas * carried || (told && is_elsewhere());
+  return (now.translation - before.translation).norm() > *reach + kSigmas * carried || is_elsewhere;
 }
 
 // Whether a pose is farther from where what is told leads than that may err.
@@ -136,20 +138,17 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
-// Log-odds of a find by its Mahalanobis distance from where measured motion leads since the last trusted pose. 0 where
-// that is not known, or the distance is usual.
+// Log-odds of a find by its Mahalanobis distance from the measured pose. 0 if there is none, or if the distance is
+// usual.
 double Whereabouts::log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const {
   constexpr double kSlack = 0.05;  // share of the depth of what was seen, and radians
   constexpr double kUsual = 6.0;   // squared distance, expected of six numbers
-  if (!reach_ || !since_believed_ || quality_.verdict == Verdict::untrusted || trajectory_.believed_count() == 0) {
-    return 0.0;
-  }
-  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
-  const Pose led = body_pose(rig, byre::camera_from_world(map, believed)) * since_believed_->last_from_body;
-  Matrix6 covariance = (bridge_ ? *bridge_ * *since_believed_ : *since_believed_).covariance;
+  const std::optional<MeasuredPose> measured = measured_pose(rig, map);
+  if (!reach_ || !measured || quality_.verdict == Verdict::untrusted) return 0.0;
+  Matrix6 covariance = measured->covariance;
   covariance.diagonal().head<3>().array() += std::pow(kSlack * scene_depth_, 2);
   covariance.diagonal().tail<3>().array() += kSlack * kSlack;
-  const Vector6 apart = log_pose(inverse(led) * body);
+  const Vector6 apart = log_pose(inverse(measured->map_from_body) * body);
   const double distance = apart.dot(covariance.ldlt().solve(apart));
   return std::isfinite(distance) ? std::max(kLogOddsOfCarried, -0.5 * std::max(0.0, distance - kUsual)) : 0.0;
 }

@@ -125,6 +125,12 @@ class Whereabouts {
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:
+  // Pose by measured motion since the last believed pose, and its covariance since the last pose that was seen.
+  struct MeasuredPose {
+    Pose map_from_body;
+    Matrix6 covariance;
+  };
+  std::optional<MeasuredPose> measured_pose(const Rig& rig, const MapView& map) const;  // empty: unknown motion
   double log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const;
   PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig, const MapView& map) const;
   void wait_for_map();

@@ -4,7 +4,7 @@ namespace byre {
 namespace {
 
 // u of a pixel's centre when n x n pixels become one: the image's edge, at -0.5, stays where it is.
-double divided_centre(double centre, int divisor) {
+double divided_centre(double centre, double divisor) {
   return (centre + 0.5) / divisor - 0.5;
 }
 
@@ -21,11 +21,12 @@ Camera divided_camera(Camera camera, int divisor) {
 }
 
 Camera resized_camera(Camera camera, int width, int height) {
-  const double scale = static_cast<double>(width) / camera.width;
-  camera.fx *= scale;
-  camera.fy *= scale;
-  camera.cx = (camera.cx + 0.5) * scale - 0.5;
-  camera.cy = (camera.cy + 0.5 - 0.5 * camera.height) * scale + 0.5 * height - 0.5;
+  const double divisor = static_cast<double>(camera.width) / width;
+  const double lost = 0.5 * (camera.height / divisor - height);  // rows above, of the new size
+  camera.fx /= divisor;
+  camera.fy /= divisor;
+  camera.cx = divided_centre(camera.cx, divisor);
+  camera.cy = divided_centre(camera.cy, divisor) - lost;
   camera.width = width;
   camera.height = height;
   return camera;
