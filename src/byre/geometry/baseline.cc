@@ -48,13 +48,16 @@ Calibration with_checked_baseline(Calibration calibration, const std::optional<d
   }
   if (!calibration.right || is_usual_baseline(baseline)) return calibration;
   const auto likely = in_smaller_unit(baseline);
+  std::string remedy = "check that the extrinsics are in metres";
+  if (likely) remedy += fmt::format("; correct the baseline by {}{:g}", option, *likely);
+  if (baseline >= kShortestConfirmed && baseline <= kLongestConfirmed) {
+    remedy += fmt::format("{}confirm it by {}{:g}", likely ? ", or " : "; ", option, baseline);
+  }
   throw InputError(
       place,
       fmt::format("has a baseline of {:g} m between left and right camera; usual values are {:g} to {:g} m", baseline,
                   kShortestBaseline, kLongestBaseline),
-      "check that the extrinsics are in metres; " +
-          (likely ? fmt::format("correct the baseline by {}{:g}, or ", option, *likely) : std::string()) +
-          fmt::format("confirm it by {}{:g}", option, baseline));
+      remedy);
 }
 
 }  // namespace byre

@@ -12,6 +12,10 @@ namespace byre {
 inline constexpr double kShortestBaseline = 0.002;
 inline constexpr double kLongestBaseline = 1.0;
 
+// Range of baselines that can be confirmed, metres.
+inline constexpr double kShortestConfirmed = 1e-4;
+inline constexpr double kLongestConfirmed = 10.0;
+
 double baseline_of(const Calibration& calibration);  // metres; 0 for one camera
 
 // The calibration with a checked baseline. confirmed: baseline in metres that replaces that of the calibration; if it

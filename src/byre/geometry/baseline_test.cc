@@ -44,7 +44,11 @@ TEST(Baseline, InCentimetresOrMillimetresIsRefusedWithTheLikelyOne) {
               ::testing::AllOf(HasSubstr("camchain.yaml"), HasSubstr("7.5 m"), HasSubstr("--baseline 0.075"),
                                HasSubstr("--baseline 7.5")));
   EXPECT_THAT(refusal(pair_with_baseline(120.0)), HasSubstr("--baseline 0.12"));
-  EXPECT_THAT(refusal(pair_with_baseline(7.5e-5)), HasSubstr("--baseline 7.5e-05"));
+}
+
+TEST(Baseline, OfTensOfMetresOrMicrometresCannotBeConfirmed) {
+  EXPECT_THAT(refusal(pair_with_baseline(15.0)), ::testing::Not(HasSubstr("--baseline 15")));
+  EXPECT_THAT(refusal(pair_with_baseline(7.5e-5)), ::testing::Not(HasSubstr("confirm")));
 }
 
 TEST(Baseline, ThatIsConfirmedReplacesTheLengthAndKeepsTheDirection) {

@@ -49,13 +49,14 @@ fs::path find_data_file(const fs::path& name, std::string_view remedy) {
   for (const fs::path& binary : {this_program(), this_binary()}) {
     if (const auto found = find_above(binary, name)) return *found;
   }
-  for (const fs::path folder : {BYRE_INSTALLED_DATA, BYRE_SOURCE_DATA}) {
+  // Packages are installed below /usr, whatever prefix the library was built for.
+  for (const fs::path folder : {BYRE_INSTALLED_DATA, "/usr/local/share/byre", "/usr/share/byre", BYRE_SOURCE_DATA}) {
     if (is_file(folder / name)) return (folder / name).lexically_normal();
   }
-  throw InputError(
-      name.string(),
-      std::string("is neither in ") + BYRE_INSTALLED_DATA + " nor in the source tree, nor where BYRE_DATA says",
-      remedy);
+  throw InputError(name.string(),
+                   std::string("is neither in ") + BYRE_INSTALLED_DATA +
+                       ", /usr/local/share/byre or /usr/share/byre, nor in the source tree, nor where BYRE_DATA says",
+                   remedy);
 }
 
 }  // namespace byre

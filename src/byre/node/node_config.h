@@ -131,6 +131,9 @@ std::vector<InputError> faults_in_files(const NodeConfig& config);
 // How the settings have the fleet told; empty: not at all. Throws InputError when the password cannot be read.
 std::optional<FleetOptions> fleet_options(const NodeConfig& config);
 
+// The setting that confirms a baseline, up to its value; see with_checked_baseline.
+inline constexpr const char* kBaselineSetting = "calibration.baseline: ";
+
 // Throws InputError where the calibration file lacks a camera whose images are named.
 void require_cameras(const Calibration& calibration, const NodeConfig& config);
 

@@ -1,5 +1,7 @@
 #include "byre/node/node_config.h"
 
+#include "byre/calibration_file.h"
+
 #include <algorithm>
 #include <fstream>
 
@@ -109,6 +111,18 @@ TEST_F(NodeConfigFile, NamesFilesThatCannotBeUsed) {
   const std::vector<InputError> found = faults_in_files(config);
   EXPECT_THAT(found, SizeIs(3));
   for (const InputError& fault : found) EXPECT_THAT(fault.what(), HasSubstr("absent"));
+}
+
+TEST_F(NodeConfigFile, NamesACalibrationWithAnUnusualBaseline) {
+  Calibration calibration;
+  calibration.left = {.width = 752, .height = 480, .fx = 400.0, .fy = 400.0, .cx = 376.0, .cy = 240.0};
+  calibration.right = {calibration.left, {Eigen::Quaterniond::Identity(), {-7.5, 0.0, 0.0}}};
+  std::ofstream(folder_ / "pair.yaml") << write_calibration(calibration);
+  const std::string settings = "images:\n  left: left\n  right: right\ncalibration:\n  file: pair.yaml\n";
+  const std::vector<InputError> found = faults_in_files(read(settings).config);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_THAT(found[0].what(), AllOf(HasSubstr("pair.yaml"), HasSubstr("calibration.baseline: 0.075")));
+  EXPECT_THAT(faults_in_files(read(settings + "  baseline: 0.075\n").config), IsEmpty());
 }
 
 }  // namespace

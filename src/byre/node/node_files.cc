@@ -1,5 +1,6 @@
 #include "byre/calibration_file.h"
 #include "byre/floor_plan.h"
+#include "byre/geometry/baseline.h"
 #include "byre/map/map_file.h"
 #include "byre/node/map_messages.h"
 #include "byre/node/node_config.h"
@@ -28,7 +29,13 @@ std::vector<InputError> faults_in_files(const NodeConfig& config) {
     require_plan_of_map(config);
   });
   look([&] { fleet_options(config); });
-  if (config.calibration) look([&] { require_cameras(read_calibration(*config.calibration), config); });
+  if (config.calibration) {
+    look([&] {
+      const Calibration given = read_calibration(*config.calibration);
+      require_cameras(with_checked_baseline(given, config.baseline, config.calibration->string(), kBaselineSetting),
+                      config);
+    });
+  }
   return faults;
 }
 

@@ -122,7 +122,9 @@ Slam SlamRunner::make(const fs::path* map) const {
 }
 
 std::string SlamRunner::start(const Calibration& calibration) {
-  calibration_ = with_checked_baseline(calibration, config_.baseline, "the calibration", "calibration.baseline: ");
+  calibration_ =
+      with_checked_baseline(calibration, config_.baseline,
+                            config_.calibration ? config_.calibration->string() : "the calibration", kBaselineSetting);
   std::string said;
   try {
     replace(make(map_ ? &*map_ : nullptr));

@@ -4,6 +4,7 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/dataset/recording_words.h"
+#include "byre/geometry/baseline.h"
 #include "byre/input/text_file.h"
 
 #include <string>
@@ -44,7 +45,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
       .add_option("--baseline", options.baseline,
                   "Baseline of the cameras, replaces that of the calibration; confirms one outside 2 mm to 1 m")
       ->type_name("METRES")
-      ->check(between(1e-4, 10.0));
+      ->check(between(kShortestConfirmed, kLongestConfirmed));
   command
       .add_option_function<std::string>(
           "--fps", set_frame_rate,
