@@ -1,6 +1,8 @@
 #include "byre/localisation/offline_tracker.h"
 
+#include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/localisation.h"
 
 #include <utility>
 
@@ -19,6 +21,7 @@ OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const 
     : options_(options),
       offline_(std::move(offline)),
       mission_(offline_, options.mission),
+      rivals_(options.mission.registration.max_speed),
       search_(std::move(lanes.search)),
       calibration_lane_(std::move(lanes.calibration)) {}
 
@@ -37,9 +40,9 @@ std::optional<MissionCalibrator::Switch> OfflineTracker::collect_camera() {
   return calibrator_ ? calibrator_->collect() : std::nullopt;
 }
 
-PlaceSearch OfflineTracker::collect_place() {
-  const auto finished = search_.collect();
-  return finished ? finished->result : PlaceSearch{};
+std::optional<PlaceSearch> OfflineTracker::collect_place() {
+  auto finished = search_.collect();
+  return finished ? std::optional(std::move(finished->result)) : std::nullopt;
 }
 
 bool OfflineTracker::is_view_due(const Whereabouts& whereabouts) {
@@ -77,10 +80,85 @@ double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track,
   return byre::log_odds_of(view_of(frame, track, rig, hidden));
 }
 
+void OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
+  rivals_.begin(time, camera_from_place);
+  is_outdone_ = false;
+}
+
+std::optional<TrackedFrame> OfflineTracker::find_at_rival(const Frame& frame, const Rig& rig,
+                                                          const HiddenCells& hidden) {
+  const std::optional<Pose> predicted = rivals_.camera_from_likeliest();
+  if (!std::exchange(is_outdone_, false) || !predicted) return std::nullopt;
+  return track_at(frame, *predicted, rig, hidden);
+}
+
+std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                                     const HiddenCells& hidden) const {
+  const Map nothing_online(Origin::online);
+  TrackOptions options = options_.track;
+  options.hidden = hidden;
+  return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points_around(predicted), options);
+}
+
+ReusedVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offline) const {
+  constexpr double kNear = 10.0;  // metres; the points of a place may have been seen from elsewhere
+  constexpr int kKeyframes = 5;
+  const Map nothing_online(Origin::online);
+  ReusedVector<PointId> around;
+  for (const KeyframeId id : offline_->keyframes_near(camera_from_offline, kNear, kKeyframes)) {
+    const ReusedVector<PointId> points = local_points({&offline_->map(), nothing_online}, id, kKeyframesOfPlace);
+    around.insert(around.end(), points.begin(), points.end());
+  }
+  std::ranges::sort(around);
+  around.erase(std::ranges::unique(around).begin(), around.end());
+  return around;
+}
+
+RivalPlaces::Look OfflineTracker::look_at(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                          const HiddenCells& hidden) const {
+  TrackedFrame there;
+  there.camera_from_world = predicted;
+  const auto tracked = track_at(frame, predicted, rig, hidden);
+  if (tracked) there = *tracked;
+  const Pose& pose = there.camera_from_world;
+  const ReusedVector<PointId> nearby = points_of_place(*offline_, keyframes_of_place(*offline_, pose));
+  return {pose, view_of_place({*offline_, rig, frame, there, nearby, points_around(pose), hidden}),
+          tracked.has_value()};
+}
+
+void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere,
+                                 const Whereabouts& whereabouts, const Mapper& mapper) {
+  constexpr int kFramesOfAcceptedPlace = 3;  // to save time
+  const Pose& camera_from_place = seen.track.tracked.camera_from_world;
+  const bool is_accepted = whereabouts.place().is_accepted();
+  if (is_accepted && ++frames_since_rivals_ < kFramesOfAcceptedPlace) return;
+  frames_since_rivals_ = 0;
+  const auto propose = [&](const Pose& rival_from_place) {
+    const Pose body = rival_from_place * body_pose(seen.rig, camera_from_place);
+    rivals_.propose(camera_from_place, rival_from_place,
+                    whereabouts.log_odds_of_find(seen.frame.time, body, seen.rig, mapper.map()));
+  };
+  for (const HybridTrack& other : elsewhere) propose(inverse(other.tracked.camera_from_world) * camera_from_place);
+  if (!is_accepted || !elsewhere.empty()) {
+    for (const Eigen::Vector3d& shift : shifts_at(camera_from_place)) propose({Eigen::Quaterniond::Identity(), shift});
+  }
+  rivals_.observe(camera_from_place,
+                  [&](const Pose& predicted) { return look_at(seen.frame, predicted, seen.rig, seen.hidden); });
+}
+
+std::span<const Eigen::Vector3d> OfflineTracker::shifts_at(const Pose& camera_from_place) {
+  ReusedVector<KeyframeId> keyframes = keyframes_of_place(*offline_, camera_from_place);
+  if (keyframes != places_alike_.keyframes) {
+    places_alike_ = {std::move(keyframes), shifts_to_places_alike(*offline_, camera_from_place)};
+  }
+  return places_alike_.shifts;
+}
+
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,
                                                  const Mapper& mapper) {
   Consequence consequence{.events = note_view(seen, mapper)};
-  if (is_beyond_doubt(whereabouts)) rival_.forget();
+  if (is_beyond_doubt(whereabouts)) rivals_.forget();
+  rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, whereabouts.place());
   if (!whereabouts.place().is_believed()) return consequence;
   if (!mapper.has_correction()) consequence.correction = correction_by(seen.track, mapper);
   if (calibrator_ && whereabouts.place().is_accepted() && !seen.track.maps_disagree) {
@@ -110,14 +188,14 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
 }
 
 void OfflineTracker::lose() {
-  rival_.forget();
   mission_.forget_reference();
   mission_.forget_hypothesis();
 }
 
 void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper) {
   constexpr double kDoubtsEvery = 1.0;  // seconds
-  if (!search_.idle() || mapper.has_correction() || !whereabouts.place().is_believed()) return;
+  const PlaceHypothesis& place = whereabouts.place();
+  if (!search_.idle() || mapper.has_correction() || (place.is_accepted() && !place.is_believed())) return;
   const bool is_due = !last_search_ || to_seconds(sought.frame.time - *last_search_) >= kDoubtsEvery;
   is_search_by_doubt_ = !is_search_needed(whereabouts, mapper);
   if (is_search_by_doubt_ && (is_beyond_doubt(whereabouts) || !is_due)) return;
@@ -127,11 +205,8 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   const bool is_way_in_doubt = whereabouts.place().is_accepted() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
                  way = is_way_in_doubt ? std::nullopt : sought.way, hidden = sought.hidden, offline = offline_,
-                 options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds},
-                 tracked_log_odds = whereabouts.place().log_odds()] {
-    PlaceSearch search = search_place(*offline, {frame, rig, hint, way, hidden}, options);
-    if (search.found) search.found->tracked_log_odds = tracked_log_odds;
-    return search;
+                 options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds}] {
+    return search_place(*offline, {frame, rig, hint, way, hidden}, options);
   });
 }
 
@@ -140,34 +215,44 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
          mission_.distance_since_offline() > options_.mission.search_after;
 }
 
-// A pose that was found from nothing and never proven gives way to a place elsewhere that shows what would prove it;
-// one that was proven, or that a hint led to, to a rival that is found again and again. The online map is corrected
-// where offline points do not hold it.
-OfflineTracker::Consequence OfflineTracker::consider(const FoundPlace& found, const Whereabouts& whereabouts,
-                                                     const Mapper& mapper) {
-  constexpr double kElsewhere = 0.5;  // metres
+// A place gives way to a rival that is much more likely. The online map is corrected where offline points do not hold
+// it.
+OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSearch>& search,
+                                                     const Whereabouts& whereabouts, const Mapper& mapper) {
   const PlaceHypothesis& place = whereabouts.place();
+  is_outdone_ = whereabouts.has_pose() && mapper.submaps().is_registered() && rivals_.outdo(place);
+  if (is_outdone_) return {.refutes_pose = true, .refutes_way = place.is_accepted() || whereabouts.is_by_hint()};
+  if (!search) return {};
   const Submaps& submaps = mapper.submaps();
-  if (!whereabouts.has_pose() || !place.is_believed() || mapper.has_correction()) return {};
-  const AnchoredPose* const then = whereabouts.trajectory().find(found.time);
+  if (!whereabouts.has_pose() || mapper.has_correction()) return {};
+  const AnchoredPose* const then = whereabouts.trajectory().find(search->time);
   if (then == nullptr || submaps.frame(then->submap) != submaps.frame()) return {};
   const Pose camera_from_online = camera_from_world(mapper.map(), *then);
-  const Agreement agreement = agreement_of(found.camera_from_offline, camera_from_online);
   const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
+  if (is_in_place) propose_rivals(*search, camera_from_online, whereabouts, mapper);
+  if (!search->found || !place.is_believed()) return {};
+  const FoundPlace& found = *search->found;
   if (is_in_place && (place.is_accepted() || whereabouts.is_by_hint())) {
-    if (rival_.note(found, camera_from_online, options_.mission.registration)) {
-      return {.events = {}, .refutes_pose = true, .refutes_way = true};
+    constexpr double kElsewhere = 0.5;  // metres
+    if (whereabouts.is_by_hint() &&
+        agreement_of(found.camera_from_offline, camera_from_online).translation <= kElsewhere) {
+      return {.agrees_with_hint = true};
     }
-    if (whereabouts.is_by_hint() && agreement.translation <= kElsewhere)
-      return {.events = {}, .agrees_with_hint = true};
     if (is_search_by_doubt_) return {};
-  } else if (is_in_place && agreement.translation > kElsewhere && found.log_odds > place.log_odds()) {
-    return {.events = {}, .refutes_pose = true};
   }
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
   const double prior = submaps.is_registered() ? 0.0 : whereabouts.log_odds_of_registration(offline_from_online);
   if (prior < 0.0 && found.log_odds + prior < 0.0) return {};
-  return {.events = {}, .correction = correction_by(found, camera_from_online, submaps.frame())};
+  return {.correction = correction_by(found, camera_from_online, submaps.frame())};
+}
+
+void OfflineTracker::propose_rivals(const PlaceSearch& search, const Pose& camera_from_place,
+                                    const Whereabouts& whereabouts, const Mapper& mapper) {
+  for (const Pose& camera_from_rival : search.places) {
+    const Pose body = body_pose(search.rig, camera_from_rival);
+    rivals_.propose(camera_from_place, inverse(camera_from_rival) * camera_from_place,
+                    whereabouts.log_odds_of_find(search.time, body, search.rig, mapper.map()));
+  }
 }
 
 // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.

@@ -3,7 +3,7 @@
 #include "byre/localisation/mission.h"
 #include "byre/localisation/mission_calibrator.h"
 #include "byre/localisation/place_search.h"
-#include "byre/localisation/rival_place.h"
+#include "byre/localisation/rival_places.h"
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/mapper.h"
 #include "byre/session_event.h"
@@ -49,7 +49,7 @@ class OfflineTracker {
 
   // Once for each frame.
   std::optional<MissionCalibrator::Switch> collect_camera();
-  PlaceSearch collect_place();
+  std::optional<PlaceSearch> collect_place();
   bool ask_for_focal_length() { return focal_check_.is_due(); }  // whether this frame is to be asked
 
   // A frame tracked while the online map is known to lie in the offline one.
@@ -77,11 +77,28 @@ class OfflineTracker {
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // Log-odds of a frame's pose by what that frame alone shows.
   double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
+  // See RivalPlaces.
+  const PlaceHypothesis* known_place_at(Timestamp time, const Pose& camera_from_offline) const {
+    return rivals_.known_at(time, camera_from_offline);
+  }
+  // A frame was found at a place without a prediction.
+  void begin_place(Timestamp time, const Pose& camera_from_place);
+  // Tracks a frame at the rival that outdid the last frame's place; empty where none did.
+  std::optional<TrackedFrame> find_at_rival(const Frame& frame, const Rig& rig, const HiddenCells& hidden);
+  // Tests a tracked frame at the rivals of its place. elsewhere: other places where the search found it; they become
+  // rivals, as do places that look alike in the map while the place is not accepted.
+  void test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere, const Whereabouts& whereabouts,
+                   const Mapper& mapper);
+  double log_odds_of_rivals() const { return rivals_.log_odds(); }  // see RivalPlaces
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
-  Consequence consider(const FoundPlace& found, const Whereabouts& whereabouts, const Mapper& mapper);
+  // Once for each frame. search: a search that has ended since the last frame.
+  Consequence consider(const std::optional<PlaceSearch>& search, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
   // A submap begins where offline points do not hold the pose yet.
-  void begin_submap() { mission_.forget_reference(); }
+  void begin_submap() {
+    mission_.forget_reference();
+    rivals_.forget();
+  }
   void lose();
 
   // Looks for the last frame in the offline map beside tracking: while its points do not hold the pose, or may do so by
@@ -95,6 +112,13 @@ class OfflineTracker {
 
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
+  ReusedVector<PointId> points_around(const Pose& camera_from_offline) const;
+  std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                       const HiddenCells& hidden) const;
+  RivalPlaces::Look look_at(const Frame& frame, const Pose& predicted, const Rig& rig, const HiddenCells& hidden) const;
+  std::span<const Eigen::Vector3d> shifts_at(const Pose& camera_from_place);
+  void propose_rivals(const PlaceSearch& search, const Pose& camera_from_place, const Whereabouts& whereabouts,
+                      const Mapper& mapper);
   bool is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const;
   // Once enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
@@ -108,7 +132,14 @@ class OfflineTracker {
   int frames_since_view_ = 0;
   ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view_of
   ReusedVector<PointId> nearby_points_;        // points seen by these keyframes
-  RivalPlace rival_;
+  RivalPlaces rivals_;
+  struct PlacesAlike {
+    ReusedVector<KeyframeId> keyframes;  // keyframes of the place
+    std::vector<Eigen::Vector3d> shifts;
+  };
+  PlacesAlike places_alike_;  // shifts from the last place that was not accepted
+  int frames_since_rivals_ = 0;
+  bool is_outdone_ = false;  // see RivalPlaces::outdo
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need
   Worker<PlaceSearch> search_;

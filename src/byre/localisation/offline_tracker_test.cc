@@ -44,32 +44,35 @@ class OnAnOfflineMap : public ::testing::Test {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
                          whereabouts_, mapper_);
   }
-  struct Way {
-    std::size_t begin = 0;    // its first frame
-    bool is_by_hint = false;  // it begins at a pose found by a hint; otherwise at an accepted pose
-  };
-  // The first frame of a way in which a place 5 m away, which shows much more in each, refutes where tracking is; zero
-  // where none does.
-  std::size_t frame_that_refutes(const Way& way) {
-    for (std::size_t i = way.begin; i < mission_.frames.size(); ++i) {
-      const HybridTrack track = track_of(i, 50, 1000);
-      const PlaceView view = view_of_room(2, 8);
-      const bool is_find = way.is_by_hint && i == way.begin;
-      whereabouts_.note({mission_.frames[i], track, is_find, true, 0, is_find, &view}, mission_.rig, mapper_.map());
-      tracker_.note({mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}}, whereabouts_, mapper_);
-      EXPECT_NE(whereabouts_.place().is_accepted(), way.is_by_hint) << i;
-      FoundPlace rival{mission_.frames[i].time, true_camera_from_world(mission_, i), 3.0, 8.0};
-      rival.camera_from_offline = rival.camera_from_offline * Pose{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
-      rival.tracked_log_odds = whereabouts_.place().log_odds();
-      if (tracker_.consider(rival, whereabouts_, mapper_).refutes_way) return i;
-    }
-    return 0;
-  }
-  // A place so many metres beside where the first frame was believed to be.
-  FoundPlace place_beside(double metres, double log_odds) const {
+  // A search that found the first frame so many metres beside where it was believed to be.
+  PlaceSearch place_beside(double metres) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
-    return {mission_.frames[0].time, beside * true_camera_from_world(mission_, 0), 3.0, log_odds};
+    PlaceSearch search{.time = mission_.frames[0].time, .rig = mission_.rig};
+    search.found = FoundPlace{beside * true_camera_from_world(mission_, 0), 3.0, 5.0};
+    search.places = {search.found->camera_from_offline};
+    return search;
   }
+  // Frames at a place 5 m beside where they were taken, of which a search finds the true place.
+  void track_beside(std::size_t begin, std::size_t end) {
+    const Pose beside{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
+    const PlaceView view = view_of_room(2, 8);
+    for (std::size_t i = begin; i < end; ++i) {
+      HybridTrack track = track_of(i);
+      track.tracked.camera_from_world = track.tracked.camera_from_world * beside;
+      if (i == 0) mapper_.begin_where_found(track);
+      if (i == 0) tracker_.begin_place(mission_.frames[i].time, track.tracked.camera_from_world);
+      const OfflineTracker::Seen seen{mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}};
+      tracker_.test_rivals(seen, {}, whereabouts_, mapper_);
+      whereabouts_.note(
+          {mission_.frames[i], track, i == 0, true, 0, false, &view, nullptr, tracker_.log_odds_of_rivals()},
+          mission_.rig, mapper_.map());
+      tracker_.note(seen, whereabouts_, mapper_);
+      tracker_.search_beside({mission_.frames[i], mission_.rig}, whereabouts_, mapper_);
+      consequence_ = tracker_.consider(tracker_.collect_place(), whereabouts_, mapper_);
+    }
+  }
+
+  OfflineTracker::Consequence consequence_;  // consequence of the last frame of track_beside()
 };
 
 TEST_F(OnAnOfflineMap, TellsOnceThatItsPointsHoldThePoseOrDoNot) {
@@ -95,31 +98,25 @@ TEST_F(OnAnOfflineMap, LetsItsPointsPutTheCameraTheFartherOffTheLongerTheyDidNot
   EXPECT_GT(mission.limits(false, 0.1).drift.translation, mission.limits(true, 0.1).drift.translation);
 }
 
-TEST_F(OnAnOfflineMap, ReplacesAPlaceThatIsNotAcceptedByALikelierOne) {
-  note_found(0, view_of_room(2, 8));
+TEST_F(OnAnOfflineMap, GivesUpAPlaceThatIsNotAcceptedForALikelierRival) {
+  track_beside(0, 3);
+  EXPECT_FALSE(consequence_.refutes_pose) << "not by one find";
+  track_beside(3, 6);
   ASSERT_FALSE(whereabouts_.place().is_accepted());
-  EXPECT_FALSE(tracker_.consider(place_beside(2.0, -5.0), whereabouts_, mapper_).refutes_pose);
-  EXPECT_FALSE(tracker_.consider(place_beside(0.1, 5.0), whereabouts_, mapper_).refutes_pose);
-  EXPECT_TRUE(tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_).refutes_pose);
+  EXPECT_TRUE(consequence_.refutes_pose);
+  EXPECT_FALSE(consequence_.refutes_way);
+  const auto found = tracker_.find_at_rival(mission_.frames[6], mission_.rig, {});
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->camera_from_world, PoseNear(true_camera_from_world(mission_, 6), 0.05, 0.02));
+  EXPECT_FALSE(tracker_.find_at_rival(mission_.frames[6], mission_.rig, {})) << "asked for once";
 }
 
 TEST_F(OnAnOfflineMap, KeepsAnAcceptedPlaceAfterOneFindElsewhere) {
   note_found(0);
   ASSERT_TRUE(whereabouts_.place().is_accepted());
-  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0, 5.0), whereabouts_, mapper_);
+  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0), whereabouts_, mapper_);
   EXPECT_FALSE(consequence.refutes_pose);
   EXPECT_FALSE(consequence.correction);
-}
-
-TEST_F(OnAnOfflineMap, GivesUpAnAcceptedPlaceForARivalFoundAllAlongTheWay) {
-  note_found(0);
-  ASSERT_TRUE(whereabouts_.place().is_accepted());
-  EXPECT_GT(frame_that_refutes({.begin = 4, .is_by_hint = false}), 8U) << "not by one find";
-}
-
-TEST_F(OnAnOfflineMap, KeepsAPlaceFoundByAHintUntilARivalIsFoundAllAlongTheWay) {
-  mapper_.begin_where_found(track_of(0));
-  EXPECT_GT(frame_that_refutes({.begin = 0, .is_by_hint = true}), 8U) << "not by one find";
 }
 
 TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
@@ -129,18 +126,18 @@ TEST_F(OnAnOfflineMap, AsksForNoMoreProofWhereAHintAndAllElseAgree) {
     whereabouts_.note({mission_.frames[i], track_of(i), i == 0, true, 0, true, &view}, mission_.rig, mapper_.map());
   }
   tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place().found;
-  ASSERT_TRUE(found) << "in the whole map, for the hint says that the robot is elsewhere";
-  EXPECT_TRUE(tracker_.consider(*found, whereabouts_, mapper_).agrees_with_hint);
+  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  ASSERT_TRUE(search && search->found) << "in the whole map, for the hint says that the robot is elsewhere";
+  EXPECT_TRUE(tracker_.consider(search, whereabouts_, mapper_).agrees_with_hint);
 }
 
 TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;
   for (int i = 1; i < confirmations; ++i) {
-    EXPECT_FALSE(tracker_.consider(place_beside(0.005, 5.0), whereabouts_, mapper_).correction);
+    EXPECT_FALSE(tracker_.consider(place_beside(0.005), whereabouts_, mapper_).correction);
   }
-  const auto correction = tracker_.consider(place_beside(0.005, 5.0), whereabouts_, mapper_).correction;
+  const auto correction = tracker_.consider(place_beside(0.005), whereabouts_, mapper_).correction;
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->shape, CorrectionShape::spread);
   EXPECT_EQ(correction->frame, Submaps::kMapFrame);
@@ -150,10 +147,10 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapOnceEnoughPlacesAgreeWithinDrift) {
 TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) {
   note_found(0, view_of_room(2, 8));
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place().found;
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->time, mission_.frames[4].time);
-  EXPECT_THAT(found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
+  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  ASSERT_TRUE(search && search->found);
+  EXPECT_EQ(search->time, mission_.frames[4].time);
+  EXPECT_THAT(search->found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
 }
 
 TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
@@ -165,18 +162,17 @@ TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   ASSERT_TRUE(whereabouts_.place().is_accepted());
   note(4, 70);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  const auto found = tracker_.collect_place().found;
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->tracked_log_odds, whereabouts_.place().log_odds());
+  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  EXPECT_TRUE(search && search->found);
   tracker_.search_beside({mission_.frames[5], mission_.rig}, whereabouts_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place().found);
+  EXPECT_FALSE(tracker_.collect_place());
 }
 
 TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
   note_found(0);
   note(4, 100);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place().found);
+  EXPECT_FALSE(tracker_.collect_place());
 }
 
 }  // namespace

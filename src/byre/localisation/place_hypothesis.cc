@@ -81,7 +81,7 @@ double PlaceHypothesis::evidence() const {
   return std::min(all, all - most_on_one_thing(agreeing) * kOfAgreement + kOfMovedThing);
 }
 
-void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
+void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals) {
   if (is_tracked) frames_to_believe_ = std::max(0, frames_to_believe_ - 1);
   ++frame_;
   // Where no keyframe saw the map from nearby, walls may hide expected points. Missing points then count against a
@@ -99,11 +99,17 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked) {
   }
   std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
   log_odds_ = prior_ + evidence();
-  if (log_odds_ >= accept_) {
+  // The log-odds of a place and of a rival both err, so a place with rivals needs twice as much.
+  const double enough = log_odds_of_rivals > 0.0 ? 2.0 * accept_ : accept_;
+  if (is_believed() && log_odds_ - log_odds_of_rivals >= enough) {
     is_accepted_ = true;
     prior_ = std::max(prior_, 0.0);  // outweighed by cells that may be forgotten before it is
   }
-  if (log_odds_ <= kReject) is_accepted_ = false;
+  if (is_rejected()) is_accepted_ = false;
+}
+
+bool PlaceHypothesis::is_rejected() const {
+  return log_odds_ <= kReject;
 }
 
 double log_odds_of(const PlaceView& view) {

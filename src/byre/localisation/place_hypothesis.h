@@ -28,17 +28,19 @@ class PlaceHypothesis {
   PlaceHypothesis(double prior, int frames_to_believe, double accept = RegistrationOptions{}.accept_log_odds)
       : prior_(prior), accept_(accept), frames_to_believe_(frames_to_believe), is_accepted_(false) {}
 
-  // Adds a frame. is_tracked: tracked from a predicted pose; false: found without a prediction.
-  void observe(const PlaceView& view, bool is_tracked);
+  // Adds a frame. is_tracked: at a pose that continues the one before; false: the first pose. log_odds_of_rivals: see
+  // RivalPlaces.
+  void observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals = 0.0);
 
   // The pose was lost for a short time and found again within reach.
   void find_again(int frames_to_believe) { frames_to_believe_ = frames_to_believe; }
 
-  double log_odds() const { return log_odds_; }
+  double log_odds() const { return log_odds_; }  // against all places but the rivals
   // Enough frames were tracked for mapping to use the pose.
   bool is_believed() const { return frames_to_believe_ == 0; }
   // The test has accepted it, and not rejected it since.
   bool is_accepted() const { return is_accepted_; }
+  bool is_rejected() const;
 
  private:
   struct Cell {

@@ -72,6 +72,22 @@ TEST(PlaceHypothesis, NeedsMoreEvidenceForAPlaceOutOfReach) {
   EXPECT_TRUE(observed(PlaceHypothesis(against, 0), view_of_room(16, 0), 1).is_accepted());
 }
 
+TEST(PlaceHypothesis, IsAcceptedOnlyOnceItsFramesAreTracked) {
+  PlaceHypothesis place(0.0, 2);
+  place.observe(view_of_room(10, 0), false);
+  EXPECT_FALSE(observed(place, view_of_room(10, 0), 1).is_accepted());
+  EXPECT_TRUE(observed(place, view_of_room(10, 0), 2).is_accepted());
+}
+
+TEST(PlaceHypothesis, MustOutweighItsRivals) {
+  PlaceHypothesis place(0.0, 0);
+  place.observe(view_of_room(10, 0), true, 8.0);
+  EXPECT_GT(place.log_odds(), RegistrationOptions{}.accept_log_odds);
+  EXPECT_FALSE(place.is_accepted());
+  place.observe(view_of_room(10, 0), true, 2.0);
+  EXPECT_TRUE(place.is_accepted());
+}
+
 TEST(PlaceHypothesis, StaysAcceptedWhereCellsThatOutweighedItsPriorAreForgotten) {
   PlaceHypothesis place = observed(PlaceHypothesis(-10.0, 0), view_of_room(16, 0), 1);
   ASSERT_TRUE(place.is_accepted());

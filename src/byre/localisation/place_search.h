@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace byre {
 
@@ -35,18 +36,23 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
 
 // Where the offline map shows what a frame saw.
 struct FoundPlace {
-  Timestamp time{};  // time of the frame that was found
   Pose camera_from_offline;
-  double median_depth = 0.0;      // metres, of the matched points
-  double log_odds = 0.0;          // log-odds of the place by this frame alone, see PlaceHypothesis
-  double tracked_log_odds = 0.0;  // log-odds of the pose tracked in the same frame
+  double median_depth = 0.0;  // metres, of the matched points
+  double log_odds = 0.0;      // log-odds of the place by this frame alone, see PlaceHypothesis
 };
 
 // What came of looking for a frame in the offline map without a guess.
 struct PlaceSearch {
-  std::optional<FoundPlace> found;  // empty where it was not found
-  Doubt refused = Doubt::none;      // see BoundedLocalisation
+  Timestamp time{};                   // time of the frame
+  Rig rig{};                          // cameras of the frame
+  std::optional<FoundPlace> found{};  // empty where it was not found
+  Doubt refused = Doubt::none;        // see BoundedLocalisation
+  std::vector<Pose> places{};         // camera_from_offline at each place that shows the frame
 };
 PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options);
+
+// Shifts, metres, at which many points that keyframes near a place saw have points that look alike, as in the bays of a
+// barn. Most such points first.
+std::vector<Eigen::Vector3d> shifts_to_places_alike(const OfflineMap& offline, const Pose& camera_from_place);
 
 }  // namespace byre

@@ -153,29 +153,37 @@ double Whereabouts::log_odds_of_way(const Pose& body, const Rig& rig, const MapV
   return std::isfinite(distance) ? std::max(kLogOddsOfCarried, -0.5 * std::max(0.0, distance - kUsual)) : 0.0;
 }
 
-// The test of a pose found without a prediction. It starts anew, with negative log-odds if the pose is out of the
-// robot's reach. Within a second of an accepted pose, and within reach, the earlier test continues.
-PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig,
-                                                const MapView& map) const {
-  constexpr double kSlack = 0.5;    // metres, error of poses
+// What a find is compared with: the last accepted pose, or the pose by measured motion since then.
+Whereabouts::Accepted Whereabouts::last_known(const Rig& rig, const MapView& map) const {
+  const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
+  if (!is_bridged) return *last_accepted_;
+  const AnchoredPose& bridged = trajectory_[trajectory_.believed_count() - 1];
+  return {bridged.time, body_pose(rig, camera_from_world(map, bridged))};
+}
+
+double Whereabouts::log_odds_of_find(Timestamp time, const Pose& body, const Rig& rig, const MapView& map) const {
+  constexpr double kSlack = 0.5;  // metres, error of poses
+  if (!last_accepted_ || trajectory_.believed_count() == 0) return 0.0;
+  const Accepted known = last_known(rig, map);
+  const double reach = kSlack + registration_.max_speed * to_seconds(time - known.time);
+  if ((body.translation - known.map_from_body.translation).norm() > reach) return kLogOddsOfCarried;
+  return log_odds_of_way(body, rig, map);
+}
+
+// Within a second of an accepted pose, and within reach, its test goes on.
+PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body, const PlaceHypothesis* known,
+                                                const Rig& rig, const MapView& map) const {
   constexpr double kShortly = 1.0;  // seconds
   const int frames = registration_.confirmations;
-  if (trajectory_.believed_count() == 0 || !last_believed_)
-    return PlaceHypothesis(0.0, frames, registration_.accept_log_odds);
-  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
-  // Frames bridged by a well-known motion do not count as time without a pose.
-  const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
-  const auto seconds_since = [&](Timestamp then) { return to_seconds(time - (is_bridged ? believed.time : then)); };
-  const double shift = (body.translation - body_pose(rig, camera_from_world(map, believed)).translation).norm();
-  if (shift > kSlack + registration_.max_speed * seconds_since(*last_believed_)) {
-    return PlaceHypothesis(kLogOddsOfCarried, kConfirmationsOfJump, registration_.accept_log_odds);
+  const double prior = log_odds_of_find(time, body, rig, map);
+  const bool is_carried = prior <= kLogOddsOfCarried;
+  if (!is_carried && last_accepted_ && to_seconds(time - last_known(rig, map).time) <= kShortly) {
+    PlaceHypothesis found_again = has_pose_ && place_.is_accepted() ? place_ : place_before_;
+    found_again.find_again(frames);
+    return found_again;
   }
-  if (!last_accepted_ || seconds_since(*last_accepted_) > kShortly) {
-    return PlaceHypothesis(log_odds_of_way(body, rig, map), frames, registration_.accept_log_odds);
-  }
-  PlaceHypothesis found_again = place_before_;
-  found_again.find_again(frames);
-  return found_again;
+  if (known != nullptr) return *known;
+  return PlaceHypothesis(prior, is_carried ? kConfirmationsOfJump : frames, registration_.accept_log_odds);
 }
 
 // The metres that the body went.
@@ -210,11 +218,13 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
   Progress progress{0.0, place_.is_accepted(), last_believed_.has_value()};
   if (seen.from_nothing && on_offline_map_) {
-    place_ = hypothesis_of_find(seen.frame.time, body, rig, map);
+    place_ = hypothesis_of_find(seen.frame.time, body, seen.known_place, rig, map);
     is_by_hint_ = seen.is_by_hint;
     bridged_beginning_.reset();
   }
-  if (on_offline_map_) place_.observe(seen.view != nullptr ? *seen.view : PlaceView{}, !seen.from_nothing);
+  if (on_offline_map_) {
+    place_.observe(seen.view != nullptr ? *seen.view : PlaceView{}, !seen.from_nothing, seen.log_odds_of_rivals);
+  }
   is_by_hint_ = is_by_hint_ && !place_.is_accepted();
   if (seen.from_nothing && seen.is_registered) note_end_of_bridge(rig, map);
   std::optional<BodyMotion> led;
@@ -233,7 +243,7 @@ Whereabouts::Progress Whereabouts::note(const TrackedPose& seen, const Rig& rig,
   believe();
   if (!seen.is_registered) return progress;
   last_believed_ = seen.frame.time;
-  if (place_.is_accepted()) last_accepted_ = seen.frame.time;
+  if (place_.is_accepted()) last_accepted_ = {seen.frame.time, body};
   return progress;
 }
 

@@ -71,6 +71,12 @@ class Whereabouts {
   // to its beginning. 0 where that is not known.
   double log_odds_of_registration(const Pose& offline_from_online) const;
 
+  // Prior log-odds of a place where the body is found without a prediction, by the way from the last accepted pose.
+  double log_odds_of_find(Timestamp time, const Pose& map_from_body, const Rig& rig, const MapView& map) const;
+  // Test of the place at which a frame is found. known: test of that place by earlier frames; nullptr: none.
+  PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& map_from_body, const PlaceHypothesis* known,
+                                     const Rig& rig, const MapView& map) const;
+
   // A frame later; motion is that of the body, where it is known.
   void tell(const std::optional<BodyMotion>& motion);
   // How the body is tilted at this frame, where accelerations tell it.
@@ -87,6 +93,8 @@ class Whereabouts {
     std::size_t submap = 0;
     bool is_by_hint = false;          // where it was found from nothing: it was looked for near a hint alone
     const PlaceView* view = nullptr;  // the part of the offline map that it shows; nullptr without a map
+    const PlaceHypothesis* known_place = nullptr;  // where it was found from nothing: see hypothesis_of_find
+    double log_odds_of_rivals = 0.0;               // see PlaceHypothesis::observe
   };
   // What a tracked frame changed.
   struct Progress {
@@ -131,8 +139,12 @@ class Whereabouts {
     Matrix6 covariance;
   };
   std::optional<MeasuredPose> measured_pose(const Rig& rig, const MapView& map) const;  // empty: unknown motion
+  struct Accepted {
+    Timestamp time{};
+    Pose map_from_body;
+  };
   double log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const;
-  PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& body, const Rig& rig, const MapView& map) const;
+  Accepted last_known(const Rig& rig, const MapView& map) const;  // precondition: there is a last accepted pose
   void wait_for_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const;
@@ -182,7 +194,7 @@ class Whereabouts {
   PlaceHypothesis place_before_;  // the last one that was believed and accepted, before its pose was lost
   bool is_by_hint_ = false;
   std::optional<Timestamp> last_believed_;  // in the reports' frame
-  std::optional<Timestamp> last_accepted_;  // in the reports' frame
+  std::optional<Accepted> last_accepted_;   // the last pose at an accepted place, in the reports' frame
   bool has_pose_ = false;
   bool is_way_known_ = true;  // from the last pose that was believed
   double scene_depth_ = 1.0;  // metres, median of the points in the last frame

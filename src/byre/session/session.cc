@@ -167,10 +167,9 @@ void Session::take_over_results(FrameReport& report) {
 }
 
 void Session::take_over_place(FrameReport& report) {
-  const auto [found, refused] = mission_->collect_place();
-  report.refused_place = refused;
-  if (!found) return;
-  const OfflineTracker::Consequence consequence = mission_->consider(*found, whereabouts_, mapper_);
+  const std::optional<PlaceSearch> search = mission_->collect_place();
+  if (search) report.refused_place = search->refused;
+  const OfflineTracker::Consequence consequence = mission_->consider(search, whereabouts_, mapper_);
   if (consequence.correction) mapper_.correct_later(*consequence.correction);
   if (consequence.agrees_with_hint) whereabouts_.note_agreement();
   if (consequence.refutes_pose) {
@@ -215,6 +214,20 @@ InputFrame Session::input_of(const Frame& rectified, const std::optional<BodyMot
   return {std::move(frame), fault, evidence};
 }
 
+// Puts the place first at which the frame, and those before where it continues them, is most likely.
+void Session::put_most_likely_first(std::vector<HybridTrack>& places, const Frame& frame) {
+  if (places.size() < 2) return;
+  std::vector<double> log_odds;
+  for (const HybridTrack& found : places) {
+    const Pose body = body_pose(rig_, found.tracked.camera_from_world);
+    PlaceHypothesis place = whereabouts_.hypothesis_of_find(
+        frame.time, body, mission_->known_place_at(frame.time, found.tracked.camera_from_world), rig_, map());
+    place.observe(mission_->view_of(frame, found, rig_, lens_watch_.hidden()), true);
+    log_odds.push_back(place.log_odds());
+  }
+  std::swap(places.front(), places[static_cast<std::size_t>(std::ranges::max_element(log_odds) - log_odds.begin())]);
+}
+
 Session::Located Session::locate(const InputFrame& input) {
   const Frame& frame = input.frame;
   const AnchoredTrajectory& trajectory = whereabouts_.trajectory();
@@ -254,8 +267,17 @@ Session::Located Session::locate(const InputFrame& input) {
   }
   located.from_nothing = located.track && is_led_back;
   if (!located.track && can_search) {
-    Tracker::Find find = tracker_.find(frame, scene);
-    located.track = std::move(find.track);
+    Tracker::Find find;
+    if (auto found = mission_ ? mission_->find_at_rival(frame, rig_, lens_watch_.hidden()) : std::nullopt) {
+      find.places.push_back(found_in(Origin::offline, *std::move(found)));
+    }
+    if (find.places.empty()) find = tracker_.find(frame, scene);
+    put_most_likely_first(find.places, frame);
+    if (!find.places.empty()) {
+      located.track = std::move(find.places.front());
+      located.elsewhere.assign(std::make_move_iterator(find.places.begin() + 1),
+                               std::make_move_iterator(find.places.end()));
+    }
     drop_non_finite();
     if (located.track && !hint_.get() && contradicts_motion()) located.track.reset();
     located.refused = find.refused;
@@ -286,12 +308,12 @@ Session::Located Session::begin_submap(const Frame& frame) {
     predicted = camera_pose(rig_, *told);
   }
   const Mapper::Beginning begun = mapper_.begin(frame, rig_, predicted, trajectory);
-  if (begun.keyframes.empty()) return {.track = {}, .start_failure = begun.failure};
+  if (begun.keyframes.empty()) return {.track = {}, .elsewhere = {}, .start_failure = begun.failure};
   whereabouts_.begin(begun.keyframes, mapper_.submaps().present(), rig_, mapper_.online());
   tracker_.restart_from(begun.keyframes.back());
   keyframe_watch_.restart();
   if (mission_) mission_->begin_submap();
-  return {.track = {}, .begins_submap = true, .start_failure = begun.failure};
+  return {.track = {}, .elsewhere = {}, .begins_submap = true, .start_failure = begun.failure};
 }
 
 void Session::remember(const InputFrame& input, const Located& located, FrameReport& report) {
@@ -302,9 +324,20 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
       is_on_map && (located.from_nothing || mission_->is_view_due(whereabouts_))
           ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden()))
           : std::nullopt;
+  std::optional<PlaceHypothesis> known_place;
+  if (is_on_map) {
+    const Pose& pose = track.tracked.camera_from_world;
+    if (const auto* known = located.from_nothing ? mission_->known_place_at(input.frame.time, pose) : nullptr) {
+      known_place = *known;
+    }
+    if (located.from_nothing) mission_->begin_place(input.frame.time, pose);
+    mission_->test_rivals({input.frame, track, rig_, 0.0, false, {}, lens_watch_.hidden()}, located.elsewhere,
+                          whereabouts_, mapper_);
+  }
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
-                         located.is_by_hint, view ? &*view : nullptr},
+                         located.is_by_hint, view ? &*view : nullptr, known_place ? &*known_place : nullptr,
+                         is_on_map ? mission_->log_odds_of_rivals() : 0.0},
                         rig_, map());
   tracker_.note(track);
   if (!input.cuts.online_points) {

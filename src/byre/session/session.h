@@ -122,6 +122,7 @@ class Session {
   // What a frame came to.
   struct Located {
     std::optional<HybridTrack> track;
+    std::vector<HybridTrack> elsewhere;  // other places that show the frame
     bool from_nothing = false;
     bool is_by_hint = false;     // it was looked for near a hint alone
     bool begins_submap = false;  // a first keyframe was made of it
@@ -134,6 +135,7 @@ class Session {
   bool take_over_camera();
   void take_turn(const RigTurn& turn);
   InputFrame input_of(const Frame& rectified, const std::optional<BodyMotion>& motion);
+  void put_most_likely_first(std::vector<HybridTrack>& places, const Frame& frame);
   Located locate(const InputFrame& input);
   bool may_begin_submap(const InputFrame& input) const;
   Located begin_submap(const Frame& frame);

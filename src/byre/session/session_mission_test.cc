@@ -186,10 +186,13 @@ TEST(Mission, FindsItselfWhereItIsToldToBeThoughAnotherPlaceLooksMoreAlike) {
   const auto offline = mapped(1.0);
   const std::vector<Frame> frames = seen_as_the_other_side(mission);
   const Pose& truth = mission.truth[0].world_from_body;
-  Session alone = session_on(offline), told = session_on(offline);
+  const Map nothing_online(Origin::online);
+  const Localisation found = localise(frames[0], mission.rig, {&offline->map(), nothing_online}, offline->places(), {});
+  ASSERT_FALSE(found.places_found.empty());
+  const Pose most_alike = inverse(found.places_found.front().camera_from_world);
+  EXPECT_GT((most_alike.translation - truth.translation).norm(), 3.0);
+  Session told = session_on(offline);
   told.look_near({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
-  const auto elsewhere = alone.process(frames[0]).map_from_body;
-  EXPECT_TRUE(!elsewhere || (elsewhere->translation - truth.translation).norm() > 3.0);
   const auto reports = reports_of(told, frames);
   ASSERT_TRUE(reports[0].map_from_body);
   EXPECT_THAT(*reports[0].map_from_body, PoseNear(truth, 0.05, kDegree));

@@ -13,7 +13,8 @@ std::size_t inlier_count(const std::optional<HybridTrack>& track) {
   return track ? track->tracked.features.size() : 0;
 }
 
-// A frame found in one map alone.
+}  // namespace
+
 HybridTrack found_in(Origin origin, TrackedFrame found) {
   HybridTrack track;
   track.tracked = std::move(found);
@@ -30,8 +31,6 @@ HybridTrack found_in(Origin origin, TrackedFrame found) {
   for (const TrackedFeature& feature : tracked.features) track.offline_agreed.push_back(feature.point);
   return track;
 }
-
-}  // namespace
 
 bool is_like_another_place(const TrackedFrame& found) {
   constexpr double kLeastShare = 0.1;
@@ -138,7 +137,8 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
     const auto [found, refused] =
         localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way, scene.hidden},
                     {options_.relocalise, options_.mission.bounds});
-    if (found.tracked) return {found_in(Origin::offline, *found.tracked)};
+    for (const TrackedFrame& place : found.places_found) result.places.push_back(found_in(Origin::offline, place));
+    if (!result.places.empty()) return result;
     result.refused = refused;
   }
   const PlaceIndex* const places = scene.mapper.places();
@@ -146,7 +146,9 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
   LocaliseOptions options = options_.relocalise;
   options.hidden = scene.hidden;
   const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options);
-  if (found.tracked && !is_like_another_place(*found.tracked)) result.track = found_in(Origin::online, *found.tracked);
+  if (found.tracked && !is_like_another_place(*found.tracked)) {
+    result.places.push_back(found_in(Origin::online, *found.tracked));
+  }
   return result;
 }
 

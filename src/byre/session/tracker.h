@@ -18,6 +18,9 @@ namespace byre {
 // a frame belongs, a larger share is seen.
 bool is_like_another_place(const TrackedFrame& found);
 
+// A frame found in one map alone.
+HybridTrack found_in(Origin origin, TrackedFrame found);
+
 // Finds where a frame was taken from: by prediction, or from nothing. Reads the maps, and changes nothing but what it
 // keeps from frame to frame. Called from the session's thread.
 class Tracker {
@@ -48,8 +51,9 @@ class Tracker {
   std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
                                    const MotionModel& motion);
   struct Find {
-    std::optional<HybridTrack> track;  // online or offline by its references; empty where nothing was found
-    Doubt refused = Doubt::none;       // why the robot cannot be where it was found in the offline map
+    // Places that show the frame, most inliers first. Online or offline by their references; several only offline.
+    std::vector<HybridTrack> places;
+    Doubt refused = Doubt::none;  // why the robot cannot be where it was found in the offline map
   };
   // Anywhere in the maps, the offline one first.
   Find find(const Frame& frame, const Scene& scene) const;

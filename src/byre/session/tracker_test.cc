@@ -62,8 +62,9 @@ TEST_F(TrackerOnAMap, LooksWithoutAPredictionWhereOneLedAstray) {
 }
 
 TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
-  const auto found = tracker_.find(mission_.frames[2], scene()).track;
-  ASSERT_TRUE(found);
+  const std::vector<HybridTrack> places = tracker_.find(mission_.frames[2], scene()).places;
+  ASSERT_EQ(places.size(), 1u);
+  const HybridTrack* const found = &places.front();
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
   EXPECT_TRUE(found->online_reference);
   EXPECT_FALSE(tracker_.is_doubtful(*found, scene()));
@@ -72,7 +73,7 @@ TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
 TEST_F(TrackerOnAMap, FindsNothingInAnEmptyFrame) {
   const Frame blank{mission_.frames[1].time, std::make_shared<const Features>()};
   EXPECT_FALSE(tracker_.track(blank, scene(), last(0), {}));
-  EXPECT_FALSE(tracker_.find(blank, scene()).track);
+  EXPECT_THAT(tracker_.find(blank, scene()).places, ::testing::IsEmpty());
 }
 
 TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
@@ -81,8 +82,9 @@ TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
   const Mapper mapper(mission.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), offline});
   const Mission way(offline, {});
   const Tracker tracker({});
-  const auto found = tracker.find(mission.frames[6], {mission.rig, mapper, &way}).track;
-  ASSERT_TRUE(found);
+  const std::vector<HybridTrack> places = tracker.find(mission.frames[6], {mission.rig, mapper, &way}).places;
+  ASSERT_EQ(places.size(), 1u);
+  const HybridTrack* const found = &places.front();
   EXPECT_TRUE(found->offline_reference);
   EXPECT_FALSE(found->online_reference);
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_camera_from_world(mission, 6), 0.02, 0.01));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -41,7 +42,7 @@ struct FrameQuery {
 };
 
 Localisation failed(Failure failure, int matches, std::size_t inliers) {
-  return {std::nullopt, failure, 0, matches, static_cast<int>(inliers)};
+  return {std::nullopt, {}, failure, 0, matches, static_cast<int>(inliers)};
 }
 
 PointSighting sighting_of(const FrameQuery& query, const PointMatch& match) {
@@ -91,7 +92,7 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
     return failed(Failure::impossible, match_count, tracked->features.size());
   }
-  return {tracked, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
+  return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
 }
 
 // Whether two poses cannot both be right about where the camera is.
@@ -103,17 +104,16 @@ bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapVie
          rotation_log(motion.rotation).norm() > kMaxTurn;
 }
 
-// The attempt that came further; of two successes the one with more inliers, unless the other is nearly as good
-// somewhere else.
-Localisation better_of(const Localisation& best, const Localisation& other, const FrameQuery& query) {
-  if (!best.tracked || !other.tracked) {
-    const bool other_is_further = other.tracked || (!best.tracked && other.failure > best.failure);
-    return other_is_further ? other : best;
+// Places that show a frame, most inliers first; one of those that do not contradict each other.
+std::vector<TrackedFrame> distinct_places(std::vector<TrackedFrame> found, const MapView& map) {
+  std::ranges::stable_sort(found, std::greater{}, [](const TrackedFrame& place) { return place.features.size(); });
+  std::vector<TrackedFrame> places;
+  for (TrackedFrame& place : found) {
+    const bool is_known =
+        std::ranges::any_of(places, [&](const TrackedFrame& better) { return !contradict(better, place, map); });
+    if (!is_known) places.push_back(std::move(place));
   }
-  const auto& [more, fewer] = best.inliers >= other.inliers ? std::tie(best, other) : std::tie(other, best);
-  const bool rivals =
-      fewer.inliers >= kRivalShare * more.inliers && contradict(*more.tracked, *fewer.tracked, query.map);
-  return rivals ? failed(Failure::ambiguous, more.matches, static_cast<std::size_t>(more.inliers)) : more;
+  return places;
 }
 
 }  // namespace
@@ -182,11 +182,23 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
                          const LocaliseOptions& options, const PlaceFilter& filter) {
   const FrameQuery query{frame, rig, map, vocabulary, words, options, filter};
   Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
+  std::vector<TrackedFrame> found;
   for (const PlaceCandidate& place : places) {
-    best = better_of(best, try_place(place, query), query);
-    if (best.failure == Failure::ambiguous) break;
+    const Localisation attempt = try_place(place, query);
+    if (attempt.tracked) found.push_back(*attempt.tracked);
+    const bool is_better = attempt.tracked && attempt.inliers > best.inliers;
+    const bool is_further = !best.tracked && (attempt.tracked || attempt.failure > best.failure);
+    if (is_further || (best.tracked && is_better)) best = attempt;
   }
   best.places = static_cast<int>(places.size());
+  best.places_found = distinct_places(std::move(found), map);
+  const auto fits_as_well = [&](const TrackedFrame& other) {
+    return static_cast<double>(other.features.size()) >= kRivalShare * best.inliers;
+  };
+  if (best.places_found.size() > 1 && fits_as_well(best.places_found[1])) {
+    best.tracked.reset();
+    best.failure = Failure::ambiguous;
+  }
   return best;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace byre {
 
@@ -41,6 +42,8 @@ struct LocaliseOptions {
 
 struct Localisation {
   std::optional<TrackedFrame> tracked;  // empty when the frame was not found
+  // Places that show the frame, most inliers first; no two of them can be right. Not empty where two places fit.
+  std::vector<TrackedFrame> places_found{};
   LocalisationFailure failure = LocalisationFailure::too_few_features;
   int places = 0;   // places tried
   int matches = 0;  // matches by words at the place that came furthest; zero before any was tried

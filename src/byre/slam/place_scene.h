@@ -36,6 +36,34 @@ struct MappedPlace {
   PlaceIndex index;
 };
 
+// The room twice in one map, the second time ten metres to the side: nobody could say which it is.
+inline MappedPlace twin_rooms(const SimulatedMission& mission) {
+  MappedPlace place(mission);
+  const Map once = place.map;
+  const Eigen::Vector3d shift(10.0, 0.0, 0.0);
+  std::vector<PointId> copy_of(static_cast<std::size_t>(once.point_count()));
+  std::vector<KeyframeId> copied;
+  for (const KeyframeId id : once.keyframe_ids()) {
+    Keyframe keyframe = *once.find_keyframe(id);
+    keyframe.camera_from_world = keyframe.camera_from_world * Pose{Eigen::Quaterniond::Identity(), -shift};
+    for (Sighting& sighting : keyframe.sightings) sighting.point.reset();
+    copied.push_back(place.map.add_keyframe(keyframe));
+    place.index.add(copied.back(), keyframe.words);
+  }
+  for (const PointId id : once.point_ids()) {
+    MapPoint point = *once.find_point(id);
+    point.position_in_world += shift;
+    point.reference.keyframe = copied[point.reference.keyframe.number];
+    const PointId copy = place.map.add_point(point);
+    for (const Observation& seen : once.observations(id)) {
+      Sighting sighting = once.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)];
+      sighting.point = copy;
+      place.map.add_observation({copied[seen.keyframe.number], seen.feature}, sighting);
+    }
+  }
+  return place;
+}
+
 // Trained on a lap in a simulated room.
 inline const Vocabulary& simulated_vocabulary() {
   static const Vocabulary trained =

@@ -1,0 +1,135 @@
+#include "byre/localisation/rival_places.h"
+
+#include "byre/localisation/place_view_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+using Look = RivalPlaces::Look;
+
+Pose camera_at(double x) {
+  return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}};
+}
+Pose beside(double metres) {
+  return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
+}
+
+// A place that frames do not decide about.
+PlaceHypothesis open_place(const PlaceView& view = view_of_room(4, 6)) {
+  PlaceHypothesis place(0.0, 3);
+  place.observe(view, true);
+  return place;
+}
+
+// A camera at the robot's place, and a rival 5 m beside it.
+class RivalBeside : public ::testing::Test {
+ protected:
+  RivalBeside() { rivals_.propose(camera_at(0.0), beside(5.0), 0.0); }
+
+  // A frame at x which shows this at every rival.
+  void observe(double x, const PlaceView& view, bool is_tracked = true) {
+    rivals_.observe(camera_at(x), [&](const Pose& predicted) { return Look{predicted, view, is_tracked}; });
+  }
+  void observe_along(double from, double to, const PlaceView& view) {
+    for (double x = from; x <= to; x += 0.25) observe(x, view);
+  }
+
+  const PlaceView shown_ = view_of_room(10, 0);
+  const PlaceView not_shown_ = view_of_room(0, 10);
+  RivalPlaces rivals_{3.0};
+};
+
+TEST_F(RivalBeside, IsAsLikelyAsWhatFramesShowThere) {
+  observe(0.0, shown_);
+  EXPECT_NEAR(rivals_.log_odds(), std::log(1.0 + std::exp(open_place(shown_).log_odds())), 1e-9);
+}
+
+TEST_F(RivalBeside, IsLookedAtWhereTheRobotWouldBe) {
+  Pose looked_at;
+  observe(0.0, shown_);
+  rivals_.observe(camera_at(1.0), [&](const Pose& predicted) {
+    looked_at = predicted;
+    return Look{predicted, shown_, true};
+  });
+  EXPECT_NEAR(inverse(looked_at).translation.x(), 6.0, 1e-12);
+}
+
+TEST_F(RivalBeside, IsDroppedWhereItShowsNothingOfTheMap) {
+  observe(0.0, shown_);
+  for (int i = 0; i < 20; ++i) observe(0.1 * i, not_shown_);
+  EXPECT_EQ(rivals_.log_odds(), 0.0);
+}
+
+TEST_F(RivalBeside, IsDroppedWhereItCannotBeTrackedAtFirst) {
+  observe(0.0, not_shown_, false);
+  EXPECT_EQ(rivals_.log_odds(), 0.0);
+}
+
+TEST_F(RivalBeside, IsKeptWhereNoKeyframeSawItFromNearby) {
+  observe(0.0, shown_);
+  const double before = rivals_.log_odds();
+  PlaceView from_afar = not_shown_;
+  from_afar.is_near_keyframe = false;
+  for (int i = 0; i < 20; ++i) observe(0.0, from_afar, false);
+  EXPECT_EQ(rivals_.log_odds(), before);
+}
+
+TEST_F(RivalBeside, IsOneWhereItIsProposedAgain) {
+  rivals_.propose(camera_at(0.0), beside(5.2), 0.0);
+  rivals_.propose(camera_at(0.0), beside(0.2), 0.0);
+  observe(0.0, shown_);
+  EXPECT_NEAR(rivals_.log_odds(), std::log(1.0 + std::exp(open_place(shown_).log_odds())), 1e-9);
+}
+
+TEST_F(RivalBeside, OutdoesAPlaceThatIsNotAcceptedByThreeFrames) {
+  observe(0.0, shown_);
+  observe(0.0, shown_);
+  EXPECT_FALSE(rivals_.outdo(open_place()));
+  observe(0.0, shown_);
+  EXPECT_TRUE(rivals_.outdo(open_place()));
+  EXPECT_FALSE(rivals_.outdo(open_place(view_of_room(20, 0))));
+}
+
+TEST_F(RivalBeside, OutdoesAnAcceptedPlaceOnlyAlongAWay) {
+  const PlaceHypothesis accepted;
+  for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
+  EXPECT_FALSE(rivals_.outdo(accepted)) << "from one spot";
+  observe_along(0.5, 2.0, shown_);
+  EXPECT_TRUE(rivals_.outdo(accepted));
+}
+
+TEST_F(RivalBeside, OutdoesNoPlaceWhereMuchHasChangedAtItAsWell) {
+  observe_along(0.0, 3.0, view_of_room(2, 4));
+  EXPECT_FALSE(rivals_.outdo(open_place(not_shown_)));
+}
+
+TEST_F(RivalBeside, IsKnownWhereAFrameIsFoundThere) {
+  observe(0.0, shown_);
+  rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
+  const Timestamp next = from_seconds(0.1);
+  ASSERT_NE(rivals_.known_at(next, camera_at(5.1)), nullptr);
+  EXPECT_EQ(rivals_.known_at(next, camera_at(5.1))->log_odds(), open_place(shown_).log_odds());
+  ASSERT_NE(rivals_.known_at(next, camera_at(0.1)), nullptr);
+  EXPECT_EQ(rivals_.known_at(next, camera_at(0.1))->log_odds(), open_place().log_odds());
+  EXPECT_EQ(rivals_.known_at(next, camera_at(-5.0)), nullptr);
+  EXPECT_EQ(rivals_.known_at(from_seconds(2.0), camera_at(5.1)), nullptr) << "too long ago";
+}
+
+TEST_F(RivalBeside, ChangesPlacesWithTheRobotsPlace) {
+  observe(0.0, shown_);
+  rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
+  rivals_.begin(from_seconds(0.1), camera_at(5.0));
+  EXPECT_NEAR(rivals_.log_odds(), std::log(1.0 + std::exp(open_place().log_odds())), 1e-9);
+}
+
+TEST_F(RivalBeside, IsForgottenWhereAFrameIsFoundLongAfter) {
+  observe(0.0, shown_);
+  rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
+  rivals_.begin(from_seconds(2.0), camera_at(5.0));
+  EXPECT_EQ(rivals_.log_odds(), 0.0);
+}
+
+}  // namespace
+}  // namespace byre
