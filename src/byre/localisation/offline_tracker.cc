@@ -21,7 +21,7 @@ OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const 
     : options_(options),
       offline_(std::move(offline)),
       mission_(offline_, options.mission),
-      rivals_(options.mission.registration.max_speed),
+      rivals_(options.mission.registration),
       search_(std::move(lanes.search)),
       calibration_lane_(std::move(lanes.calibration)) {}
 
@@ -80,28 +80,29 @@ double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track,
   return byre::log_odds_of(view_of(frame, track, rig, hidden));
 }
 
-void OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
-  rivals_.begin(time, camera_from_place);
-  is_outdone_ = false;
+std::optional<PlaceHypothesis> OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
+  is_refuted_ = false;
+  return rivals_.begin(time, camera_from_place);
 }
 
 std::optional<TrackedFrame> OfflineTracker::find_at_rival(const Frame& frame, const Rig& rig,
                                                           const HiddenCells& hidden) {
   const std::optional<Pose> predicted = rivals_.camera_from_likeliest();
-  if (!std::exchange(is_outdone_, false) || !predicted) return std::nullopt;
-  return track_at(frame, *predicted, rig, hidden);
+  if (!std::exchange(is_refuted_, false) || !predicted) return std::nullopt;
+  return track_at(frame, *predicted, points_around(*predicted), rig, hidden);
 }
 
-std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted, const Rig& rig,
+std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted,
+                                                     std::span<const PointId> points, const Rig& rig,
                                                      const HiddenCells& hidden) const {
   const Map nothing_online(Origin::online);
   TrackOptions options = options_.track;
   options.hidden = hidden;
-  return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points_around(predicted), options);
+  return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points, options);
 }
 
 ReusedVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offline) const {
-  constexpr double kNear = 10.0;  // metres; the points of a place may have been seen from elsewhere
+  constexpr double kNear = 10.0;  // metres; keyframes far from a place may have seen its points
   constexpr int kKeyframes = 5;
   const Map nothing_online(Origin::online);
   ReusedVector<PointId> around;
@@ -114,36 +115,44 @@ ReusedVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offl
   return around;
 }
 
-RivalPlaces::Look OfflineTracker::look_at(const Frame& frame, const Pose& predicted, const Rig& rig,
-                                          const HiddenCells& hidden) const {
+RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                                const HiddenCells& hidden) const {
+  const ReusedVector<PointId> around = points_around(predicted);
+  const auto tracked = track_at(frame, predicted, around, rig, hidden);
   TrackedFrame there;
   there.camera_from_world = predicted;
-  const auto tracked = track_at(frame, predicted, rig, hidden);
   if (tracked) there = *tracked;
   const Pose& pose = there.camera_from_world;
   const ReusedVector<PointId> nearby = points_of_place(*offline_, keyframes_of_place(*offline_, pose));
-  return {pose, view_of_place({*offline_, rig, frame, there, nearby, points_around(pose), hidden}),
-          tracked.has_value()};
+  return {pose, view_of_place({*offline_, rig, frame, there, nearby, around, hidden}), tracked.has_value()};
 }
 
 void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere,
                                  const Whereabouts& whereabouts, const Mapper& mapper) {
   constexpr int kFramesOfAcceptedPlace = 3;  // to save time
   const Pose& camera_from_place = seen.track.tracked.camera_from_world;
-  const bool is_accepted = whereabouts.place().is_accepted();
+  const bool is_accepted = whereabouts.place().is_accepted() && elsewhere.empty();
   if (is_accepted && ++frames_since_rivals_ < kFramesOfAcceptedPlace) return;
   frames_since_rivals_ = 0;
-  const auto propose = [&](const Pose& rival_from_place) {
-    const Pose body = rival_from_place * body_pose(seen.rig, camera_from_place);
-    rivals_.propose(camera_from_place, rival_from_place,
-                    whereabouts.log_odds_of_find(seen.frame.time, body, seen.rig, mapper.map()));
-  };
-  for (const HybridTrack& other : elsewhere) propose(inverse(other.tracked.camera_from_world) * camera_from_place);
-  if (!is_accepted || !elsewhere.empty()) {
-    for (const Eigen::Vector3d& shift : shifts_at(camera_from_place)) propose({Eigen::Quaterniond::Identity(), shift});
+  std::vector<Pose> rivals;  // camera_from_offline
+  for (const HybridTrack& other : elsewhere) rivals.push_back(other.tracked.camera_from_world);
+  if (!is_accepted) {
+    for (const Eigen::Vector3d& shift : shifts_at(camera_from_place)) {
+      rivals.push_back(camera_from_place * Pose{Eigen::Quaterniond::Identity(), -shift});
+    }
   }
+  propose_rivals({seen.frame.time, camera_from_place}, rivals, seen.rig, whereabouts, mapper);
   rivals_.observe(camera_from_place,
-                  [&](const Pose& predicted) { return look_at(seen.frame, predicted, seen.rig, seen.hidden); });
+                  [&](const Pose& predicted) { return view_at_rival(seen.frame, predicted, seen.rig, seen.hidden); });
+}
+
+void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
+                                    const Whereabouts& whereabouts, const Mapper& mapper) {
+  for (const Pose& camera_from_rival : rivals) {
+    const Pose body = body_pose(rig, camera_from_rival);
+    rivals_.propose(place.camera_from_offline, camera_from_rival,
+                    whereabouts.log_odds_of_find(place.time, body, rig, mapper.map()));
+  }
 }
 
 std::span<const Eigen::Vector3d> OfflineTracker::shifts_at(const Pose& camera_from_place) {
@@ -220,8 +229,9 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
 OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSearch>& search,
                                                      const Whereabouts& whereabouts, const Mapper& mapper) {
   const PlaceHypothesis& place = whereabouts.place();
-  is_outdone_ = whereabouts.has_pose() && mapper.submaps().is_registered() && rivals_.outdo(place);
-  if (is_outdone_) return {.refutes_pose = true, .refutes_way = place.is_accepted() || whereabouts.is_by_hint()};
+  is_refuted_ =
+      whereabouts.has_pose() && mapper.submaps().is_registered() && rivals_.refute(place, whereabouts.is_by_hint());
+  if (is_refuted_) return {.refutes_pose = true, .refutes_way = place.is_accepted() || whereabouts.is_by_hint()};
   if (!search) return {};
   const Submaps& submaps = mapper.submaps();
   if (!whereabouts.has_pose() || mapper.has_correction()) return {};
@@ -229,7 +239,9 @@ OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSe
   if (then == nullptr || submaps.frame(then->submap) != submaps.frame()) return {};
   const Pose camera_from_online = camera_from_world(mapper.map(), *then);
   const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
-  if (is_in_place) propose_rivals(*search, camera_from_online, whereabouts, mapper);
+  if (is_in_place) {
+    propose_rivals({search->time, camera_from_online}, search->places, search->rig, whereabouts, mapper);
+  }
   if (!search->found || !place.is_believed()) return {};
   const FoundPlace& found = *search->found;
   if (is_in_place && (place.is_accepted() || whereabouts.is_by_hint())) {
@@ -244,15 +256,6 @@ OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSe
   const double prior = submaps.is_registered() ? 0.0 : whereabouts.log_odds_of_registration(offline_from_online);
   if (prior < 0.0 && found.log_odds + prior < 0.0) return {};
   return {.correction = correction_by(found, camera_from_online, submaps.frame())};
-}
-
-void OfflineTracker::propose_rivals(const PlaceSearch& search, const Pose& camera_from_place,
-                                    const Whereabouts& whereabouts, const Mapper& mapper) {
-  for (const Pose& camera_from_rival : search.places) {
-    const Pose body = body_pose(search.rig, camera_from_rival);
-    rivals_.propose(camera_from_place, inverse(camera_from_rival) * camera_from_place,
-                    whereabouts.log_odds_of_find(search.time, body, search.rig, mapper.map()));
-  }
 }
 
 // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.

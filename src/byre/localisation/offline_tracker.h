@@ -81,12 +81,13 @@ class OfflineTracker {
   const PlaceHypothesis* known_place_at(Timestamp time, const Pose& camera_from_offline) const {
     return rivals_.known_at(time, camera_from_offline);
   }
-  // A frame was found at a place without a prediction.
-  void begin_place(Timestamp time, const Pose& camera_from_place);
-  // Tracks a frame at the rival that outdid the last frame's place; empty where none did.
+  // A frame was found at a place without a prediction. Returns the test of that place by earlier frames, if there is
+  // one.
+  std::optional<PlaceHypothesis> begin_place(Timestamp time, const Pose& camera_from_place);
+  // Tracks a frame at the rival that refuted the last frame's place; empty if none did.
   std::optional<TrackedFrame> find_at_rival(const Frame& frame, const Rig& rig, const HiddenCells& hidden);
-  // Tests a tracked frame at the rivals of its place. elsewhere: other places where the search found it; they become
-  // rivals, as do places that look alike in the map while the place is not accepted.
+  // Tests a tracked frame at the rivals of its place. New rivals are the places elsewhere, at which the search found
+  // the frame as well, and, while the place is not accepted, places that look alike in the map.
   void test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere, const Whereabouts& whereabouts,
                    const Mapper& mapper);
   double log_odds_of_rivals() const { return rivals_.log_odds(); }  // see RivalPlaces
@@ -113,12 +114,17 @@ class OfflineTracker {
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
   ReusedVector<PointId> points_around(const Pose& camera_from_offline) const;
-  std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, const Rig& rig,
-                                       const HiddenCells& hidden) const;
-  RivalPlaces::Look look_at(const Frame& frame, const Pose& predicted, const Rig& rig, const HiddenCells& hidden) const;
+  std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
+                                       const Rig& rig, const HiddenCells& hidden) const;
+  RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                  const HiddenCells& hidden) const;
   std::span<const Eigen::Vector3d> shifts_at(const Pose& camera_from_place);
-  void propose_rivals(const PlaceSearch& search, const Pose& camera_from_place, const Whereabouts& whereabouts,
-                      const Mapper& mapper);
+  struct PlaceOfFrame {
+    Timestamp time{};
+    Pose camera_from_offline;
+  };
+  void propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
+                      const Whereabouts& whereabouts, const Mapper& mapper);
   bool is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const;
   // Once enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
@@ -139,7 +145,7 @@ class OfflineTracker {
   };
   PlacesAlike places_alike_;  // shifts from the last place that was not accepted
   int frames_since_rivals_ = 0;
-  bool is_outdone_ = false;  // see RivalPlaces::outdo
+  bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;
   bool is_search_by_doubt_ = false;  // the one in flight, and not by need
   Worker<PlaceSearch> search_;

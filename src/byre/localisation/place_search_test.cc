@@ -1,6 +1,5 @@
 #include "byre/localisation/place_search.h"
 
-#include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/place_scene.h"
 
 #include <gmock/gmock.h>
@@ -28,20 +27,20 @@ class SearchInTwinRooms : public ::testing::Test {
   const SimulatedMission mission_ = lap();
 };
 
-TEST_F(SearchInTwinRooms, TellsOfBothAndChoosesNone) {
+TEST_F(SearchInTwinRooms, ReturnsBothPlacesAndChoosesNone) {
   const PlaceSearch search = search_place(twins(), {mission_.frames[0], mission_.rig}, {});
   EXPECT_FALSE(search.found);
   EXPECT_THAT(search.places, SizeIs(2));
   EXPECT_EQ(search.time, mission_.frames[0].time);
 }
 
-TEST_F(SearchInTwinRooms, HasTheOtherRoomAsThePlaceThatLooksAlike) {
+TEST_F(SearchInTwinRooms, FindsTheShiftBetweenTheRooms) {
   const std::vector<Eigen::Vector3d> shifts = shifts_to_places_alike(twins(), true_camera_from_world(mission_, 0));
   ASSERT_THAT(shifts, SizeIs(1));
   EXPECT_LT((shifts[0] - Eigen::Vector3d(10.0, 0.0, 0.0)).norm(), 0.01);
 }
 
-TEST(SearchInOneRoom, HasNoPlaceThatLooksAlike) {
+TEST(SearchInOneRoom, FindsNoShift) {
   const SimulatedMission mission = lap();
   EXPECT_THAT(shifts_to_places_alike(*offline_map_of(mission), true_camera_from_world(mission, 0)), IsEmpty());
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 constexpr double kSamePlace = 0.5;      // metres
 constexpr std::size_t kMostRivals = 5;  // bounds the time of a frame
 
-// Log-odds of the rivals of a rival: none is accepted beside the robot's place.
+// Log-odds of the rivals of a rival, so that its test never accepts it.
 constexpr double kNeverAccepted = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -23,7 +22,7 @@ bool RivalPlaces::is_recent(Timestamp time) const {
 
 double RivalPlaces::reach(Timestamp time) const {
   constexpr double kSlack = 0.3;  // metres, error of poses
-  return kSlack + max_speed_ * to_seconds(time - last_->time);
+  return kSlack + options_.max_speed * to_seconds(time - last_->time);
 }
 
 Pose RivalPlaces::offline_from_last(const Rival& rival) const {
@@ -42,42 +41,44 @@ const PlaceHypothesis* RivalPlaces::known_at(Timestamp time, const Pose& camera_
   return rival != rivals_.end() ? &rival->test : nullptr;
 }
 
-void RivalPlaces::begin(Timestamp time, const Pose& camera_from_place) {
-  if (!is_recent(time)) {
+std::optional<PlaceHypothesis> RivalPlaces::begin(Timestamp time, const Pose& camera_from_place) {
+  const PlaceHypothesis* const known = known_at(time, camera_from_place);
+  const std::optional<PlaceHypothesis> place = known != nullptr ? std::optional(*known) : std::nullopt;
+  if (is_recent(time)) {
+    const Eigen::Vector3d camera = inverse(camera_from_place).translation;
+    if (!last_->place.is_accepted()) rivals_.push_back({Pose{}, last_->place, camera, 0.0, 1});
+    std::erase_if(rivals_, [&](const Rival& rival) {
+      return (offline_from_last(rival).translation - camera).norm() <= reach(time);
+    });
+    for (Rival& rival : rivals_) rival.rival_from_place = offline_from_last(rival) * camera_from_place;
+  } else {
     rivals_.clear();
-    last_.reset();
-    return;
   }
-  const Eigen::Vector3d camera = inverse(camera_from_place).translation;
-  if (!last_->place.is_accepted()) rivals_.push_back({Pose{}, last_->place, camera, 0.0, 1});
-  std::erase_if(rivals_, [&](const Rival& rival) {
-    return (offline_from_last(rival).translation - camera).norm() <= reach(time);
-  });
-  for (Rival& rival : rivals_) rival.rival_from_place = offline_from_last(rival) * camera_from_place;
   last_.reset();
+  return place;
 }
 
-void RivalPlaces::propose(const Pose& camera_from_place, const Pose& rival_from_place, double prior) {
+void RivalPlaces::propose(const Pose& camera_from_place, const Pose& camera_from_rival, double prior) {
   const Eigen::Vector3d camera = inverse(camera_from_place).translation;
-  const Eigen::Vector3d at_rival = rival_from_place * camera;
+  const Eigen::Vector3d at_rival = inverse(camera_from_rival).translation;
   const auto is_same = [&](const Eigen::Vector3d& known) { return (known - at_rival).norm() <= kSamePlace; };
   if (rivals_.size() >= kMostRivals || is_same(camera)) return;
   if (std::ranges::any_of(rivals_, is_same, [&](const Rival& rival) { return rival.rival_from_place * camera; }))
     return;
-  constexpr int kFramesToBelieve = 3;
-  rivals_.push_back({rival_from_place, PlaceHypothesis(prior, kFramesToBelieve), camera});
+  const PlaceHypothesis test(prior, options_.confirmations, options_.accept_log_odds);
+  rivals_.push_back({inverse(camera_from_rival) * camera_from_place, test, camera});
 }
 
-// Where no keyframe saw the map from nearby, a frame that is not tracked is no evidence: the points of the rival may
-// look otherwise from there.
-void RivalPlaces::observe(const Pose& camera_from_place, const LookAt& look_at) {
+// If no keyframe saw the map from nearby, a frame that is not tracked is no evidence: points look different from
+// another direction.
+void RivalPlaces::observe(const Pose& camera_from_place, const TrackAt& track_at) {
   const Eigen::Vector3d camera = inverse(camera_from_place).translation;
   for (Rival& rival : rivals_) {
-    const Look look = look_at(camera_from_place * inverse(rival.rival_from_place));
-    if (!look.is_tracked && !look.view.is_near_keyframe) continue;
-    rival.frames += look.is_tracked;
-    rival.rival_from_place = inverse(look.camera_from_offline) * camera_from_place;
-    rival.test.observe(look.view, true, kNeverAccepted);
+    const View seen = track_at(camera_from_place * inverse(rival.rival_from_place));
+    if (!seen.is_tracked && !seen.view.is_near_keyframe) continue;
+    rival.frames += seen.is_tracked;
+    rival.rival_from_place = inverse(seen.camera_from_offline) * camera_from_place;
+    rival.test.observe(seen.view, true, kNeverAccepted);
     rival.way = std::max(rival.way, (camera - rival.proposed_at).norm());
   }
   std::erase_if(rivals_, [](const Rival& rival) { return rival.frames == 0 || rival.test.is_rejected(); });
@@ -100,14 +101,14 @@ std::optional<Pose> RivalPlaces::camera_from_likeliest() const {
   return inverse(offline_from_last(*likeliest));
 }
 
-bool RivalPlaces::outdo(const PlaceHypothesis& place) const {
+bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint) const {
   constexpr int kFrames = 3;
   constexpr double kWay = 2.0;             // metres
-  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to an accepted place
+  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to such a place
   return std::ranges::any_of(rivals_, [&](const Rival& rival) {
     const double log_odds = rival.test.log_odds();
     if (rival.frames < kFrames || log_odds < 0.0) return false;
-    if (!place.is_accepted()) return log_odds > place.log_odds();
+    if (!place.is_accepted() && !is_by_hint) return log_odds > place.log_odds();
     return rival.way >= kWay && log_odds >= place.log_odds() + of_rival;
   });
 }

@@ -9,40 +9,38 @@
 
 namespace byre {
 
-// Other places in the offline map that may be the robot's. Searches propose them; frames test each of them as they test
-// the robot's place. The robot moves alike at all of them, so a rival stays at the same pose relative to the place.
+// Other places in the offline map that may be the robot's, each with its own test. The robot moves in the same way at
+// all of them, so the pose of a rival relative to the robot's place stays the same.
 class RivalPlaces {
  public:
-  // What a frame shows at a rival.
-  struct Look {
-    Pose camera_from_offline;  // refined by the points seen there where it was tracked; else as predicted
+  // A frame at a rival.
+  struct View {
+    Pose camera_from_offline;  // refined if the frame was tracked there; otherwise the predicted pose
     PlaceView view;
     bool is_tracked = false;
   };
-  using LookAt = std::function<Look(const Pose& predicted_camera_from_offline)>;
+  using TrackAt = std::function<View(const Pose& predicted_camera_from_offline)>;
 
-  // max_speed: highest speed of the robot, metres per second.
-  explicit RivalPlaces(double max_speed) : max_speed_(max_speed) {}
+  explicit RivalPlaces(const RegistrationOptions& options) : options_(options) {}
 
-  // Test of the place, or of the rival, where a frame is found: within reach of its pose in the last frame, of the
-  // second before. nullptr: none.
+  // Test of the place, or of the rival, at which a frame is found: within reach of its pose in the last frame, for at
+  // most a second. nullptr: a new place.
   const PlaceHypothesis* known_at(Timestamp time, const Pose& camera_from_offline) const;
   // A frame was found at camera_from_place without a prediction. Rivals from now on: the place before, unless it was
-  // accepted, and the rivals elsewhere.
-  void begin(Timestamp time, const Pose& camera_from_place);
-  // rival_from_place: takes poses at the robot's place to poses at the rival. prior: log-odds. Ignored within half a
-  // metre of the place or of a known rival.
-  void propose(const Pose& camera_from_place, const Pose& rival_from_place, double prior);
-  // A frame of which camera_from_place is the pose at the robot's place.
-  void observe(const Pose& camera_from_place, const LookAt& look_at);
+  // accepted, and the rivals elsewhere. Returns the test of known_at(); empty for a new place.
+  std::optional<PlaceHypothesis> begin(Timestamp time, const Pose& camera_from_place);
+  // Adds a rival with these prior log-odds. Poses of one frame; ignored within half a metre of the place or of a rival.
+  void propose(const Pose& camera_from_place, const Pose& camera_from_rival, double prior);
+  // Tests a frame at all rivals.
+  void observe(const Pose& camera_from_place, const TrackAt& track_at);
   // The test of the robot's place after that frame.
   void note_place(Timestamp time, const Pose& camera_from_place, const PlaceHypothesis& place);
 
   // What the robot's place must outweigh: log of 1 + the sum of the odds of all rivals; 0 without rivals.
   double log_odds() const;
-  // Whether a rival is so much more likely than the robot's place that the place is to be given up. An accepted place
-  // is given up only after 2 m of way: places that look alike from one spot differ along a way.
-  bool outdo(const PlaceHypothesis& place) const;
+  // Whether a rival is so much more likely that the robot's place is to be given up. An accepted place, and one found
+  // by a hint, is given up only after 2 m of way: places that look alike from one spot differ along a way.
+  bool refute(const PlaceHypothesis& place, bool is_by_hint) const;
   // Pose of the last frame at the likeliest rival; empty without rivals.
   std::optional<Pose> camera_from_likeliest() const;
 
@@ -61,11 +59,11 @@ class RivalPlaces {
     Pose camera_from_place;
     PlaceHypothesis place;
   };
-  double reach(Timestamp time) const;  // metres, since the last frame; precondition: there is one
-  bool is_recent(Timestamp time) const;
+  bool is_recent(Timestamp time) const;              // the last frame is less than a second ago
+  double reach(Timestamp time) const;                // metres since the last frame; precondition: is_recent()
   Pose offline_from_last(const Rival& rival) const;  // pose of the last frame at the rival
 
-  double max_speed_;  // constant after construction
+  RegistrationOptions options_;  // constant after construction
   std::vector<Rival> rivals_;
   std::optional<LastFrame> last_;
 };

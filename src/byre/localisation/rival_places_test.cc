@@ -7,16 +7,13 @@
 namespace byre {
 namespace {
 
-using Look = RivalPlaces::Look;
+using View = RivalPlaces::View;
 
 Pose camera_at(double x) {
   return {Eigen::Quaterniond::Identity(), {-x, 0.0, 0.0}};
 }
-Pose beside(double metres) {
-  return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
-}
 
-// A place that frames do not decide about.
+// A place that is neither accepted nor rejected.
 PlaceHypothesis open_place(const PlaceView& view = view_of_room(4, 6)) {
   PlaceHypothesis place(0.0, 3);
   place.observe(view, true);
@@ -26,11 +23,11 @@ PlaceHypothesis open_place(const PlaceView& view = view_of_room(4, 6)) {
 // A camera at the robot's place, and a rival 5 m beside it.
 class RivalBeside : public ::testing::Test {
  protected:
-  RivalBeside() { rivals_.propose(camera_at(0.0), beside(5.0), 0.0); }
+  RivalBeside() { rivals_.propose(camera_at(0.0), camera_at(5.0), 0.0); }
 
-  // A frame at x which shows this at every rival.
+  // A frame at x that has this view at every rival.
   void observe(double x, const PlaceView& view, bool is_tracked = true) {
-    rivals_.observe(camera_at(x), [&](const Pose& predicted) { return Look{predicted, view, is_tracked}; });
+    rivals_.observe(camera_at(x), [&](const Pose& predicted) { return View{predicted, view, is_tracked}; });
   }
   void observe_along(double from, double to, const PlaceView& view) {
     for (double x = from; x <= to; x += 0.25) observe(x, view);
@@ -38,7 +35,7 @@ class RivalBeside : public ::testing::Test {
 
   const PlaceView shown_ = view_of_room(10, 0);
   const PlaceView not_shown_ = view_of_room(0, 10);
-  RivalPlaces rivals_{3.0};
+  RivalPlaces rivals_{RegistrationOptions{}};
 };
 
 TEST_F(RivalBeside, IsAsLikelyAsWhatFramesShowThere) {
@@ -46,14 +43,14 @@ TEST_F(RivalBeside, IsAsLikelyAsWhatFramesShowThere) {
   EXPECT_NEAR(rivals_.log_odds(), std::log(1.0 + std::exp(open_place(shown_).log_odds())), 1e-9);
 }
 
-TEST_F(RivalBeside, IsLookedAtWhereTheRobotWouldBe) {
-  Pose looked_at;
+TEST_F(RivalBeside, IsTestedWhereTheRobotWouldBe) {
+  Pose tested_at;
   observe(0.0, shown_);
   rivals_.observe(camera_at(1.0), [&](const Pose& predicted) {
-    looked_at = predicted;
-    return Look{predicted, shown_, true};
+    tested_at = predicted;
+    return View{predicted, shown_, true};
   });
-  EXPECT_NEAR(inverse(looked_at).translation.x(), 6.0, 1e-12);
+  EXPECT_NEAR(inverse(tested_at).translation.x(), 6.0, 1e-12);
 }
 
 TEST_F(RivalBeside, IsDroppedWhereItShowsNothingOfTheMap) {
@@ -77,32 +74,52 @@ TEST_F(RivalBeside, IsKeptWhereNoKeyframeSawItFromNearby) {
 }
 
 TEST_F(RivalBeside, IsOneWhereItIsProposedAgain) {
-  rivals_.propose(camera_at(0.0), beside(5.2), 0.0);
-  rivals_.propose(camera_at(0.0), beside(0.2), 0.0);
+  rivals_.propose(camera_at(0.0), camera_at(5.2), 0.0);
+  rivals_.propose(camera_at(0.0), camera_at(0.2), 0.0);
   observe(0.0, shown_);
   EXPECT_NEAR(rivals_.log_odds(), std::log(1.0 + std::exp(open_place(shown_).log_odds())), 1e-9);
 }
 
-TEST_F(RivalBeside, OutdoesAPlaceThatIsNotAcceptedByThreeFrames) {
+TEST_F(RivalBeside, RefutesAPlaceThatIsNotAcceptedByThreeFrames) {
   observe(0.0, shown_);
   observe(0.0, shown_);
-  EXPECT_FALSE(rivals_.outdo(open_place()));
+  EXPECT_FALSE(rivals_.refute(open_place(), false));
   observe(0.0, shown_);
-  EXPECT_TRUE(rivals_.outdo(open_place()));
-  EXPECT_FALSE(rivals_.outdo(open_place(view_of_room(20, 0))));
+  EXPECT_TRUE(rivals_.refute(open_place(), false));
+  EXPECT_FALSE(rivals_.refute(open_place(view_of_room(20, 0)), false));
 }
 
-TEST_F(RivalBeside, OutdoesAnAcceptedPlaceOnlyAlongAWay) {
+TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAWay) {
   const PlaceHypothesis accepted;
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
-  EXPECT_FALSE(rivals_.outdo(accepted)) << "from one spot";
+  EXPECT_FALSE(rivals_.refute(accepted, false)) << "from one spot";
   observe_along(0.5, 2.0, shown_);
-  EXPECT_TRUE(rivals_.outdo(accepted));
+  EXPECT_TRUE(rivals_.refute(accepted, false));
 }
 
-TEST_F(RivalBeside, OutdoesNoPlaceWhereMuchHasChangedAtItAsWell) {
+TEST_F(RivalBeside, RefutesAPlaceFoundByAHintOnlyAlongAWay) {
+  for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
+  EXPECT_FALSE(rivals_.refute(open_place(not_shown_), true)) << "from one spot";
+  observe_along(0.5, 2.0, shown_);
+  EXPECT_TRUE(rivals_.refute(open_place(not_shown_), true));
+}
+
+TEST_F(RivalBeside, KeepsTheThresholdOfTheOptionsAsTheRobotsPlace) {
+  RegistrationOptions strict;
+  strict.accept_log_odds = 100.0;
+  RivalPlaces rivals(strict);
+  rivals.propose(camera_at(0.0), camera_at(5.0), 0.0);
+  rivals.observe(camera_at(0.0), [&](const Pose& predicted) { return View{predicted, shown_, true}; });
+  rivals.note_place(Timestamp{0}, camera_at(0.0), open_place());
+  std::optional<PlaceHypothesis> place = rivals.begin(from_seconds(0.1), camera_at(5.0));
+  ASSERT_TRUE(place);
+  for (int i = 0; i < 10; ++i) place->observe(shown_, true);
+  EXPECT_FALSE(place->is_accepted());
+}
+
+TEST_F(RivalBeside, RefutesNoPlaceWhereMuchHasChangedAtItAsWell) {
   observe_along(0.0, 3.0, view_of_room(2, 4));
-  EXPECT_FALSE(rivals_.outdo(open_place(not_shown_)));
+  EXPECT_FALSE(rivals_.refute(open_place(not_shown_), false));
 }
 
 TEST_F(RivalBeside, IsKnownWhereAFrameIsFoundThere) {

@@ -326,11 +326,9 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
           : std::nullopt;
   std::optional<PlaceHypothesis> known_place;
   if (is_on_map) {
-    const Pose& pose = track.tracked.camera_from_world;
-    if (const auto* known = located.from_nothing ? mission_->known_place_at(input.frame.time, pose) : nullptr) {
-      known_place = *known;
+    if (located.from_nothing) {
+      known_place = mission_->begin_place(input.frame.time, track.tracked.camera_from_world);
     }
-    if (located.from_nothing) mission_->begin_place(input.frame.time, pose);
     mission_->test_rivals({input.frame, track, rig_, 0.0, false, {}, lens_watch_.hidden()}, located.elsewhere,
                           whereabouts_, mapper_);
   }

@@ -181,7 +181,7 @@ std::vector<Frame> seen_as_the_other_side(const SimulatedMission& lap) {
   return frames;
 }
 
-TEST(Mission, FindsItselfWhereItIsToldToBeThoughAnotherPlaceLooksMoreAlike) {
+TEST(Mission, FindsItselfNearAHintAlsoIfAnotherPlaceLooksMoreAlike) {
   const SimulatedMission mission = circling(1.0, 2);
   const auto offline = mapped(1.0);
   const std::vector<Frame> frames = seen_as_the_other_side(mission);
@@ -191,9 +191,9 @@ TEST(Mission, FindsItselfWhereItIsToldToBeThoughAnotherPlaceLooksMoreAlike) {
   ASSERT_FALSE(found.places_found.empty());
   const Pose most_alike = inverse(found.places_found.front().camera_from_world);
   EXPECT_GT((most_alike.translation - truth.translation).norm(), 3.0);
-  Session told = session_on(offline);
-  told.look_near({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
-  const auto reports = reports_of(told, frames);
+  Session hinted = session_on(offline);
+  hinted.look_near({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
+  const auto reports = reports_of(hinted, frames);
   ASSERT_TRUE(reports[0].map_from_body);
   EXPECT_THAT(*reports[0].map_from_body, PoseNear(truth, 0.05, kDegree));
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);

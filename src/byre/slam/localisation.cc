@@ -104,6 +104,11 @@ bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapVie
          rotation_log(motion.rotation).norm() > kMaxTurn;
 }
 
+// Attempts with a pose, by inliers, come after those without one, by how far they came.
+std::pair<bool, int> rank_of(const Localisation& attempt) {
+  return {attempt.tracked.has_value(), attempt.tracked ? attempt.inliers : static_cast<int>(attempt.failure)};
+}
+
 // Places that show a frame, most inliers first; one of those that do not contradict each other.
 std::vector<TrackedFrame> distinct_places(std::vector<TrackedFrame> found, const MapView& map) {
   std::ranges::stable_sort(found, std::greater{}, [](const TrackedFrame& place) { return place.features.size(); });
@@ -186,9 +191,7 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
   for (const PlaceCandidate& place : places) {
     const Localisation attempt = try_place(place, query);
     if (attempt.tracked) found.push_back(*attempt.tracked);
-    const bool is_better = attempt.tracked && attempt.inliers > best.inliers;
-    const bool is_further = !best.tracked && (attempt.tracked || attempt.failure > best.failure);
-    if (is_further || (best.tracked && is_better)) best = attempt;
+    if (rank_of(attempt) > rank_of(best)) best = attempt;
   }
   best.places = static_cast<int>(places.size());
   best.places_found = distinct_places(std::move(found), map);

@@ -36,12 +36,11 @@ struct MappedPlace {
   PlaceIndex index;
 };
 
-// The room twice in one map, the second time ten metres to the side: nobody could say which it is.
+// Map of two equal rooms, 10 m apart; each frame fits both.
 inline MappedPlace twin_rooms(const SimulatedMission& mission) {
   MappedPlace place(mission);
   const Map once = place.map;
   const Eigen::Vector3d shift(10.0, 0.0, 0.0);
-  std::vector<PointId> copy_of(static_cast<std::size_t>(once.point_count()));
   std::vector<KeyframeId> copied;
   for (const KeyframeId id : once.keyframe_ids()) {
     Keyframe keyframe = *once.find_keyframe(id);
