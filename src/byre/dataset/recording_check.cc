@@ -3,7 +3,7 @@
 #include "byre/features/extract.h"
 #include "byre/features/stereo_fit.h"
 #include "byre/geometry/median.h"
-#include "byre/motion/motion_check.h"
+#include "byre/motion/recorded_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "byre/dataset/restored_times.h"
 
 #include "byre/dataset/stamp_clock.h"
+#include "byre/dataset/stamp_spacing.h"
 #include "byre/geometry/median.h"
 
 #include <algorithm>
@@ -43,93 +44,6 @@ std::vector<bool> which_are_stamped(const Times& stamps) {
     are_stamped.push_back(std::chrono::abs(stamp) <= kLastStamp && (is_zero_time || stamp != Timestamp{}));
   }
   return are_stamped;
-}
-
-Timestamp scaled(double factor, Timestamp interval) {
-  return Timestamp(std::llround(factor * static_cast<double>(interval.count())));
-}
-
-// Number of runs of equal values.
-std::size_t count_runs(const Times& values) {
-  std::size_t runs = values.empty() ? 0 : 1;
-  for (std::size_t i = 1; i < values.size(); ++i) runs += values[i] != values[i - 1] ? 1 : 0;
-  return runs;
-}
-
-// Whether most items have the stamp of a neighbour.
-bool is_coarse(const Times& stamps) {
-  constexpr std::size_t kLeast = 6;  // items; fewer may be repeated by chance
-  return stamps.size() >= kLeast && 2 * stamps.size() >= 3 * count_runs(stamps);
-}
-
-bool can_replace_stamps(const Times& received, std::size_t items) {
-  return received.size() == items && 2 * items < 3 * count_runs(received);
-}
-
-// Median of the positive differences; zero without any.
-Timestamp usual_interval(const Times& stamps) {
-  Times intervals;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] > stamps[i - 1]) intervals.push_back(stamps[i] - stamps[i - 1]);
-  }
-  return median_or(std::move(intervals), Timestamp{});
-}
-
-// Whether items of one stamp are received together, because a sender repeats them. Items of a coarse stamp are received
-// at the usual rate.
-bool is_each_repeated(const Times& stamps, const Times& received) {
-  if (received.size() != stamps.size()) return false;
-  Times within, between;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    (stamps[i] == stamps[i - 1] ? within : between).push_back(received[i] - received[i - 1]);
-  }
-  return !within.empty() && !between.empty() && 4 * median(within) < median(between);
-}
-
-struct StampRun {
-  std::size_t begin = 0;
-  Timestamp::rep size = 0;
-};
-
-std::vector<StampRun> runs_of(const Times& stamps) {
-  std::vector<StampRun> runs;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (i > 0 && stamps[i] == stamps[i - 1]) {
-      ++runs.back().size;
-    } else {
-      runs.push_back({i, 1});
-    }
-  }
-  return runs;
-}
-
-// Spreads the items of each stamp evenly until the next stamp. The first and the last run may be incomplete.
-Times spread_evenly(const Times& stamps) {
-  const std::vector<StampRun> runs = runs_of(stamps);
-  Times starts;
-  for (const StampRun& run : runs) starts.push_back(stamps[run.begin]);
-  const Timestamp resolution = usual_interval(starts);
-  const auto step_after = [&](std::size_t run) { return starts[run + 1] - starts[run]; };
-  const auto is_whole = [&](std::size_t run) {
-    return run > 0 && run + 1 < runs.size() && step_after(run) > Timestamp{} &&
-           step_after(run) <= scaled(1.5, resolution);
-  };
-  Times intervals;
-  Timestamp::rep largest = 1;
-  for (std::size_t run = 0; run < runs.size(); ++run) {
-    largest = std::max(largest, runs[run].size);
-    if (is_whole(run)) intervals.push_back(step_after(run) / runs[run].size);
-  }
-  const Timestamp usual = median_or(std::move(intervals), resolution / largest);
-  Times spread;
-  for (std::size_t run = 0; run < runs.size(); ++run) {
-    const Timestamp::rep size = runs[run].size;
-    const Timestamp interval = is_whole(run) ? step_after(run) / size : usual;
-    const bool ends_with_next = run == 0 && runs.size() > 1 && step_after(0) > Timestamp{};
-    const Timestamp begin = ends_with_next ? starts[1] - size * interval : starts[run];
-    for (Timestamp::rep i = 0; i < size; ++i) spread.push_back(begin + i * interval);
-  }
-  return spread;
 }
 
 // Makes stamps continuous: removes clock steps and marks wrong stamps.
@@ -203,12 +117,12 @@ class ContinuousLine {
     return static_cast<std::size_t>(end - stamps_.begin());
   }
 
-  bool is_jump(std::size_t i) const { return stamps_[i] - stamps_[i - 1] > scaled(kContinuous, interval_); }
+  bool is_jump(std::size_t i) const { return stamps_[i] - stamps_[i - 1] > multiple(kContinuous, interval_); }
 
   // Whether the stamp continues the clock after a number of items with other stamps.
   bool goes_on(Timestamp stamp, std::size_t without) const {
     const Timestamp passed = stamp - front(), usual = static_cast<Timestamp::rep>(without + 1) * interval_;
-    return passed >= scaled(0.3, usual) && passed <= scaled(3.0, usual);
+    return passed >= multiple(0.3, usual) && passed <= multiple(3.0, usual);
   }
 
   // Number of items from i on whose stamps are far ahead, until stamps continue; zero without such stamps.
@@ -257,7 +171,7 @@ class ContinuousLine {
     if (step < kLeastStep || i + kConfirming > stamps_.size()) return false;
     const auto begin = stamps_.begin() + static_cast<std::ptrdiff_t>(i);
     if (!std::is_sorted(begin, begin + kConfirming)) return false;
-    return received_.empty() ? step >= scaled(kContinuous, interval_) : is_delayed_from(i, step);
+    return received_.empty() ? step >= multiple(kContinuous, interval_) : is_delayed_from(i, step);
   }
 
   // Whether the items from i to `end` are late: the clock continues at `end`, and they fill gaps, or are few and not
@@ -281,7 +195,7 @@ class ContinuousLine {
     Timestamp nearest = Timestamp::max();
     if (after != seen_.end()) nearest = *after - stamp;
     if (after != seen_.begin()) nearest = std::min(nearest, stamp - *std::prev(after));
-    return nearest == Timestamp{} || nearest >= scaled(kOwnPlace, interval_);
+    return nearest == Timestamp{} || nearest >= multiple(kOwnPlace, interval_);
   }
 
   // Continuous time of item i if the clock was set immediately before it.
@@ -291,7 +205,7 @@ class ContinuousLine {
       const Timestamp waited = received_[i] - received_[front_];
       const double intervals =
           std::max(1.0, std::round(static_cast<double>(waited.count()) / static_cast<double>(interval_.count())));
-      passed = intervals <= static_cast<double>(kFew) ? scaled(intervals, interval_) : waited;
+      passed = intervals <= static_cast<double>(kFew) ? multiple(intervals, interval_) : waited;
     }
     return times_[front_] + passed;
   }
@@ -364,26 +278,7 @@ class ContinuousLine {
 // Whether receive times have about the rate of the stamps.
 bool is_at_same_rate(const Times& received, Timestamp interval) {
   const Timestamp other = usual_interval(received);
-  return other > scaled(0.8, interval) && other < scaled(1.25, interval) && std::ranges::is_sorted(received);
-}
-
-// Spaces unknown times evenly between known ones; at the usual interval before the first and after the last of them.
-void fill_in(Times& times, const std::vector<bool>& is_known, Timestamp interval) {
-  const std::size_t size = times.size();
-  for (std::size_t begin = 0; begin < size;) {
-    if (is_known[begin]) {
-      ++begin;
-      continue;
-    }
-    std::size_t end = begin;
-    while (end < size && !is_known[end]) ++end;
-    const auto count = static_cast<Timestamp::rep>(end - begin);
-    const bool is_between = begin > 0 && end < size;
-    const Timestamp step = is_between ? (times[end] - times[begin - 1]) / (count + 1) : interval;
-    const Timestamp before = begin > 0 ? times[begin - 1] : times[end] - (count + 1) * step;
-    for (std::size_t i = begin; i < end; ++i) times[i] = before + static_cast<Timestamp::rep>(i - begin + 1) * step;
-    begin = end;
-  }
+  return other > multiple(0.8, interval) && other < multiple(1.25, interval) && std::ranges::is_sorted(received);
 }
 
 Timestamp median_of_delays(const RecordedStamps& recorded, std::size_t begin, std::size_t end) {
@@ -478,7 +373,7 @@ RestoredTimes by_reception(const RecordedStamps& recorded) {
 
 RestoredTimes restore_times(const RecordedStamps& recorded, const SensorClock& other) {
   const std::size_t size = recorded.stamps.size();
-  const bool can_use_reception = can_replace_stamps(recorded.received, size);
+  const bool can_use_reception = recorded.received.size() == size && are_mostly_different(recorded.received);
   std::vector<std::size_t> stamped;
   Times stamps, received;
   const std::vector<bool> are_stamped = which_are_stamped(recorded.stamps);
@@ -554,16 +449,12 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
                     by < 0.0 ? "back" : "forward", std::abs(by), names.counted, steps[i].frame));
   }
   if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
-  if (corrections.unstamped > 0) {
-    add(std::to_string(corrections.unstamped) + " " + items +
-        " have a time stamp of zero or a wrong one: timed between their neighbours");
-  }
-  if (corrections.late > 0) {
-    add(std::to_string(corrections.late) + " " + items + " were recorded after later ones: put in order");
-  }
-  if (corrections.repeated > 0) {
-    add(std::to_string(corrections.repeated) + " " + items + " have the time stamp of another one and are left out");
-  }
+  const auto add_count = [&](int count, const std::string& text) {
+    if (count > 0) add(std::to_string(count) + " " + items + " " + text);
+  };
+  add_count(corrections.unstamped, "have a time stamp of zero or a wrong one: timed between their neighbours");
+  add_count(corrections.late, "were recorded after later ones: put in order");
+  add_count(corrections.repeated, "have the time stamp of another one and are left out");
   return lines;
 }
 

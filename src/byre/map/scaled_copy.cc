@@ -2,7 +2,6 @@
 
 #include "byre/alignment.h"
 #include "byre/motion/known_mounting.h"
-#include "byre/motion/motion_check.h"
 
 #include <cassert>
 #include <cmath>

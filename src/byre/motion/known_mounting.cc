@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -198,6 +199,10 @@ bool is_contradicted(const WheelMounting& known, const WheelMounting& found) {
   const Eigen::Vector4d apart = unknowns_about(found, up(known)) - unknowns_about(known, up(known));
   const Eigen::Matrix4d covariance = kNeglected * (known.covariance + found.covariance) + usual_change(known);
   return apart.dot(covariance.ldlt().solve(apart)) > kMostSquaredSigmas;
+}
+
+std::string metres_note(double sigma) {
+  return fmt::format("sigma_by_wheels {:.4f}", sigma);
 }
 
 }  // namespace byre

@@ -28,14 +28,18 @@ void note_mounting(const KnownMounting& mounting, std::map<std::string, std::str
 // What is noted; a note that somebody else wrote tells nothing.
 KnownMounting mounting_in(const std::map<std::string, std::string>& notes);
 
-// The same for a map whose lengths are so many times as long.
+// The mounting in a map whose lengths are multiplied by a factor.
 KnownMounting scaled(KnownMounting mounting, double factor);
 
-// The same for another place on the body, from which it lies so. How high that is above the base stays unknown.
+// The mounting of another point of the body. Its height above the base stays unknown.
 KnownMounting moved(KnownMounting mounting, const Pose& before_from_after);
 
 // Whether motions tell a mounting that is not the one that was known: they differ by more than both leave open, and
 // than a drive changes.
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found);
+
+// Note of a map, with the key kMetresNote, whose metres wheels alone measured: "sigma_by_wheels SHARE".
+inline constexpr const char* kMetresNote = "metres";
+std::string metres_note(double sigma);
 
 }  // namespace byre

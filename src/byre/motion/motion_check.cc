@@ -1,8 +1,6 @@
 #include "byre/motion/motion_check.h"
 
 #include "byre/geometry/degrees.h"
-#include "byre/motion/rate_track.h"
-#include "byre/motion/wheel_track.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,10 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kLatestStamp = Timestamp::max() / 2;  // differences of stamps stay in range
-constexpr Timestamp kLeap = 10s;                          // a larger step ahead needs confirmation by a second stamp
-constexpr int kLateUntilRestarted = 10;                   // ascending stamps in a row
-constexpr double kLeastRecent = 0.02;                     // seconds, least duration for speeds, because stamps jitter
+constexpr double kLeastRecent = 0.02;     // seconds, least duration for speeds, because stamps jitter
 constexpr double kFastShareOfUnit = 0.5;  // share of samples above the limit from which the unit is wrong
 constexpr double kDegreesPerRadian = 1.0 / kDegree;
 
@@ -57,49 +52,6 @@ bool is_sound(const BodyMotion& motion) {
   return pose.translation.allFinite() && pose.rotation.coeffs().allFinite() && covariance.allFinite() &&
          std::abs(pose.rotation.norm() - 1.0) < kMostOff && (covariance.diagonal().array() >= 0.0).all() &&
          (covariance.array().abs() <= kMostVariance).all();
-}
-
-std::string_view to_string(MotionSensor sensor) {
-  switch (sensor) {
-    case MotionSensor::wheels:
-      return "wheels";
-    case MotionSensor::gyroscope:
-      return "gyroscope";
-    case MotionSensor::accelerometer:
-      return "accelerometer";
-    case MotionSensor::body_motion:
-      return "motion of the body";
-  }
-  return "";
-}
-
-std::string to_text(const MotionWarning& warning, std::string_view source) {
-  std::string text(to_string(warning.sensor));
-  if (!source.empty()) text += " (" + std::string(source) + ")";
-  if (warning.time != Timestamp{}) text += fmt::format(", at {:.3f} s", to_seconds(warning.time));
-  return text + ": " + warning.what + (warning.remedy.empty() ? "" : "; " + warning.remedy);
-}
-
-StampCheck::Order StampCheck::check(Timestamp time) {
-  if (time > kLatestStamp || time < -kLatestStamp) return Order::dropped;
-  if (last_ && time <= *last_) {
-    late_count_ = late_ && time > *late_ ? late_count_ + 1 : 1;
-    late_ = time;
-    if (late_count_ < kLateUntilRestarted) return Order::dropped;
-    *this = {};
-    last_ = time;
-    return Order::restarted;
-  }
-  late_.reset();
-  late_count_ = 0;
-  const bool is_confirmed = ahead_ && time > *ahead_ && time - *ahead_ <= kLeap;
-  if (last_ && time - *last_ > kLeap && !is_confirmed) {
-    ahead_ = time;
-    return Order::dropped;
-  }
-  ahead_.reset();
-  last_ = time;
-  return Order::next;
 }
 
 void MotionCheck::warn_once(MotionSensor sensor, Fault fault, Timestamp time, const std::string& what,
@@ -470,67 +422,6 @@ bool MotionCheck::note_wheel_scale(double metres_per_unit, double sigma, Timesta
             is_unusable ? std::string("give lengths in metres: ") + unit_seen
                         : "calibrate the wheel radius, or check the baseline");
   return is_unusable;
-}
-
-std::vector<MotionWarning> clock_warnings(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame) {
-  std::vector<MotionWarning> warnings;
-  const auto compare = [&](MotionSensor sensor, Timestamp first, Timestamp last) {
-    if (first <= last_frame && last >= first_frame) return;
-    warnings.push_back(
-        {sensor,
-         {},
-         fmt::format("samples are from {:.3f} to {:.3f} s, but images from {:.3f} to {:.3f} s; no sample is used",
-                     to_seconds(first), to_seconds(last), to_seconds(first_frame), to_seconds(last_frame)),
-         "stamp both by one clock, or shift the times of one"});
-  };
-  if (!samples.wheels.empty()) compare(MotionSensor::wheels, samples.wheels.front().time, samples.wheels.back().time);
-  if (!samples.velocities.empty()) {
-    compare(MotionSensor::wheels, samples.velocities.front().time, samples.velocities.back().time);
-  }
-  if (!samples.rates.empty()) compare(MotionSensor::gyroscope, samples.rates.front().time, samples.rates.back().time);
-  return warnings;
-}
-
-std::string metres_note(double sigma) {
-  return fmt::format("sigma_by_wheels {:.4f}", sigma);
-}
-
-std::vector<MotionWarning> check_motion(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame,
-                                        const MotionLimits& limits) {
-  constexpr Timestamp kStride = 500ms;
-  MotionCheck check(limits);
-  WheelTrack wheels;
-  for (const StampedPose& sample : samples.wheels) {
-    const auto [is_clock_set_back, beginning, next] = check.check(sample);
-    if (is_clock_set_back) wheels = {};
-    if (beginning) wheels.begin_segment(*beginning);
-    if (next) wheels.add(*next);
-  }
-  for (const BaseVelocity& sample : samples.velocities) {
-    const StampCheck::Order order = check.check(sample);
-    if (order == StampCheck::Order::restarted) wheels = {};
-    if (order != StampCheck::Order::dropped) wheels.add(sample);
-  }
-  RateTrack rates;
-  Timestamp begin = first_frame;
-  for (const AngularRate& sample : samples.rates) {
-    const StampCheck::Order order = check.check(sample);
-    if (order == StampCheck::Order::restarted) {
-      rates = {};
-      begin = sample.time;
-    }
-    if (order != StampCheck::Order::dropped) rates.add(sample);
-    if (sample.time - begin < kStride) continue;
-    const auto turned = wheels.between(begin, sample.time);
-    if (turned) check.note({sample.time, rotation_log(turned->rotation), rates.integral(begin, sample.time)});
-    begin = sample.time;
-    rates.forget_before(sample.time - kStride);
-  }
-  for (const Acceleration& sample : samples.accelerations) check.check(sample);
-  std::vector<MotionWarning> warnings = check.warnings();
-  const std::vector<MotionWarning> clocks = clock_warnings(samples, first_frame, last_frame);
-  warnings.insert(warnings.end(), clocks.begin(), clocks.end());
-  return warnings;
 }
 
 }  // namespace byre

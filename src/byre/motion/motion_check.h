@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/body_motion.h"
+#include "byre/motion/stamp_check.h"
 #include "byre/motion_warning.h"
 
 #include <cstdint>
@@ -21,23 +22,6 @@ struct MotionLimits {
 
 // Whether all numbers are finite, the quaternion has a length of about 1, and each variance is between 0 and 1e12.
 bool is_sound(const BodyMotion& motion);
-
-// Checks the order of the stamps of one sensor.
-class StampCheck {
- public:
-  enum class Order : std::uint8_t {
-    next,      // later than the previous sample
-    dropped,   // not later, out of range, or a leap ahead that no second stamp confirms yet
-    restarted  // the clock was set back: ten ascending stamps, all earlier than those before
-  };
-  Order check(Timestamp time);
-
- private:
-  std::optional<Timestamp> last_;
-  std::optional<Timestamp> ahead_;  // unconfirmed leap ahead
-  std::optional<Timestamp> late_;   // last stamp that was not later than last_
-  int late_count_ = 0;              // number of such stamps in a row, ascending
-};
 
 // Checks samples of wheels, gyroscope and accelerometer on input: finite, plausible in size, speed and rate, in order
 // of time, in the expected unit. Each kind of fault yields one warning. An input in a wrong unit, or without a signal,
@@ -131,16 +115,5 @@ class MotionCheck {
   int acceleration_count_ = 0;
   double acceleration_sum_ = 0.0;  // m/s^2
 };
-
-// Warnings of sensors whose samples do not overlap in time with the frames.
-std::vector<MotionWarning> clock_warnings(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame);
-
-// Note of a map, with the key kMetresNote, whose metres wheels alone measured: "sigma_by_wheels SHARE".
-inline constexpr const char* kMetresNote = "metres";
-std::string metres_note(double sigma);
-
-// Checks recorded samples without images: all checks above except comparisons with images.
-std::vector<MotionWarning> check_motion(const MotionSamples& samples, Timestamp first_frame, Timestamp last_frame,
-                                        const MotionLimits& limits = {});
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #include "byre/motion/motion_check.h"
 
 #include "byre/motion/drive_scene.h"
+#include "byre/motion/recorded_motion.h"
 #include "byre/motion/wheel_track.h"
 
 #include <array>

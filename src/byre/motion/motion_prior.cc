@@ -1,5 +1,6 @@
 #include "byre/motion/motion_prior.h"
 
+#include "byre/motion/motion_covariance.h"
 #include "byre/motion/time_offset.h"
 
 #include <algorithm>
@@ -11,8 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kStride = 500ms;       // length of the motions that are compared
-constexpr Timestamp kMaxFrameGap = 300ms;  // between frames, until what lies between them was not seen
+constexpr Timestamp kStride = 500ms;  // length of the motions that are compared
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
 constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
@@ -21,69 +21,11 @@ constexpr double kUnprovenFactor = 9.0;  // factor of the covariance until kBorn
 constexpr int kLooksUntilKept = 8;       // looks from which a mounting is worth keeping
 constexpr int kLooksPerOffset = 8;       // delays change least, and are dear to find
 
-// How far a motion that is told lies from the one that was seen, as a multiple of what is let pass.
-double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
-  constexpr double kMetres = 0.03;
-  constexpr double kRadians = 0.03;
-  constexpr double kShare = 0.2;
-  const double way = metres_per_unit * std::max(told.translation.norm(), seen.body.translation.norm());
-  const double turn = std::max(rotation_log(told.rotation).norm(), rotation_log(seen.body.rotation).norm());
-  const double way_error = metres_per_unit * (told.translation - seen.body.translation).norm();
-  const double turn_error = angle_between(told.rotation, seen.body.rotation);
-  return std::max(way_error / (kMetres + kShare * (way + 0.2 * turn)), turn_error / (kRadians + kShare * turn));
-}
-
-// What wheels so mounted leave open, in the lengths of the map.
-Matrix6 covariance_of(const Pose& motion, const Pose& base, const WheelMounting& mounting) {
-  constexpr double kLeastShare = 0.01;
-  constexpr double kTurnPerMetre = 0.01;  // radians
-  constexpr double kLeastMetres = 1e-3;
-  constexpr double kLeastTurn = 5e-4;  // radians
-  const double way = motion.translation.norm();
-  const double turn = rotation_log(motion.rotation).norm();
-  const double arm_sigma = std::sqrt(mounting.covariance.bottomRightCorner<2, 2>().trace());  // metres
-  const double way_sigma =
-      way * std::hypot(std::max(kLeastShare, mounting.way_error), mounting.scale_sigma) +
-      (turn * arm_sigma + kLeastMetres + mounting.side_error * std::abs(way_across(base))) / mounting.metres_per_unit;
-  const double turn_sigma =
-      turn * std::max(kLeastShare, mounting.turn_error) + kTurnPerMetre * way * mounting.metres_per_unit + kLeastTurn;
-  Matrix6 covariance = Matrix6::Zero();
-  covariance.diagonal().head<3>().setConstant(way_sigma * way_sigma);
-  covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);
-  return covariance;
-}
-
 // Whether wheels turned otherwise than the gyroscope says, as where one spins or is lifted.
 bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
   constexpr double kRate = 0.1;   // radians per second
   constexpr double kShare = 0.2;  // share of the turn
   return angle_between(by_wheels, by_gyroscope) > kRate * seconds + kShare * rotation_log(by_gyroscope).norm();
-}
-
-// What spinning wheels tell of the way may be wrong by all of it.
-void forget_way(BodyMotion& motion) {
-  constexpr double kLeast = 0.01;  // lengths of the map
-  const double sigma = motion.last_from_body.translation.norm() + kLeast;
-  motion.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
-}
-
-void forget_turn(BodyMotion& motion) {
-  constexpr double kLeast = 0.02;  // radians
-  const double sigma = rotation_log(motion.last_from_body.rotation).norm() + kLeast;
-  motion.covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
-}
-
-// A body that stands does not creep away unnoticed: little is left open, however long it stands.
-BodyMotion at_rest(BodyMotion motion, double seconds) {
-  constexpr double kShare = 0.1;   // share of the way that wheels told all the same
-  constexpr double kCreep = 2e-4;  // lengths of the map per second
-  constexpr double kTurn = 5e-5;   // radians per second
-  const double way_sigma = kShare * motion.last_from_body.translation.norm() + kCreep * seconds;
-  const double turn_sigma = kShare * rotation_log(motion.last_from_body.rotation).norm() + kTurn * seconds;
-  motion.covariance.setZero();
-  motion.covariance.diagonal().head<3>().setConstant(way_sigma * way_sigma);
-  motion.covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);
-  return motion;
 }
 
 }  // namespace
@@ -163,32 +105,18 @@ std::optional<bool> MotionPrior::do_wheels_stand(Timestamp time) const {
   constexpr double kMostMetres = 0.0025;  // in the window: ticks of encoders
   constexpr double kMostRadians = 0.004;  // in the window
   if (is_slipping_) return {};
-  const Timestamp offset = from_seconds(time_offset());
-  const auto distance = wheels_.distance(time + offset - SteadyTrack::kWindow, time + offset);
+  const Timestamp end = wheel_time(time);
+  const auto distance = wheels_.distance(end - SteadyTrack::kWindow, end);
   if (!distance) return {};
   return distance->metres <= kMostMetres && distance->radians <= kMostRadians;
 }
 
-std::optional<bool> MotionPrior::does_sight_stand(Timestamp time) const {
-  constexpr double kMostMetres = 0.01;    // lengths of the map, where it is not known how long they are
-  constexpr double kMostRadians = 0.006;  // in the window
-  if (last_seen_.empty() || last_seen_.front().time > time - SteadyTrack::kWindow) return {};
-  const double metres_per_unit = mounting_ ? mounting_->metres_per_unit : 1.0;
-  return std::ranges::all_of(last_seen_, [&](const StampedPose& pose) {
-    const Pose motion = inverse(pose.world_from_body) * last_seen_.back().world_from_body;
-    return metres_per_unit * motion.translation.norm() <= kMostMetres &&
-           rotation_log(motion.rotation).norm() <= kMostRadians;
-  });
-}
-
 void MotionPrior::watch_standing(Timestamp time, const std::optional<Pose>& seen) {
-  constexpr Timestamp kSpan = SteadyTrack::kWindow + kMaxFrameGap;
   constexpr double kMostSigma = 0.1;  // radians
-  if (!seen || (!last_seen_.empty() && time - last_seen_.back().time > kMaxFrameGap)) last_seen_.clear();
-  if (seen) last_seen_.push_back({time, *seen});
-  while (!last_seen_.empty() && last_seen_.front().time + kSpan < time) last_seen_.pop_front();
+  standing_.note_sight(time, seen);
   const auto bias = gyroscope_ ? std::optional(gyroscope_->bias) : std::nullopt;
-  const auto steady = standing_.at(time, {do_wheels_stand(time), seen ? does_sight_stand(time) : std::nullopt}, bias);
+  const double metres_per_unit = mounting_ ? mounting_->metres_per_unit : 1.0;
+  const auto steady = standing_.at(time, {do_wheels_stand(time), standing_.does_sight_stand(metres_per_unit)}, bias);
   standing_.note(time, steady);
   if (!steady) return;
   if (!seen && gyroscope_) gyroscope_->bias = steady->rate;
@@ -268,8 +196,7 @@ void MotionPrior::forget_old_samples() {
 }
 
 std::optional<Pose> MotionPrior::base_between(Timestamp earlier, Timestamp later) const {
-  const Timestamp offset = from_seconds(time_offset());
-  return wheels_.between(earlier + offset, later + offset);
+  return wheels_.between(wheel_time(earlier), wheel_time(later));
 }
 
 std::vector<MotionPair> MotionPrior::pairs() const {
@@ -462,7 +389,7 @@ std::optional<BodyMotion> MotionPrior::by_wheels(Timestamp earlier, Timestamp la
   const auto base = told_base(earlier, later, turn);
   if (!base) return {};
   const Pose body = body_motion(*mounting, base->motion);
-  BodyMotion motion{body, covariance_of(body, base->motion, *mounting)};
+  BodyMotion motion{body, wheel_covariance(body, base->motion, *mounting)};
   if (known_.wheels && bearing_out_ < kBorneOut) motion.covariance *= kUnprovenFactor;
   if (!base->is_way_known) forget_way(motion);
   if (!base->is_turn_known) forget_turn(motion);
@@ -477,8 +404,7 @@ bool MotionPrior::is_jerk(Timestamp earlier, Timestamp later, const Pose& base) 
   constexpr double kLeastTurn = 0.05;         // radians
   const Timestamp span = later - earlier;
   if (span > kMaxFrameGap) return false;
-  const Timestamp offset = from_seconds(time_offset());
-  if (wheels_.has_jump(earlier + offset - span, earlier + offset)) return true;
+  if (wheels_.has_jump(wheel_time(earlier) - span, wheel_time(earlier))) return true;
   const auto before = base_between(earlier - span, earlier);
   if (!before) return false;
   const double squared = to_seconds(span) * to_seconds(span);
@@ -499,8 +425,8 @@ bool MotionPrior::contradicts_wheels(Timestamp earlier, Timestamp later, const E
 // Motion across a jump of the wheel pose: that of the previous span, with a standard deviation as large as itself.
 std::optional<BodyMotion> MotionPrior::across_jump(Timestamp earlier, Timestamp later,
                                                    const std::optional<Eigen::Quaterniond>& turn) const {
-  const Timestamp offset = from_seconds(time_offset()), span = later - earlier;
-  if (span > kMaxFrameGap || !wheels_.has_jump(earlier + offset, later + offset)) return {};
+  const Timestamp span = later - earlier;
+  if (span > kMaxFrameGap || !wheels_.has_jump(wheel_time(earlier), wheel_time(later))) return {};
   auto motion = by_wheels(earlier - span, earlier, {});
   if (!motion) motion = by_wheels(earlier - 2 * span, earlier - span, {});  // if the jump is right after the frame
   if (!motion) return {};
@@ -524,7 +450,6 @@ std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp lat
 }
 
 std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp later) const {
-  constexpr double kLeastTurn = 1e-4;  // radians
   auto turn = turn_by_gyroscope(earlier, later);
   const bool is_contradicted = turn && !is_slipping_ && contradicts_wheels(earlier, later, *turn);
   if (is_contradicted) turn.reset();
@@ -538,8 +463,7 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
   if (motion && standing_by_wheels(later)) return at_rest(*motion, to_seconds(later - earlier));
   if (!motion && (motion = by_sight(earlier, later))) motion->last_from_body.rotation = *turn;
   if (!motion) return {};
-  const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
-  motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+  set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
   return motion;
 }
 
@@ -551,8 +475,7 @@ std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, boo
   constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away
   const WheelMounting* const mounting = used_mounting();
   if (mounting == nullptr && !is_metric) return {};
-  const Timestamp offset = from_seconds(time_offset());
-  const auto distance = wheels_.distance(earlier + offset, later + offset);
+  const auto distance = wheels_.distance(wheel_time(earlier), wheel_time(later));
   if (!distance) return {};
   const double arm = mounting_ ? mounting_->base_from_body.translation.norm() : kUsualArm;
   const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
@@ -561,12 +484,9 @@ std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, boo
 }
 
 std::optional<BodyMotion> MotionPrior::way_between(Timestamp earlier, Timestamp later) const {
-  constexpr double kLeastTurn = 1e-4;  // radians
   const auto turn = turn_by_gyroscope(earlier, later);
   auto motion = by_wheels(earlier, later, turn);
-  if (!motion || !turn) return motion;
-  const double sigma = gyroscope_->error * to_seconds(later - earlier) + kLeastTurn;
-  motion->covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+  if (motion && turn) set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
   return motion;
 }
 

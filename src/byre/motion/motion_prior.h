@@ -116,7 +116,6 @@ class MotionPrior {
   void forget_old_samples();
   void watch_standing(Timestamp time, const std::optional<Pose>& seen);
   std::optional<bool> do_wheels_stand(Timestamp time) const;
-  std::optional<bool> does_sight_stand(Timestamp time) const;
   std::optional<SteadyTrack::Steady> standing_by_wheels(Timestamp time) const;
   void look_for_mountings();
   void look_for_wheel_mounting();
@@ -127,6 +126,7 @@ class MotionPrior {
   void drop_known_wheels();
   void ask_gyroscope();
   std::vector<MotionPair> pairs() const;
+  Timestamp wheel_time(Timestamp time) const { return time + from_seconds(time_offset()); }  // time by stamps of wheels
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
   struct ToldBase {
     Pose motion;                // earlier_from_later, metres
@@ -151,7 +151,6 @@ class MotionPrior {
   WheelTrack wheels_;
   RateTrack rates_;
   Standing standing_;
-  std::deque<StampedPose> last_seen_;  // frames of about a second, all of which were seen
   Timestamp samples_kept_ = kUsuallyKept;
   UnseenWay unseen_;
   UnseenWay::OldPoses old_poses_ = UnseenWay::OldPoses::kept;

@@ -1,8 +1,5 @@
-#include "byre/motion/motion_prior.h"
+#include "byre/motion/prior_scene.h"
 
-#include "byre/motion/drive_scene.h"
-
-#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -10,53 +7,7 @@
 namespace byre {
 namespace {
 
-const Eigen::Vector3d kBias(0.02, -0.01, 0.03);  // radians per second
-const Eigen::Quaterniond kBodyFromGyroscope = rotation_exp({0.3, 1.2, -0.4});
-
-Eigen::Vector3d rate_of_body(const Drive& drive, double seconds) {
-  constexpr double kStep = 0.002;
-  const Pose base = inverse(Drive::world_from_base(seconds)) * Drive::world_from_base(seconds + kStep);
-  return drive.base_from_body.rotation.conjugate() * rotation_log(base.rotation) / kStep;
-}
-
-struct Told {
-  bool wheels = true;
-  bool gyroscope = false;
-  double slip_from = 1e9;       // seconds, from when on the wheels spin
-  double slip_to = 1e9;         // seconds
-  double slip_turn = 0.0;       // radians that they seem to turn then, each time that they tell
-  double turn_scale = 1.0;      // radians that they tell of one
-  double turn_per_metre = 0.0;  // radians that they add
-};
-
-// A prior that has followed a drive: seen until dark, told until the end. known: from a drive before.
-MotionPrior followed(const Drive& drive, const Told& told, double dark, double end, const KnownMounting& known = {}) {
-  MotionPrior prior;
-  prior.begin_with(known);
-  std::mt19937 random(5);
-  Pose wheels;
-  for (int step = 0; step * 0.01 < end; ++step) {
-    const double t = step * 0.01;
-    if (told.wheels && step % 2 == 0) {
-      Pose motion = inverse(Drive::world_from_base(t - 0.02)) * Drive::world_from_base(t);
-      const Eigen::Vector3d turn = rotation_log(motion.rotation);
-      motion.rotation = rotation_exp(told.turn_scale * turn + Eigen::Vector3d(0.0, 0.0, 0.01 * told.turn_per_metre));
-      if (t > told.slip_from && t < told.slip_to) {
-        motion.translation.x() += 0.02;
-        motion.rotation = motion.rotation * rotation_exp({0.0, 0.0, told.slip_turn});
-      }
-      wheels = wheels * motion;
-      prior.add(StampedPose{from_seconds(t + drive.wheel_delay), wheels});
-    }
-    if (told.gyroscope) {
-      prior.add(AngularRate{from_seconds(t), kBodyFromGyroscope.conjugate() * rate_of_body(drive, t) + kBias});
-    }
-    if (step % 5 == 0) prior.note(from_seconds(t), t < dark ? std::optional(drive.seen(t, random)) : std::nullopt);
-  }
-  return prior;
-}
-
-// The same, seen all the time, by wheels whose news come at the time that they are stamped for.
+// A prior after a drive without gaps, with wheel stamps that equal their receive times.
 MotionPrior heard_until_now(const Drive& drive, double end) {
   MotionPrior prior;
   std::mt19937 random(5);
@@ -66,22 +17,6 @@ MotionPrior heard_until_now(const Drive& drive, double end) {
     if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
   }
   return prior;
-}
-
-Pose true_motion(const Drive& drive, double from, double to) {
-  Drive exact = drive;
-  exact.noise = 0.0;
-  std::mt19937 random;
-  return inverse(exact.seen(from, random)) * exact.seen(to, random);
-}
-
-// The motion over a time in the dark, frame after frame.
-BodyMotion over(const MotionPrior& prior, double from, double to) {
-  BodyMotion sum = *prior.between(from_seconds(from), from_seconds(from + 0.05));
-  for (double t = from + 0.05; t < to - 0.01; t += 0.05) {
-    sum = sum * *prior.between(from_seconds(t), from_seconds(t + 0.05));
-  }
-  return sum;
 }
 
 TEST(MotionPrior, TellsNothingBeforeItKnowsHowWheelsAreMounted) {
@@ -186,20 +121,6 @@ TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
   EXPECT_NEAR(prior.wheels()->base_from_body.translation.x(), 0.4, 0.02);
 }
 
-// Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
-TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const Told wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
-  const MotionPrior prior = followed(drive, wrong, 60.0, 72.0);
-  ASSERT_TRUE(prior.wheels());
-  EXPECT_NEAR(prior.wheels()->turn_errors.scale, 1.0 / 0.97, 0.003);
-  EXPECT_NEAR(prior.wheels()->turn_errors.per_metre, -0.004, 0.0015);
-  const BodyMotion told = over(prior, 60.0, 70.0);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
-  EXPECT_LT(error.tail<3>().norm(), 0.01);  // radians; 0.05 are told wrongly
-  EXPECT_LT(error.head<3>().norm(), 0.05);  // metres, of 5
-}
-
 // The last frames are led to by wheels that were heard up to then only, and tell what they did later.
 TEST(MotionPrior, GoesOnWithWhatWheelsToldLast) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.15, .noise = 0.0005};
@@ -253,26 +174,6 @@ TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
   EXPECT_LT(error.head<3>().norm(), 0.1);
   EXPECT_LT(error.tail<3>().norm(), 0.01);
   EXPECT_FALSE(prior.between(from_seconds(65.0), from_seconds(65.05)));
-}
-
-TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const Told lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
-  const BodyMotion told = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
-  const BodyMotion sound = over(followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0), 60.0, 70.0);
-  const double told_variance = told.covariance.topLeftCorner<3, 3>().trace();
-  const double sound_variance = sound.covariance.topLeftCorner<3, 3>().trace();
-  EXPECT_GT(told_variance, 25.0 * sound_variance);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
-  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
-}
-
-// A wheel in the air seems to turn the robot, which is no delay.
-TEST(MotionPrior, FindsTheDelayThoughAWheelWasLifted) {
-  const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.03, .noise = 0.001};
-  const MotionPrior prior = followed(drive, {.slip_from = 40.0, .slip_to = 43.0, .slip_turn = 0.03}, 60.0, 60.0);
-  EXPECT_NEAR(prior.time_offset(), 0.03, 0.01);
-  EXPECT_FALSE(prior.are_wheels_slipping());
 }
 
 TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
@@ -383,194 +284,6 @@ TEST(MotionPrior, DropsAMountingThatIsAnotherOneByNow) {
   EXPECT_LT(error.head<3>().norm(), 0.06) << "metres, of 5";
   ASSERT_TRUE(prior.to_keep().wheels);
   EXPECT_NEAR(prior.to_keep().wheels->base_from_body.translation.x(), 0.55, 0.02);
-}
-
-TEST(MotionPrior, KeepsAMountingThroughWheelsThatSlipAtFirst) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();
-  const MotionPrior prior = followed(drive, {.slip_from = 0.5, .slip_to = 3.5}, 12.0, 12.0, known);
-  EXPECT_FALSE(prior.is_mounted_otherwise());
-  EXPECT_FALSE(prior.are_wheels_slipping());
-}
-
-// A drive with a gyroscope and an accelerometer that stops for good at a time, with the sensor turned in a body that is
-// seen until dark.
-struct Stop {
-  double at = 40.0;             // seconds
-  double dark = 30.0;           // seconds
-  double drift = 0.0;           // radians per second that the gyroscope's bias changes by in the dark
-  bool is_told_of_stop = true;  // by wheels; else they go on telling a slow drive
-};
-
-MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {
-  MotionPrior prior;
-  std::mt19937 random(5);
-  // Brakes evenly over half a second. speed: share of the speed before.
-  constexpr double kBraking = 0.5;  // seconds
-  const auto braked = [&](double t) { return std::clamp(t - stop.at + 0.5 * kBraking, 0.0, kBraking); };
-  const auto time_driven = [&](double t) {
-    const double u = braked(t);
-    return std::min(t, stop.at - 0.5 * kBraking) + u - u * u / (2.0 * kBraking);
-  };
-  const auto speed = [&](double t) { return 1.0 - braked(t) / kBraking; };
-  const Pose map_from_first = inverse(drive.base_from_body);
-  for (int step = 0; step * 0.01 < end; ++step) {
-    const double t = step * 0.01, driven = time_driven(t);
-    StampedPose wheels = drive.wheels(driven);
-    wheels.time = from_seconds(t);
-    if (t > stop.at && !stop.is_told_of_stop) wheels.world_from_body.translation.x() += 0.05 * (t - stop.at);
-    if (step % 2 == 0) prior.add(wheels);
-    Eigen::Vector3d rate = speed(t) * (kBodyFromGyroscope.conjugate() * rate_of_body(drive, driven)) + kBias;
-    if (t >= stop.dark) rate += Eigen::Vector3d::Constant(stop.drift);
-    prior.add(AngularRate{from_seconds(t), rate});
-    const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    const double swing = t < stop.at ? 0.5 * std::sin(3.0 * t) : 0.0;
-    prior.add(
-        Acceleration{from_seconds(t), kBodyFromGyroscope.conjugate() * (9.81 * up) + Eigen::Vector3d(swing, 0, 0)});
-    if (step % 5 != 0) continue;
-    const bool is_seen = t < stop.dark;
-    prior.note(from_seconds(t), is_seen ? std::optional(drive.seen(driven, random)) : std::nullopt);
-    if (is_seen) prior.note_place(map_from_first * Drive::world_from_base(driven) * drive.base_from_body);
-  }
-  return prior;
-}
-
-TEST(MotionPrior, FindsTheGyroscopesBiasWhereItStandsInTheDark) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004}, 50.0);
-  ASSERT_TRUE(prior.gyroscope());
-  EXPECT_LT((prior.gyroscope()->bias - kBias - Eigen::Vector3d::Constant(0.004)).norm(), 1e-3);
-  const BodyMotion told = over(prior, 47.0, 49.9);
-  EXPECT_LT(rotation_log(told.last_from_body.rotation).norm(), 1e-3);
-  EXPECT_LT(std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace()), 2e-3);
-  EXPECT_LT(std::sqrt(told.covariance.topLeftCorner<3, 3>().trace()), 0.01);
-}
-
-TEST(MotionPrior, DoesNotStandWhereWheelsCreep) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004, .is_told_of_stop = false}, 50.0);
-  EXPECT_EQ(prior.standing().stops(), 0);
-  EXPECT_FALSE(prior.tilt(from_seconds(49.9)));
-}
-
-TEST(MotionPrior, TellsTheTiltInTheDarkAfterAStopThatWasSeen) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  EXPECT_FALSE(followed_to_a_stop(drive, {}, 50.0).tilt(from_seconds(49.9))) << "up in the map is not known";
-  const MotionPrior prior = followed_to_a_stop(drive, {.dark = 44.0}, 50.0);
-  ASSERT_TRUE(prior.to_keep().up);
-  const auto tilt = prior.tilt(from_seconds(49.9));
-  ASSERT_TRUE(tilt);
-  EXPECT_LT(tilt->sigma, 0.02);
-  const Pose body = inverse(drive.base_from_body) * Drive::world_from_base(40.0) * drive.base_from_body;
-  EXPECT_LT((body.rotation * tilt->up_in_body - tilt->up_in_map).norm(), 2.0 * tilt->sigma);
-}
-
-TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  EXPECT_TRUE(followed(drive, {.slip_from = 50.0, .slip_to = 100.0}, 55.0, 55.0).are_wheels_slipping());
-  const MotionPrior after = followed(drive, {.slip_from = 50.0, .slip_to = 53.0}, 60.0, 60.0);
-  EXPECT_FALSE(after.are_wheels_slipping());
-  EXPECT_EQ(after.slips(), 1);
-  EXPECT_NEAR(after.wheels()->metres_per_unit, 1.0, 0.01);
-}
-
-// A drive whose wheel pose restarts at the origin at the given times; dark from 60 s on.
-MotionPrior followed_through_resets(const std::vector<double>& resets, double end) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  MotionPrior prior;
-  std::mt19937 random(5);
-  for (int step = 0; step * 0.01 < end; ++step) {
-    const double t = step * 0.01;
-    Pose origin;
-    for (const double reset : resets) {
-      if (t >= reset) origin = Drive::world_from_base(reset);
-    }
-    if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), inverse(origin) * Drive::world_from_base(t)});
-    if (step % 5 == 0) prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
-  }
-  return prior;
-}
-
-TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheSpeedBefore) {
-  const Drive drive{.base_from_body = camera_on_base()};
-  const MotionPrior prior = followed_through_resets({20.0, 65.02}, 72.0);
-  EXPECT_EQ(prior.slips(), 0) << "a jump is not a motion";
-  const auto across = prior.between(from_seconds(65.0), from_seconds(65.05));
-  ASSERT_TRUE(across);
-  const Pose truth = true_motion(drive, 65.0, 65.05);
-  EXPECT_LT((across->last_from_body.translation - truth.translation).norm(), 0.005);
-  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "it may be wrong by its whole length";
-  const BodyMotion all = over(prior, 60.0, 70.0);
-  const Vector6 error = log_pose(inverse(all.last_from_body) * true_motion(drive, 60.0, 70.0));
-  EXPECT_LT(error.transpose() * all.covariance.ldlt().solve(error), 12.6) << "within 95 %";
-  ASSERT_EQ(prior.warnings().size(), 1U) << "one for both jumps";
-}
-
-// Errors of measured steps stay within their covariance, whatever wheels report.
-TEST(MotionPrior, CoversEachStepOfFaultyWheelsByItsCovariance) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  std::mt19937 chance(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (const double size : {0.02, 0.3, 3.0, 300.0, 1e200}) {
-    MotionPrior prior;
-    std::mt19937 random(5);
-    for (int step = 0; step < 7000; ++step) {
-      const double t = step * 0.01;
-      Pose wheels = Drive::world_from_base(t);
-      if (t > 60.0 && uniform(chance) > 0.6)
-        wheels.translation += size * Eigen::Vector3d(uniform(chance), uniform(chance), 0.0);
-      if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), wheels});
-      if (step % 5 != 0) continue;
-      prior.note(from_seconds(t), t < 60.0 ? std::optional(drive.seen(t, random)) : std::nullopt);
-      if (t < 60.0) continue;
-      const auto motion = prior.between(from_seconds(t - 0.05), from_seconds(t));
-      if (!motion) continue;
-      ASSERT_TRUE(is_sound(*motion)) << size;
-      const Pose truth = true_motion(drive, t - 0.05, t);
-      const double error = (motion->last_from_body.translation - truth.translation).norm();
-      EXPECT_LT(error, 0.12 + 2.8 * std::sqrt(motion->covariance(0, 0))) << size << " at " << t;
-    }
-  }
-}
-
-TEST(MotionPrior, IgnoresAGyroscopeInDegreesPerSecond) {
-  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  MotionLimits limits;
-  limits.max_turn_rate = 100.0;
-  MotionPrior prior(limits);
-  std::mt19937 random(5);
-  for (int step = 0; step < 3000; ++step) {
-    const double t = step * 0.01;
-    if (step % 2 == 0) prior.add(StampedPose{from_seconds(t), Drive::world_from_base(t)});
-    prior.add(
-        AngularRate{from_seconds(t), 57.2958 * (kBodyFromGyroscope.conjugate() * rate_of_body(drive, t) + kBias)});
-    if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
-  }
-  EXPECT_FALSE(prior.gyroscope());
-  EXPECT_EQ(prior.warnings().size(), 1U);
-  EXPECT_TRUE(prior.wheels());
-}
-
-TEST(MotionPrior, ReportsWheelsThatContradictKnownMetres) {
-  struct Case {
-    double metres_per_unit;
-    bool is_reported;
-    bool is_ignored;
-  };
-  for (const auto& [metres_per_unit, is_reported, is_ignored] :
-       {Case{1.02, false, false}, Case{1.3, true, false}, Case{0.01, true, true}}) {
-    const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = metres_per_unit, .noise = 0.0002};
-    MotionPrior prior;
-    prior.expect_metres();
-    std::mt19937 random(5);
-    for (int step = 0; step < 3000; ++step) {
-      const double t = step * 0.01;
-      if (step % 2 == 0) prior.add(drive.wheels(t));
-      if (step % 5 == 0) prior.note(from_seconds(t), drive.seen(t, random));
-    }
-    EXPECT_EQ(!prior.warnings().empty(), is_reported) << metres_per_unit;
-    EXPECT_EQ(!prior.wheels(), is_ignored) << metres_per_unit;
-  }
 }
 
 }  // namespace

@@ -2,16 +2,23 @@
 
 #include "byre/trajectory.h"
 
+#include <chrono>
 #include <optional>
 
 namespace byre {
 
-// The body's motion between two frames as it was seen, earlier_from_later, in the lengths that the map has.
+// Longest interval between tracked frames without a gap between them.
+inline constexpr Timestamp kMaxFrameGap = std::chrono::milliseconds(300);
+
+// The body's motion between two tracked frames by images, earlier_from_later, in lengths of the map.
 struct SeenMotion {
   Timestamp earlier{};
   Timestamp later{};
   Pose body;
-  std::optional<Eigen::Vector3d> gyroscope_turn{};  // radians about the gyroscope's axes, bias and all, if it was told
+  std::optional<Eigen::Vector3d> gyroscope_turn{};  // radians about the gyroscope's axes, with its bias
 };
+
+// Difference between the same motion by wheels and by images, as a multiple of the tolerance.
+double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit);
 
 }  // namespace byre

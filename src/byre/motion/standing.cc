@@ -19,6 +19,24 @@ constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all s
 
 }  // namespace
 
+void Standing::note_sight(Timestamp time, const std::optional<Pose>& seen) {
+  constexpr Timestamp kSpan = SteadyTrack::kWindow + kMaxFrameGap;
+  if (!seen || (!seen_.empty() && time - seen_.back().time > kMaxFrameGap)) seen_.clear();
+  if (seen) seen_.push_back({time, *seen});
+  while (!seen_.empty() && seen_.front().time + kSpan < time) seen_.pop_front();
+}
+
+std::optional<bool> Standing::does_sight_stand(double metres_per_unit) const {
+  constexpr double kMostMetres = 0.01;    // in the window
+  constexpr double kMostRadians = 0.006;  // in the window
+  if (seen_.empty() || seen_.front().time > seen_.back().time - SteadyTrack::kWindow) return {};
+  return std::ranges::all_of(seen_, [&](const StampedPose& pose) {
+    const Pose motion = inverse(pose.world_from_body) * seen_.back().world_from_body;
+    return metres_per_unit * motion.translation.norm() <= kMostMetres &&
+           rotation_log(motion.rotation).norm() <= kMostRadians;
+  });
+}
+
 std::optional<SteadyTrack::Steady> Standing::at(Timestamp time, const Witnesses& witnesses,
                                                 const std::optional<Eigen::Vector3d>& bias) const {
   constexpr double kMostTurning = 0.02;  // radians per second

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/motion/gyroscope_mounting.h"
+#include "byre/motion/seen_motion.h"
 #include "byre/motion/steady_track.h"
 #include "byre/trajectory.h"
 
@@ -34,6 +35,11 @@ class Standing {
 
   void add(const AngularRate& rate) { track_.add(rate); }
   void add(const Acceleration& acceleration) { track_.add(acceleration); }
+
+  // Pose of a frame by images, in lengths of the map; empty if it was not tracked.
+  void note_sight(Timestamp time, const std::optional<Pose>& seen);
+  // Whether the poses of the window before the last frame are equal up to noise. Empty if not all frames were tracked.
+  std::optional<bool> does_sight_stand(double metres_per_unit) const;
 
   // What others say of the last window before a time. Empty: they say nothing.
   struct Witnesses {
@@ -72,6 +78,7 @@ class Standing {
   };
 
   SteadyTrack track_;
+  std::deque<StampedPose> seen_;  // consecutive tracked frames up to the last one, of about a second
   std::optional<KnownUp> known_;
   std::optional<SteadyTrack::Steady> now_;
   std::optional<Timestamp> last_stood_;

@@ -1,5 +1,6 @@
 #include "byre/playback/map_run.h"
 
+#include "byre/motion/recorded_motion.h"
 #include "byre/playback/frame_source.h"
 #include "byre/system/resources.h"
 #include "byre/workers/stopwatch.h"
