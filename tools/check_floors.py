@@ -88,6 +88,8 @@ FORBIDDEN = [
          frozenset({"cli"}), "only cli prints: return what is to be told, or throw InputError"),
     Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
          "only cli ends the program: throw InputError for bad input, assert what cannot be"),
+    Rule(r"\.dump\s*\(", frozenset({"assessment", "viewer", "fleet"}),
+         "JSON text needs printable_json(): call dumped() of assessment/report_json.h"),
     Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
          "the same seed must give the same result: take the seed as an option"),
 ]

@@ -184,6 +184,12 @@ class ForbiddenCalls(CheckFloorsTest):
                 self.write("cli/main.cc", f"void f() {{ {call} }}\n")
                 self.assert_one_fault("cli/main.cc", 1, "seed")
 
+    def test_json_text_with_control_characters_is_a_fault(self):
+        self.write("node/node.cc", "auto text = json.dump(2);\n")
+        self.assert_one_fault("node/node.cc", 1, "printable_json")
+        self.write("node/node.cc", "auto text = dumped(json, 2);\n")
+        self.assertEqual([], self.found())
+
     def test_names_that_only_resemble_a_call_are_no_fault(self):
         self.write("map/map.cc",
                    "int a = std::snprintf(b, 1, c); on_exit(1); region.exit(2); my_printf(x); brand(3);\n")

@@ -1,5 +1,7 @@
 #include "byre/assessment/report_json.h"
 
+#include "byre/input/printable.h"
+
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -74,7 +76,7 @@ Json registration_json(const PlanRegistration& registration) {
 }
 
 std::string dumped(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return printable_json(json.dump(indent, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace byre

@@ -22,7 +22,7 @@ nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body)
 // Where a map lies on a plan, with units in the names; the covariance row by row, see PlanRegistration.
 nlohmann::ordered_json registration_json(const PlanRegistration& registration);
 
-// One line, or indented by so many spaces; bytes that are not UTF-8 are replaced.
+// One line, or indented by so many spaces. Bytes that are not UTF-8 are replaced, control characters escaped.
 std::string dumped(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace byre

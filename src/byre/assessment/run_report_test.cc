@@ -205,6 +205,16 @@ TEST(MapJson, ListsTheFirstTwentyWarnings) {
   EXPECT_EQ(warnings.at("first").size(), 20u);
 }
 
+TEST(MapJson, HasNoControlCharactersOfNames) {
+  MapProtocol protocol = protocol_of(Pace::paced);
+  protocol.recording =
+      "walk\xc2\x9b"
+      "2J\x7f.bag";
+  const std::string text = to_json(small_map_run(), protocol, {});
+  EXPECT_THAT(text, HasSubstr(R"(walk\u009b2J\u007f.bag)"));
+  EXPECT_EQ(json::parse(text).at("protocol").at("recording"), protocol.recording);
+}
+
 TEST(MapJson, IsWholeForARunWithoutFrames) {
   const json stats = stats_of({});
   EXPECT_EQ(stats.at("frames"), json::array());

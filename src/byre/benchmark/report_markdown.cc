@@ -1,5 +1,6 @@
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/report.h"
+#include "byre/input/printable.h"
 
 #include <algorithm>
 #include <sstream>
@@ -149,14 +150,15 @@ std::string notes(const BenchmarkResult& result, const BenchmarkProtocol& protoc
 
 std::string to_markdown(const BenchmarkResult& result, const BenchmarkProtocol& protocol,
                         const BenchmarkSetting& setting) {
-  return header(result, protocol, setting) +
-         section("Final poses: as recomputed after the last frame", final_table(result, protocol)) +
-         notes(result, protocol) +
-         section("Causal poses: as published when their frames came",
-                 table_of(result, &RunMeasures::causal_poses, trajectory_measures())) +
-         section("Behaviour, of the causal poses", table_of(result, &RunMeasures::behaviour, behaviour_measures())) +
-         section("Cost", table_of(result, &RunMeasures::cost, cost_measures())) +
-         section("Offline maps", maps_table(result)) + section("Skipped", skipped_list(result));
+  return printable_lines(
+      header(result, protocol, setting) +
+      section("Final poses: as recomputed after the last frame", final_table(result, protocol)) +
+      notes(result, protocol) +
+      section("Causal poses: as published when their frames came",
+              table_of(result, &RunMeasures::causal_poses, trajectory_measures())) +
+      section("Behaviour, of the causal poses", table_of(result, &RunMeasures::behaviour, behaviour_measures())) +
+      section("Cost", table_of(result, &RunMeasures::cost, cost_measures())) +
+      section("Offline maps", maps_table(result)) + section("Skipped", skipped_list(result)));
 }
 
 }  // namespace byre

@@ -102,6 +102,15 @@ TEST(BenchmarkMarkdown, TellsWhatIsMissing) {
   EXPECT_THAT(text, HasSubstr("stopped early"));
 }
 
+TEST(BenchmarkMarkdown, HasNoControlCharactersOfNames) {
+  BenchmarkSetting setting = kSetting;
+  setting.data =
+      "/data\x1b\xc2\x9b"
+      "2J";
+  const std::string text = to_markdown(result(), protocol(), setting);
+  EXPECT_THAT(text, HasSubstr("recordings in /data\\x1b\\xc2\\x9b2J\n"));
+}
+
 TEST(BenchmarkJson, HoldsEveryRunAndItsSummary) {
   const auto json = nlohmann::json::parse(to_json(result(), protocol(), kSetting));
   EXPECT_EQ(json["protocol"]["seeds"], nlohmann::json({0, 1, 2}));

@@ -1,5 +1,7 @@
+#include "byre/assessment/report_json.h"
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/speed.h"
+#include "byre/input/printable.h"
 
 #include <algorithm>
 #include <functional>
@@ -118,7 +120,7 @@ Json run_json(const SpeedMeasures& run) {
 
 std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> runs) {
   std::string text = "# Speed of " + what.recording.string() + "\n\n";
-  if (runs.empty()) return text + "Nothing was measured.\n";
+  if (runs.empty()) return printable_lines(text) + "Nothing was measured.\n";
   std::ranges::sort(runs, {}, mean_frame_ms);
   const SpeedMeasures& median = runs[(runs.size() - 1) / 2];
   text += fmt::format("{} frames, {} with a pose; {}; pace {}; {} cores", median.frames, median.with_pose,
@@ -129,7 +131,7 @@ std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> run
   }
   text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(what, runs, median);
   if (!median.instructions) text += "\nThis machine does not let programs count instructions.\n";
-  return text;
+  return printable_lines(text);
 }
 
 std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& runs) {
@@ -139,7 +141,7 @@ std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& 
                {"cores", what.cores},
                {"runs", Json::array()}};
   for (const SpeedMeasures& run : runs) json["runs"].push_back(run_json(run));
-  return json.dump(2) + "\n";
+  return dumped(json, 2) + "\n";
 }
 
 }  // namespace byre

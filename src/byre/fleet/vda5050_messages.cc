@@ -1,5 +1,7 @@
 #include "byre/fleet/vda5050_messages.h"
 
+#include "byre/input/printable.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -19,7 +21,7 @@ constexpr std::string_view kMarks = "_.:-";  // characters of identities beside 
 constexpr double kStanding = 0.02;           // m/s and rad/s; slower is no driving
 
 std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return printable_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 // "2026-11-23T14:05:06.123Z"

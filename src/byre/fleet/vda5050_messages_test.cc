@@ -9,6 +9,7 @@
 namespace byre {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
@@ -124,6 +125,13 @@ TEST_F(Vda5050Messages, TellTheConnection) {
 TEST_F(Vda5050Messages, AreTextWhateverAMapIsCalled) {
   map_.id = "barn \xff\"";
   EXPECT_NO_THROW(state());
+}
+
+TEST_F(Vda5050Messages, EscapeControlCharacters) {
+  map_.description =
+      "a\xc2\x9b"
+      "2J";
+  EXPECT_THAT(state_text(identity_, header_, position_, map_), HasSubstr(R"("a\u009b2J")"));
 }
 
 TEST(FleetIdentityText, HoldsWhatTheStandardAllows) {

@@ -1,5 +1,7 @@
 #include "byre/input/markup.h"
 
+#include "byre/input/printable.h"
+
 #include <array>
 
 namespace byre {
@@ -8,7 +10,7 @@ std::string markup_escaped(std::string_view text) {
   constexpr std::string_view kSpecial = "&<>\"";
   constexpr std::array<std::string_view, 4> kNames = {"&amp;", "&lt;", "&gt;", "&quot;"};
   std::string safe;
-  for (const char character : text) {
+  for (const char character : printable(text)) {
     const std::size_t found = kSpecial.find(character);
     if (found == std::string_view::npos) {
       safe += character;

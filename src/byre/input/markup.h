@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// Text to stand in XML or HTML, in an attribute too.
+// Text of one line in XML or HTML, also in an attribute. Control characters are escaped as by printable().
 std::string markup_escaped(std::string_view text);
 
 }  // namespace byre

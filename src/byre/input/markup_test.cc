@@ -9,5 +9,9 @@ TEST(Markup, IsEscapedInText) {
   EXPECT_EQ(markup_escaped("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
 }
 
+TEST(Markup, HasNoControlCharacters) {
+  EXPECT_EQ(markup_escaped("plan\x1b\xc2\x9b<2>"), "plan\\x1b\\xc2\\x9b&lt;2&gt;");
+}
+
 }  // namespace
 }  // namespace byre

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include <fmt/core.h>
+
 namespace byre {
 namespace {
 
@@ -36,36 +38,54 @@ bool is_printable(std::uint32_t code) {
   return !is_line_end_or_direction;
 }
 
-void append_escaped(std::string_view bytes, std::string& text) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+// "\\n", "\\t", "\\r", else "\\xNN" for each byte.
+std::string byte_escapes(std::string_view bytes) {
+  std::string text;
   for (const char each : bytes) {
-    const auto byte = static_cast<std::uint8_t>(each);
     if (each == '\n' || each == '\t' || each == '\r') {
       text += each == '\n' ? "\\n" : each == '\t' ? "\\t" : "\\r";
     } else {
-      (text += "\\x").append({kDigits[byte >> 4], kDigits[byte & 0xF]});
+      text += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(each));
     }
   }
+  return text;
 }
 
-}  // namespace
-
-std::string printable(std::string_view text, std::size_t most) {
-  const bool is_cut = text.size() > most;
-  if (is_cut) text = text.substr(0, most);
+// Replaces characters. escape: the replacement of a character by its code and bytes; empty to keep it.
+template <typename Escape>
+std::string with_escapes(std::string_view text, const Escape& escape) {
   std::string result;
   result.reserve(text.size());
   while (!text.empty()) {
     const Utf8Character next = first_character(text);
     const std::string_view bytes = text.substr(0, next.bytes);
     text.remove_prefix(next.bytes);
-    if (next.is_valid && is_printable(next.code)) {
-      result += bytes;
-    } else {
-      append_escaped(bytes, result);
-    }
+    const std::string escaped = escape(next, bytes);
+    result += escaped.empty() ? bytes : std::string_view(escaped);
   }
+  return result;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t most) {
+  const bool is_cut = text.size() > most;
+  const std::string result = with_escapes(text.substr(0, most), [](const Utf8Character& next, std::string_view bytes) {
+    return next.is_valid && is_printable(next.code) ? std::string() : byte_escapes(bytes);
+  });
   return is_cut ? result + "..." : result;
+}
+
+std::string printable_lines(std::string_view text) {
+  return with_escapes(text, [](const Utf8Character& next, std::string_view bytes) {
+    return next.is_valid && (is_printable(next.code) || next.code == '\n') ? std::string() : byte_escapes(bytes);
+  });
+}
+
+std::string printable_json(std::string_view json) {
+  return with_escapes(json, [](const Utf8Character& next, std::string_view) {
+    return next.code < 0x7F || is_printable(next.code) ? std::string() : fmt::format("\\u{:04x}", next.code);
+  });
 }
 
 }  // namespace byre

@@ -3,6 +3,10 @@
 #include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -53,6 +57,32 @@ TEST(Printable, IsIdempotentForAnyByte) {
     for (const char each : once) EXPECT_TRUE(each >= 0x20 && each < 0x7f) << byte;
     EXPECT_EQ(printable(once), once);
   }
+}
+
+// U+0080 to U+009F: terminals may read them as ESC and a letter.
+std::vector<std::string> c1_controls() {
+  std::vector<std::string> controls;
+  for (int code = 0x80; code < 0xA0; ++code) controls.push_back("\xc2"s + static_cast<char>(code));
+  return controls;
+}
+
+TEST(Printable, EscapesAllC1Controls) {
+  for (const std::string& control : c1_controls()) {
+    const auto number = static_cast<unsigned>(static_cast<unsigned char>(control[1]));
+    EXPECT_EQ(printable("a" + control + "b"), fmt::format("a\\xc2\\x{:02x}b", number));
+    EXPECT_EQ(printable_lines("a\n" + control + "b\n"), fmt::format("a\n\\xc2\\x{:02x}b\n", number));
+    EXPECT_EQ(printable_json("{\"a\": \"" + control + "\"}\n"), fmt::format("{{\"a\": \"\\u{:04x}\"}}\n", number));
+  }
+}
+
+TEST(PrintableLines, KeepsLineFeedsOnly) {
+  EXPECT_EQ(printable_lines("# Speed of Kühe\n\n\x1b[2J\r\xff\n"), "# Speed of Kühe\n\n\\x1b[2J\\r\\xff\n");
+}
+
+TEST(PrintableJson, EscapesAsJsonDoes) {
+  const std::string json = "{\n  \"topic\": \"/Kühe/牛 🐄 \\u001b\"\n}\n";
+  EXPECT_EQ(printable_json(json), json);
+  EXPECT_EQ(printable_json("[\"\x7f\xe2\x80\xae\xe2\x80\xa8\xef\xbb\xbf\"]"), R"(["\u007f\u202e\u2028\ufeff"])");
 }
 
 TEST(InputError, HasPrintablePlaceReasonAndRemedy) {

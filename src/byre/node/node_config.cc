@@ -1,11 +1,15 @@
 #include "byre/node/node_config.h"
 
+#include "byre/assessment/report_json.h"
 #include "byre/dataset/settings_file.h"
 #include "byre/dds/ros_names.h"
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -95,6 +99,14 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "use letters, digits and underscores");
 }
 
+// A scalar of YAML. Text of other characters than those of numbers, paths and topics is quoted, with the escapes of
+// JSON.
+std::string yaml_scalar(const std::string& text) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./";
+  const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
+  return is_plain ? text : dumped(text);
+}
+
 }  // namespace
 
 std::string NodeConfig::topic(const std::string& given) const {
@@ -130,8 +142,7 @@ std::string node_config_file(const NodeConfig& config) {
     const std::string its_group = setting.name.substr(0, dot);
     if (its_group != group) written += its_group + ":\n";
     group = its_group;
-    const std::string value = setting.get(config);
-    written += "  " + setting.name.substr(dot + 1) + ": " + (value.empty() ? "\"\"" : value) + "  # " +
+    written += "  " + setting.name.substr(dot + 1) + ": " + yaml_scalar(setting.get(config)) + "  # " +
                setting.meaning + " (" + setting.range + ")\n";
   }
   return written;

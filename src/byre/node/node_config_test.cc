@@ -105,6 +105,13 @@ TEST_F(NodeConfigFile, IsReadAgainAsItIsPrinted) {
   EXPECT_FALSE(again.config.has_right());
 }
 
+TEST_F(NodeConfigFile, QuotesTextWithoutControlCharacters) {
+  const NodeConfig config = read("slam:\n  map: \"/barn \\u009b2J: #1\\n.byre\"\n").config;
+  const std::string printed = node_config_file(config);
+  EXPECT_THAT(printed, HasSubstr(R"(map: "/barn \u009b2J: #1\n.byre"  # )"));
+  EXPECT_EQ(read(printed).config.map, config.map);
+}
+
 TEST_F(NodeConfigFile, NamesFilesThatCannotBeUsed) {
   const NodeConfig config =
       read("slam:\n  map: absent.byre\n  plan: absent.yaml\ncalibration:\n  file: absent.yml\n").config;

@@ -67,6 +67,12 @@ TEST(FoxgloveProtocol, TellsStatusWithoutBytesThatAreNoText) {
   EXPECT_THAT(status.at("message").get<std::string>(), HasSubstr("bad"));
 }
 
+TEST(FoxgloveProtocol, EscapesControlCharacters) {
+  EXPECT_THAT(server_info_text("a\xc2\x9b"
+                               "2J"),
+              HasSubstr(R"("a\u009b2J")"));
+}
+
 TEST(FoxgloveProtocol, ReadsSubscriptions) {
   const FoxgloveRequest request =
       read(R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":4294967295,"channelId":5}]})");

@@ -1,5 +1,7 @@
 #include "byre/viewer/web_json.h"
 
+#include "byre/input/printable.h"
+
 #include <cmath>
 
 namespace byre {
@@ -81,7 +83,7 @@ Json registration_fields(const PlanRegistration& registration) {
 }
 
 std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return printable_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace byre
