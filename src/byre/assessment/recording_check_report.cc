@@ -15,6 +15,11 @@ std::string describe(const CameraCheck& camera) {
                      camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
 }
 
+// Whether at least half of the left images have features.
+bool has_features(const RecordingCheck& check) {
+  return check.features > 0.0;
+}
+
 std::string describe(const PairCheck& pair) {
   return fmt::format("{:.0f} % of the features found in the right image, {:.2f} px off their row", 100.0 * pair.matched,
                      pair.row_error);
@@ -36,7 +41,7 @@ Json to_json(const CameraCheck& camera) {
 
 std::string summary_of(const RecordingCheck& check) {
   std::string text = fmt::format("{:.1f} Hz, {} gaps; {:.0f} features", check.rate_hz, check.gaps, check.features);
-  if (!check.pair) return text;
+  if (!check.pair || !has_features(check)) return text;
   return text + fmt::format(", {:.0f} % of them in both images, {:.2f} px off their row", 100.0 * check.pair->matched,
                             check.pair->row_error);
 }
@@ -48,8 +53,8 @@ std::string describe(const RecordingCheck& check, const std::vector<Finding>& fi
                                        check.looked_at, check.unreadable, check.without_right, check.repeated));
   text += row("left", describe(check.left));
   if (check.right) text += row("right", describe(*check.right));
-  if (check.pair) text += row("pair", describe(*check.pair));
-  if (check.pair) {
+  if (check.pair && has_features(check)) {
+    text += row("pair", describe(*check.pair));
     text += row("calibration",
                 fmt::format("off by about {:.2f} px, by the rows of the pair", check.pair->calibration_error));
   }

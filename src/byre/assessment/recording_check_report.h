@@ -9,7 +9,8 @@
 
 namespace byre {
 
-// "20.0 Hz, 2 gaps; 1000 features, 56 % of them in both images, 0.25 px off their row"
+// "20.0 Hz, 2 gaps; 1000 features, 56 % of them in both images, 0.25 px off their row". Ends after the number of
+// features for one camera, and if most images have none.
 std::string summary_of(const RecordingCheck& check);
 
 // Rows of a report, then what was found, each with what to do about it.
