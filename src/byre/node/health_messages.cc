@@ -61,6 +61,28 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   return status;
 }
 
+void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,
+                 const std::optional<std::string>& map_damage,
+                 const std::function<std::string(MotionSensor sensor)>& source_of, const NodeLog& log) {
+  const Health& health = report.health;
+  for (const SessionEvent event : report.events) {
+    if (event == SessionEvent::dirt_found) {
+      log(LogLevel::warning, note_on_dirt(health));
+      continue;
+    }
+    log(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
+  }
+  const bool was_damaged = last && last->health.doubt == Doubt::map_damaged;
+  if (health.doubt == Doubt::map_damaged && !was_damaged) {
+    log(LogLevel::error, map_damage.value_or("the map file is damaged"));
+  }
+  for (const MotionWarning& warning : report.warnings) {
+    log(LogLevel::warning, to_text(warning, source_of(warning.sensor)));
+  }
+  if (last && last->health.verdict == health.verdict) return;
+  log(health.verdict == Verdict::untrusted ? LogLevel::warning : LogLevel::notice, verdict_and_doubt(health));
+}
+
 std::string health_line(const FrameReport& report) {
   nlohmann::ordered_json line = {{"time_ns", report.time.count()}, {"state", to_string(report.state)}};
   line["pose"] = report.map_from_body ? pose_json(*report.map_from_body, report.covariance) : nlohmann::ordered_json();

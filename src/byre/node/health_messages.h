@@ -1,17 +1,26 @@
 #pragma once
 
 #include "byre/frame_report.h"
+#include "byre/node/node_log.h"
 #include "byre/ros/messages.h"
 
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace byre {
 
-// What the frame says of how well it is known where the robot is: OK trusted, WARN degraded, ERROR untrusted.
+// Diagnostic of the pose, by its verdict: OK trusted, WARN degraded, ERROR untrusted.
 ros::DiagnosticStatus localisation_status(const FrameReport& report);
 
-// What to do about a doubt; empty where there is nothing to do.
+// Remedy for a doubt; empty without one.
 std::string advice_for(Doubt doubt);
+
+// Logs events of a frame, damage of the map when it is found, faults of motion inputs, and a change of the verdict.
+// last: report of the frame before; map_damage: see Slam; source_of: topic of a sensor.
+void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,
+                 const std::optional<std::string>& map_damage,
+                 const std::function<std::string(MotionSensor sensor)>& source_of, const NodeLog& log);
 
 // Time, state, health and the pose in the map, as one line of JSON.
 std::string health_line(const FrameReport& report);

@@ -245,30 +245,9 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   outputs_.tell_frame(left.header, report, pose_frames_);
   if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
-  note_events(report);
+  const auto source_of = [this](MotionSensor sensor) { return motion_.source_of(sensor); };
+  log_changes(report, last_report_, runner_.map_damage(), source_of, log_);
   last_report_ = report;
-}
-
-void Node::note_events(const FrameReport& report) {
-  for (const SessionEvent event : report.events) {
-    if (event == SessionEvent::dirt_found) {
-      log_(LogLevel::warning, note_on_dirt(report.health));
-      continue;
-    }
-    log_(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
-  }
-  const bool was_damaged = last_report_ && last_report_->health.doubt == Doubt::map_damaged;
-  if (report.health.doubt == Doubt::map_damaged && !was_damaged) {
-    log_(LogLevel::error, runner_.map_damage().value_or("the map file is damaged"));
-  }
-  for (const MotionWarning& warning : report.warnings) {
-    log_(LogLevel::warning, to_text(warning, motion_.source_of(warning.sensor)));
-  }
-  if (last_report_ && last_report_->health.verdict == report.health.verdict) return;
-  const std::string doubt =
-      report.health.doubt == Doubt::none ? "" : ": " + std::string(to_string(report.health.doubt));
-  log_(report.health.verdict == Verdict::untrusted ? LogLevel::warning : LogLevel::notice,
-       std::string(to_string(report.health.verdict)) + doubt);
 }
 
 ros::DiagnosticStatus Node::localisation() const {

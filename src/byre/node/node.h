@@ -52,7 +52,6 @@ class Node {
   ReceivedImage decoded(const Message& message, const std::string& topic) const;
   void process(const Pairs::Pair& pair);
   void publish(const ReceivedImage& left, const FrameReport& report);
-  void note_events(const FrameReport& report);
   void tell_state(Timestamp now);
   void tell_fleet(Timestamp now);
   void tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
