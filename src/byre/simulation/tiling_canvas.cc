@@ -15,22 +15,34 @@ std::vector<float> lattice_values(int cells_x, int cells_y, std::uint64_t seed) 
   return values;
 }
 
+// Values of one lattice row, interpolated along x.
+std::vector<float> interpolated_row(const float* lattice_row, int cells_x, int size) {
+  std::vector<float> values;
+  for (int column = 0; column < size; ++column) {
+    const float x = static_cast<float>(column * cells_x) / static_cast<float>(size);
+    const int cell = static_cast<int>(x);
+    const int next = (cell + 1) % cells_x;
+    const float right = smooth_step(x - static_cast<float>(cell));
+    values.push_back(lattice_row[cell] + right * (lattice_row[next] - lattice_row[cell]));
+  }
+  return values;
+}
+
 void add_octave(std::vector<float>& sum, int size, int cells_x, int cells_y, float amplitude, std::uint64_t seed) {
   const std::vector<float> lattice = lattice_values(cells_x, cells_y, seed);
+  std::vector<std::vector<float>> rows;
+  for (int cell_row = 0; cell_row < cells_y; ++cell_row) {
+    rows.push_back(interpolated_row(&lattice[static_cast<std::size_t>(cell_row * cells_x)], cells_x, size));
+  }
   for (int row = 0; row < size; ++row) {
     const float y = static_cast<float>(row * cells_y) / static_cast<float>(size);
     const int cell_row = static_cast<int>(y);
     const float down = smooth_step(y - static_cast<float>(cell_row));
-    const float* const upper = &lattice[static_cast<std::size_t>(cell_row * cells_x)];
-    const float* const lower = &lattice[static_cast<std::size_t>((cell_row + 1) % cells_y * cells_x)];
+    const float* const above = rows[static_cast<std::size_t>(cell_row)].data();
+    const float* const below = rows[static_cast<std::size_t>((cell_row + 1) % cells_y)].data();
+    float* const values = &sum[static_cast<std::size_t>(row) * static_cast<std::size_t>(size)];
     for (int column = 0; column < size; ++column) {
-      const float x = static_cast<float>(column * cells_x) / static_cast<float>(size);
-      const int cell = static_cast<int>(x);
-      const int next = (cell + 1) % cells_x;
-      const float right = smooth_step(x - static_cast<float>(cell));
-      const float above = upper[cell] + right * (upper[next] - upper[cell]);
-      const float below = lower[cell] + right * (lower[next] - lower[cell]);
-      sum[static_cast<std::size_t>(row * size + column)] += amplitude * (above + down * (below - above));
+      values[column] += amplitude * (above[column] + down * (below[column] - above[column]));
     }
   }
 }

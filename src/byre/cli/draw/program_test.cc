@@ -24,7 +24,7 @@ constexpr const char* kPngBegin = "\x89PNG\r\n";
 
 class DrawProgram : public ProgramTest {
  protected:
-  DrawProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  DrawProgram() { map_room("--stride 2", "room.byre"); }
 
   // Every other frame is the mission.
   Outcome draw_mission(const std::string& arguments) const {

@@ -23,7 +23,7 @@ using testing::SizeIs;
 // Every other frame of the room is mapped, and the others are looked for.
 class LocaliseProgram : public ProgramTest {
  protected:
-  LocaliseProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  LocaliseProgram() { map_room("--stride 2", "room.byre"); }
 
   Outcome localise(const std::string& arguments) const { return run("localise room.byre " + arguments); }
 };

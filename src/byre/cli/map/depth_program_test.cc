@@ -20,23 +20,12 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr int kFrames = 40;
 constexpr int kFramesPerDepth = 3;  // every third frame has a depth image
 constexpr double kUnitsPerMetre = 1000.0;
 
 const Calibration& pair() {
   static const Calibration calibration = euroc_like_calibration(2);
   return calibration;
-}
-
-Trajectory bend() {
-  return circling_trajectory(kFrames, 20.0, 2.0, 0.25, pair().body_from_left);
-}
-
-// Grey values of 8 or 16 bits.
-void write_pgm(const fs::path& file, int width, int height, int most, const std::string& bytes) {
-  fs::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary) << "P5\n" << width << " " << height << "\n" << most << "\n" << bytes;
 }
 
 // Along the optical axis, pixel by pixel of the left camera, the upper byte first.
@@ -81,31 +70,31 @@ void write_calibration(const fs::path& file) {
        << "\n";
 }
 
-// The room of a stereo recording, seen by its left camera with depth; its files go when it goes.
+// The left images of the bend, with depth. The destructor removes the files.
 class DepthFixture {
  public:
   DepthFixture() {
     fs::remove_all(folder_);
-    fs::create_directories(folder_);
+    fs::create_directories(folder_ / "rgb");
+    fs::create_directories(folder_ / "depth");
     write_calibration(folder_ / "camera.yaml");
     const RenderedRoom room{RenderedRoomOptions{}};
-    Calibration left = pair();
-    left.right.reset();
-    const RenderedCameras cameras(left);
+    const Camera& lens = pair().left;
     std::ofstream colours(folder_ / "rgb.txt"), depths(folder_ / "depth.txt");
-    const Trajectory truth = bend();
+    const Trajectory& truth = bend_recording().truth();
     write_trajectory(truth, folder_ / "groundtruth.txt");
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const auto& [time, world_from_body] = truth[i];
-      const std::string name = std::to_string(i) + ".pgm";
+      const std::string name = std::to_string(i);
       const std::string seconds = fmt::format("{:.6f}", to_seconds(time));
-      const Image image = room.render(cameras, world_from_body, time).left;
-      write_pgm(folder_ / "rgb" / name, image.width, image.height, 255, {image.pixels.begin(), image.pixels.end()});
-      colours << seconds << " rgb/" << name << "\n";
+      fs::copy(bend_recording().image("cam0", i), folder_ / "rgb" / (name + ".png"));
+      colours << seconds << " rgb/" << name << ".png\n";
       if (i % kFramesPerDepth != 0) continue;
-      write_pgm(folder_ / "depth" / name, image.width, image.height, 65535,
-                depth_bytes(room, left.left, world_from_body * left.body_from_left));
-      depths << seconds << " depth/" << name << "\n";
+      std::ofstream(folder_ / "depth" / (name + ".pgm"), std::ios::binary)
+          << "P5\n"
+          << lens.width << " " << lens.height << "\n65535\n"
+          << depth_bytes(room, lens, world_from_body * pair().body_from_left);
+      depths << seconds << " depth/" << name << ".pgm\n";
     }
   }
   ~DepthFixture() { fs::remove_all(folder_); }
@@ -121,12 +110,6 @@ class DepthFixture {
 const std::string& with_depth() {
   static const DepthFixture recording;
   static const std::string quoted = recording.quoted();
-  return quoted;
-}
-
-const std::string& with_two_cameras() {
-  static const RenderedFixture recording("byre_cli_depth_pair", pair(), bend());
-  static const std::string quoted = "'" + recording.folder().string() + "'";
   return quoted;
 }
 
@@ -163,15 +146,15 @@ TEST_F(DepthProgram, MapsInMetresAndSaysHowManyFramesHadDepth) {
 
 TEST_F(DepthProgram, MakesAMapForOneCameraAndRunsOnTheMapOfTwo) {
   ASSERT_EQ(run("map " + with_depth() + " -o depth.byre --quiet").exit_code, 0);
-  ASSERT_EQ(run("map " + with_two_cameras() + " -o pair.byre --quiet").exit_code, 0);
+  ASSERT_EQ(run_once("map " + rendered_bend() + " -o stereo.byre --quiet").exit_code, 0);
   const std::string truth = " --truth " + with_depth();
   EXPECT_LT(error_of_mission(with_depth() + " --camera left --map depth.byre" + truth), 0.02);
-  EXPECT_LT(error_of_mission(with_two_cameras() + " --map depth.byre" + truth), 0.02);
-  EXPECT_LT(error_of_mission(with_depth() + " --camera rgbd --map pair.byre" + truth), 0.02);
+  EXPECT_LT(error_of_mission(rendered_bend() + " --map depth.byre" + truth), 0.02);
+  EXPECT_LT(error_of_mission(with_depth() + " --camera rgbd --map stereo.byre" + truth), 0.02);
 }
 
 TEST_F(DepthProgram, RefusesARecordingWithoutDepth) {
-  const Outcome refused = run("map " + with_two_cameras() + " --camera rgbd -o out.byre --quiet");
+  const Outcome refused = run("map " + rendered_bend() + " --camera rgbd -o out.byre --quiet");
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.errors, HasSubstr("has no depth images"));
 }

@@ -17,20 +17,16 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Along a bend, so that walls do not fill the image; of twice the resolution of the other tests.
-const std::string& room() {
-  static const Calibration calibration = euroc_like_calibration(2);
-  static const RenderedFixture recording("byre_cli_mono_room", calibration,
-                                         circling_trajectory(40, 20.0, 2.0, 0.25, calibration.body_from_left));
-  static const std::string quoted = "'" + recording.folder().string() + "'";
-  return quoted;
-}
-
-class MonocularProgram : public ProgramTest {};
+class MonocularProgram : public ProgramTest {
+ protected:
+  Outcome map_by_left_camera() const {
+    return run_once("map " + rendered_bend() +
+                    " --camera left -o mono.byre --trajectory mono.txt --stats s.json --quiet");
+  }
+};
 
 TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn) {
-  const Outcome outcome =
-      run("map " + room() + " --camera left -o mono.byre --trajectory mono.txt --stats s.json --quiet");
+  const Outcome outcome = map_by_left_camera();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("of the left camera"), HasSubstr("s after the first frame, at frame"),
                                     HasSubstr("of the map's own; \"byre scale\" makes it metres")));
@@ -38,28 +34,28 @@ TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn)
   const StoredMap stored = load_map(folder_ / "mono.byre");
   EXPECT_EQ(stored.scale, MapScale::unknown);
   EXPECT_FALSE(stored.map.rigs().front().is_stereo());
-  const Outcome judged = run("evaluate --estimate mono.txt --truth " + room() + " --frames-of " + room() +
-                             " --camera left --estimate-of camera --alignment sim3 --json");
+  const Outcome judged = run("evaluate --estimate mono.txt --truth " + rendered_bend() + " --frames-of " +
+                             rendered_bend() + " --camera left --estimate-of camera --alignment sim3 --json");
   ASSERT_EQ(judged.exit_code, 0) << judged.errors;
   EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.02);
 }
 
 TEST_F(MonocularProgram, TakesAMissionOnceTheMapHasItsSize) {
-  ASSERT_EQ(run("map " + room() + " --camera left -o mono.byre --quiet").exit_code, 0);
-  const Outcome refused = run("run " + room() + " --camera left --map mono.byre --quiet");
+  ASSERT_EQ(map_by_left_camera().exit_code, 0);
+  const Outcome refused = run("run " + rendered_bend() + " --camera left --map mono.byre --quiet");
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.errors, AllOf(HasSubstr("has no metric scale"), HasSubstr("byre scale")));
   const Outcome scaled = run("scale mono.byre --between 0,0,0 0,0,1 --metres 3 -o metric.byre");
   ASSERT_EQ(scaled.exit_code, 0) << scaled.errors;
   EXPECT_THAT(scaled.output, HasSubstr("a unit is 3 m"));
-  EXPECT_EQ(run("run " + room() + " --camera left --map metric.byre --quiet").exit_code, 0);
+  EXPECT_EQ(run("run " + rendered_bend() + " --camera left --map metric.byre --quiet").exit_code, 0);
 }
 
 TEST_F(MonocularProgram, RunsOnAMapThatTwoCamerasHaveMadeWithItsScale) {
-  ASSERT_EQ(run("map " + room() + " -o stereo.byre --quiet").exit_code, 0);
+  ASSERT_EQ(run_once("map " + rendered_bend() + " -o stereo.byre --quiet").exit_code, 0);
   for (const std::string camera : {"left", "right"}) {
-    const Outcome outcome = run("run " + room() + " --camera " + camera + " --map stereo.byre --truth " + room() +
-                                " --stats s.json --quiet");
+    const Outcome outcome = run("run " + rendered_bend() + " --camera " + camera + " --map stereo.byre --truth " +
+                                rendered_bend() + " --stats s.json --quiet");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     const json mission = json::parse(read("s.json"));
     EXPECT_EQ(mission["counts"]["coverage"], 1.0) << camera;

@@ -21,9 +21,7 @@ using testing::StartsWith;
 // The room's first half is mapped, and not finished.
 class RefineProgram : public ProgramTest {
  protected:
-  RefineProgram() {
-    EXPECT_EQ(run("map " + rendered_room() + " --frames :14 --no-loops --quiet -o room.byre").exit_code, 0);
-  }
+  RefineProgram() { map_room("--frames :14 --no-loops", "room.byre"); }
 
   void write_map_of_unknown_scale() const {
     StoredMap stored = StoredMapScene(4, 9).stored();

@@ -149,7 +149,7 @@ TEST_F(RunProgram, KeepsEverythingSoFarAtCtrlC) {
 // Every other frame of the room is mapped, and the others are the mission.
 class MissionProgram : public RunProgram {
  protected:
-  MissionProgram() { EXPECT_EQ(run("map " + rendered_room() + " --stride 2 -o room.byre --quiet").exit_code, 0); }
+  MissionProgram() { map_room("--stride 2", "room.byre"); }
 
   Outcome mission(const std::string& arguments) const {
     return run_room("--map room.byre --frames 1: --stride 2 " + arguments);
@@ -270,7 +270,7 @@ TEST_F(MissionProgram, MapsNothingWhenItIsToLocaliseOnly) {
 }
 
 TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
-  ASSERT_EQ(run("map " + rendered_room() + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
+  map_room("--frames 0:6", "corner.byre");
   const Outcome outcome = run_room("--map corner.byre --frames 3: --save-online online.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(run("validate online.byre").exit_code, 0);
@@ -279,7 +279,7 @@ TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
 }
 
 TEST_F(MissionProgram, NotesInTheMapThatItSavesHowWheelsAreMounted) {
-  ASSERT_EQ(run("map " + rendered_room() + " --frames 0:6 -o corner.byre --quiet").exit_code, 0);
+  map_room("--frames 0:6", "corner.byre");
   StoredMap stored = load_map(folder_ / "corner.byre");
   KnownMounting known;
   known.wheels.emplace().metres_per_unit = 1.02;

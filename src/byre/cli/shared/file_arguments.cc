@@ -43,21 +43,25 @@ const char* name_of(const std::array<std::pair<Kind, const char*>, n>& names, Ki
   return std::ranges::find(names, kind, &std::pair<Kind, const char*>::first)->second;
 }
 
-bool is_declared(CLI::Option& option, const char* name) {
-  try {
-    option.get_validator(name);
-    return true;
-  } catch (const CLI::OptionNotFound&) {
-    return false;
-  }
-}
-
 template <typename Kind, std::size_t n>
-std::optional<Kind> declared_as(const std::array<std::pair<Kind, const char*>, n>& names, CLI::Option& option) {
-  for (const auto& [kind, name] : names) {
-    if (is_declared(option, name)) return kind;
+std::optional<Kind> kind_named(const std::array<std::pair<Kind, const char*>, n>& names, const std::string& name) {
+  for (const auto& [kind, each] : names) {
+    if (name == each) return kind;
   }
   return std::nullopt;
+}
+
+// Name of the validator that declares the option; empty without one. Validators are counted off, because a search by
+// name throws for each name that is absent, and commands have hundreds of options.
+std::string declaration_of(CLI::Option& option) {
+  try {
+    for (int i = 0;; ++i) {
+      const std::string& name = option.get_validator(i)->get_name();
+      if (name == kText || kind_named(kInputs, name) || kind_named(kOutputs, name)) return name;
+    }
+  } catch (const CLI::OptionNotFound&) {
+    return "";
+  }
 }
 
 CLI::Option* declare_file(CLI::Option* option, const char* name) {
@@ -85,6 +89,7 @@ NamedFiles arguments_of(CLI::App& command) {
   NamedFiles arguments;
   for (CLI::App* const given : given_commands(command)) {
     for (CLI::Option* const option : given->get_options()) {
+      if (option->results().empty()) continue;
       const auto input = input_of(*option);
       const auto output = output_of(*option);
       for (const std::string& path : option->results()) {
@@ -139,15 +144,15 @@ CLI::Option* declare_text(CLI::Option* option) {
 }
 
 std::optional<Input> input_of(CLI::Option& option) {
-  return declared_as(kInputs, option);
+  return kind_named(kInputs, declaration_of(option));
 }
 
 std::optional<Output> output_of(CLI::Option& option) {
-  return declared_as(kOutputs, option);
+  return kind_named(kOutputs, declaration_of(option));
 }
 
 bool is_text(CLI::Option& option) {
-  return is_declared(option, kText);
+  return declaration_of(option) == kText;
 }
 
 void declare_no_overwrite(CLI::App& command) {

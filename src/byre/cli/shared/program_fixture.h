@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -28,6 +30,19 @@ inline std::string quoted(const std::filesystem::path& path) {
 
 inline std::string rendered_room() {
   return quoted(RenderedFixture::shared().folder());
+}
+
+// A bend through the room, where walls do not fill the image, at twice the resolution of rendered_room(). Rendered
+// once.
+inline const RenderedFixture& bend_recording() {
+  static const Calibration calibration = euroc_like_calibration(2);
+  static const RenderedFixture recording("byre_cli_bend", calibration,
+                                         circling_trajectory(40, 20.0, 2.0, 0.25, calibration.body_from_left));
+  return recording;
+}
+
+inline std::string rendered_bend() {
+  return quoted(bend_recording().folder());
 }
 
 struct Outcome {
@@ -64,6 +79,32 @@ class ProgramTest : public testing::Test {
         "cd '" + folder_.string() + "' && '" + BYRE_PROGRAM + "' " + arguments + " >stdout.txt 2>stderr.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
+  }
+
+  // Runs a command once for all tests of this process. Later calls give the same outcome and copies of the files that
+  // it wrote. Precondition: it reads no file of the test, and replaces none.
+  Outcome run_once(const std::string& arguments) const {
+    static std::map<std::string, std::pair<Outcome, std::map<std::string, std::string>>> runs;
+    auto known = runs.find(arguments);
+    if (known == runs.end()) {
+      const std::set<std::string> before = names_of_files();
+      known = runs.emplace(arguments, std::pair(run(arguments), std::map<std::string, std::string>())).first;
+      for (const std::string& name : names_of_files()) {
+        if (!before.contains(name)) known->second.second.emplace(name, read(name));
+      }
+    } else {
+      for (const auto& [name, content] : known->second.second) {
+        std::filesystem::create_directories((folder_ / name).parent_path());
+        write(name, content);
+      }
+    }
+    return known->second.first;
+  }
+
+  // Maps the shared rendered room, by run_once.
+  void map_room(const std::string& options, const std::string& file) const {
+    const Outcome outcome = run_once("map " + rendered_room() + " " + options + " --quiet -o " + file);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   }
 
   // Starts the program with these signals as they are in a terminal, and with a file as its standard input.
@@ -108,6 +149,15 @@ class ProgramTest : public testing::Test {
     int status = 0;
     EXPECT_EQ(waitpid(process, &status, 0), process);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  // Names of all files in the folder and below it, relative to it.
+  std::set<std::string> names_of_files() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      if (entry.is_regular_file()) names.insert(std::filesystem::relative(entry.path(), folder_).string());
+    }
+    return names;
   }
 
   std::filesystem::path folder_ =

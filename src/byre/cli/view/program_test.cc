@@ -25,12 +25,10 @@ using ::testing::Not;
 class ViewProgram : public ProgramTest {
  protected:
   const std::string room_ = RenderedFixture::shared().folder().string();
-
-  void map_room() const { ASSERT_EQ(run("map '" + room_ + "' -o room.byre --quiet").exit_code, 0); }
 };
 
 TEST_F(ViewProgram, ShowsAMapUntilItIsInterrupted) {
-  map_room();
+  map_room("", "room.byre");
   const pid_t process = start({"view", (folder_ / "room.byre").string(), "--port", "0"});
   ASSERT_TRUE(appears("until Ctrl-C", "stderr.txt"));
   kill(process, SIGINT);
@@ -40,7 +38,7 @@ TEST_F(ViewProgram, ShowsAMapUntilItIsInterrupted) {
 }
 
 TEST_F(ViewProgram, TellsOnlyItsAddressWhenQuiet) {
-  map_room();
+  map_room("", "room.byre");
   const pid_t process =
       start({"view", (folder_ / "room.byre").string(), "--port", "0", "--bind", "0.0.0.0", "--quiet"});
   ASSERT_TRUE(appears("?token=", "stderr.txt"));
