@@ -3,6 +3,8 @@
 #include "byre/features/image_threads.h"
 #include "byre/system/engine.h"
 
+#include <filesystem>
+#include <map>
 #include <utility>
 
 #include <fmt/core.h>
@@ -10,9 +12,26 @@
 namespace byre {
 namespace {
 
+// Images of a frame. Those of the last recording are kept, because many missions are flown on the same frames.
+std::optional<ImageFrame> read_once(const std::filesystem::path& folder, Recording& recording, int frame) {
+  constexpr std::size_t kMostKept = 200;  // pairs; 145 MB at 752x480 pixels
+  static std::filesystem::path kept_folder;
+  static std::map<Timestamp, std::optional<ImageFrame>> kept;
+  if (folder != kept_folder) kept.clear();
+  kept_folder = folder;
+  const Timestamp time = recording.times()[static_cast<std::size_t>(frame)];
+  if (const auto found = kept.find(time); found != kept.end()) return found->second;
+  std::optional<ImageFrame> images = recording.read(frame);
+  if (kept.size() < kMostKept) kept.emplace(time, images);
+  return images;
+}
+
 // By the refined calibration of the map where that was made with the one that is told, as "byre run" does it.
-std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, const Imperfection& imperfection,
-                              const Trajectory& truth, std::shared_ptr<const OfflineMap> map) {
+std::vector<MissionFrame> run(const MissionPlan& plan, const MissionCase& mission_case, Recording& recording,
+                              std::shared_ptr<const OfflineMap> map) {
+  const Imperfection& imperfection = mission_case.imperfection;
+  const std::filesystem::path folder = find(mission_case.recording).value();
+  const Trajectory truth = truth_of(mission_case.recording);
   limit_image_threads(1);
   const Degradation cameras = imperfect_cameras(imperfection);
   EngineOptions options;
@@ -22,7 +41,7 @@ std::vector<MissionFrame> run(const MissionPlan& plan, Recording& recording, con
   Engine engine(told_calibration(recording.calibration(), imperfection), options);
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
-    const std::optional<ImageFrame> recorded = recording.read(step.frame);
+    const std::optional<ImageFrame> recorded = read_once(folder, recording, step.frame);
     if (!recorded) continue;
     ImageFrame images = cameras(step.disturb ? step.disturb(*recorded) : *recorded, step.frame);
     images.time = step.time;
@@ -76,7 +95,7 @@ FlownMission fly(const MissionCase& mission_case, KnownMaps& maps) {
     plan.undisturbed_from = plan.steps.front().time + from_seconds(*mission_case.mapped_again_after);
   }
   FlownMission flown;
-  flown.frames = run(plan, *recording, mission_case.imperfection, truth_of(mission_case.recording), known.map);
+  flown.frames = run(plan, mission_case, *recording, known.map);
   if (!has_map) flown.truth_from_map = truth_from_own_map(flown.frames);
   if (has_map && !mission_case.map.is_of_another_place) flown.truth_from_map = known.truth_from_map;
   flown.score = score(flown.frames, flown.truth_from_map, plan.undisturbed_from);
