@@ -4,6 +4,8 @@
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -12,6 +14,11 @@ namespace {
 // Accepted, and the map cells in view do not contradict the pose.
 bool is_beyond_doubt(const Whereabouts& whereabouts) {
   return whereabouts.place().is_accepted() && whereabouts.place().log_odds() >= 0.0;
+}
+
+// camera_from_offline of a robot at the place alike.
+Pose camera_at(const PlaceAlike& place, const Pose& camera_from_place) {
+  return camera_from_place * Pose{Eigen::Quaterniond::Identity(), -place.shift};
 }
 
 }  // namespace
@@ -56,7 +63,7 @@ bool OfflineTracker::is_view_due(const Whereabouts& whereabouts) {
 }
 
 PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
-                                  const HiddenCells& hidden) {
+                                  const HiddenCells& hidden, bool is_accepted) {
   const Pose& pose = track.tracked.camera_from_world;
   ReusedVector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
   if (keyframes != nearby_keyframes_) {
@@ -71,13 +78,15 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (!reference) reference = mission_.keyframe_near(pose);
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
   }
+  const std::vector<PointId> in_common = is_accepted ? std::vector<PointId>() : points_in_common(pose);
   return view_of_place({*offline_, rig, frame, track.tracked, nearby_points_, around, hidden,
-                        [this](PointId id) { return mission_.moved_points().is_suspended(id); }});
+                        [this](PointId id) { return mission_.moved_points().is_suspended(id); },
+                        [&](PointId id) { return std::ranges::binary_search(in_common, id); }});
 }
 
 double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
                                    const HiddenCells& hidden) {
-  return byre::log_odds_of(view_of(frame, track, rig, hidden));
+  return byre::log_odds_of(view_of(frame, track, rig, hidden, false));
 }
 
 std::optional<PlaceHypothesis> OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
@@ -115,6 +124,7 @@ ReusedVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offl
   return around;
 }
 
+// A rival is proposed because of points that look alike, so those are no evidence for it.
 RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
                                                 const HiddenCells& hidden) const {
   const ReusedVector<PointId> around = points_around(predicted);
@@ -124,7 +134,12 @@ RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& 
   if (tracked) there = *tracked;
   const Pose& pose = there.camera_from_world;
   const ReusedVector<PointId> nearby = points_of_place(*offline_, keyframes_of_place(*offline_, pose));
-  return {pose, view_of_place({*offline_, rig, frame, there, nearby, around, hidden}), tracked.has_value()};
+  const auto is_repeated = [this](PointId id) {
+    return std::ranges::any_of(
+        alike_, [id](const PlaceAlike& place) { return std::ranges::binary_search(place.repeated, id); });
+  };
+  return {pose, view_of_place({*offline_, rig, frame, there, nearby, around, hidden, is_repeated}),
+          tracked.has_value()};
 }
 
 void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere,
@@ -137,8 +152,8 @@ void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> 
   std::vector<Pose> rivals;  // camera_from_offline
   for (const HybridTrack& other : elsewhere) rivals.push_back(other.tracked.camera_from_world);
   if (!is_accepted) {
-    for (const Eigen::Vector3d& shift : shifts_at(camera_from_place)) {
-      rivals.push_back(camera_from_place * Pose{Eigen::Quaterniond::Identity(), -shift});
+    for (const PlaceAlike& place : alike_at(camera_from_place)) {
+      rivals.push_back(camera_at(place, camera_from_place));
     }
   }
   propose_rivals({seen.frame.time, camera_from_place}, rivals, seen.rig, whereabouts, mapper);
@@ -155,12 +170,40 @@ void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const P
   }
 }
 
-std::span<const Eigen::Vector3d> OfflineTracker::shifts_at(const Pose& camera_from_place) {
+std::span<const PlaceAlike> OfflineTracker::alike_at(const Pose& camera_from_place) {
   ReusedVector<KeyframeId> keyframes = keyframes_of_place(*offline_, camera_from_place);
-  if (keyframes != places_alike_.keyframes) {
-    places_alike_ = {std::move(keyframes), shifts_to_places_alike(*offline_, camera_from_place)};
+  if (keyframes != keyframes_of_alike_) {
+    alike_ = places_alike(*offline_, camera_from_place);
+    keyframes_of_alike_ = std::move(keyframes);
   }
-  return places_alike_.shifts;
+  return alike_;
+}
+
+// Whether the robot may be at a place alike although a frame cannot be tested there: the map was driven nearby, but no
+// keyframe saw it in this direction.
+bool OfflineTracker::is_untestable(const Pose& camera_from_alike) const {
+  constexpr double kNear = 3.0;  // metres
+  return keyframes_of_place(*offline_, camera_from_alike).empty() &&
+         offline_->distance_to_keyframes(inverse(camera_from_alike).translation) <= kNear;
+}
+
+// Points of a place, ascending, that may be those of a place alike.
+std::vector<PointId> OfflineTracker::points_in_common(const Pose& camera_from_place) {
+  std::vector<PointId> in_common;
+  untestable_ = 0;
+  for (const PlaceAlike& place : alike_at(camera_from_place)) {
+    const Pose camera_from_alike = camera_at(place, camera_from_place);
+    const bool is_rival = rivals_.has_at(camera_from_place, camera_from_alike);
+    if (!is_rival && !is_untestable(camera_from_alike)) continue;
+    untestable_ += !is_rival;
+    in_common.insert(in_common.end(), place.repeated.begin(), place.repeated.end());
+  }
+  std::ranges::sort(in_common);
+  return in_common;
+}
+
+double OfflineTracker::log_odds_of_rivals() const {
+  return std::log(untestable_ + std::exp(rivals_.log_odds()));
 }
 
 OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereabouts& whereabouts,

@@ -3,6 +3,7 @@
 #include "byre/localisation/mission.h"
 #include "byre/localisation/mission_calibrator.h"
 #include "byre/localisation/place_search.h"
+#include "byre/localisation/places_alike.h"
 #include "byre/localisation/rival_places.h"
 #include "byre/localisation/whereabouts.h"
 #include "byre/mapping/mapper.h"
@@ -73,8 +74,10 @@ class OfflineTracker {
   // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then one in
   // three, to save time.
   bool is_view_due(const Whereabouts& whereabouts);
-  // The part of the map that a frame, tracked in the map's frame, shows.
-  PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
+  // The part of the map that a frame, tracked in the map's frame, shows. Until the place is accepted, points that a
+  // place alike has as well are told apart.
+  PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden,
+                    bool is_accepted);
   // Log-odds of a frame's pose by what that frame alone shows.
   double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // See RivalPlaces.
@@ -90,7 +93,8 @@ class OfflineTracker {
   // the frame as well, and, while the place is not accepted, places that look alike in the map.
   void test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere, const Whereabouts& whereabouts,
                    const Mapper& mapper);
-  double log_odds_of_rivals() const { return rivals_.log_odds(); }  // see RivalPlaces
+  // Log of the sum of the odds of the places alike that a place, not accepted yet, is tested against.
+  double log_odds_of_rivals() const;
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
   // Once for each frame. search: a search that has ended since the last frame.
   Consequence consider(const std::optional<PlaceSearch>& search, const Whereabouts& whereabouts, const Mapper& mapper);
@@ -118,7 +122,9 @@ class OfflineTracker {
                                        const Rig& rig, const HiddenCells& hidden) const;
   RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
                                   const HiddenCells& hidden) const;
-  std::span<const Eigen::Vector3d> shifts_at(const Pose& camera_from_place);
+  std::span<const PlaceAlike> alike_at(const Pose& camera_from_place);
+  bool is_untestable(const Pose& camera_from_alike) const;
+  std::vector<PointId> points_in_common(const Pose& camera_from_place);
   struct PlaceOfFrame {
     Timestamp time{};
     Pose camera_from_offline;
@@ -139,11 +145,9 @@ class OfflineTracker {
   ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view_of
   ReusedVector<PointId> nearby_points_;        // points seen by these keyframes
   RivalPlaces rivals_;
-  struct PlacesAlike {
-    ReusedVector<KeyframeId> keyframes;  // keyframes of the place
-    std::vector<Eigen::Vector3d> shifts;
-  };
-  PlacesAlike places_alike_;  // shifts from the last place that was not accepted
+  ReusedVector<KeyframeId> keyframes_of_alike_;  // keyframes of the last place that was not accepted
+  std::vector<PlaceAlike> alike_;                // places that look like it
+  int untestable_ = 0;                           // untestable places alike at the pose of the last view_of
   int frames_since_rivals_ = 0;
   bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;

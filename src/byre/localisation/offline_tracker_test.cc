@@ -175,5 +175,42 @@ TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
   EXPECT_FALSE(tracker_.collect_place());
 }
 
+// Each frame fits two rooms of the map.
+class BetweenTwinRooms : public ::testing::Test {
+ protected:
+  int points_alone(bool is_accepted) {
+    int points = 0;
+    const PlaceView view = tracker_.view_of(mission_.frames[0], track_, mission_.rig, {}, is_accepted);
+    for (const CellInView& cell : view.cells) points += cell.expected_alone;
+    return points;
+  }
+
+  const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(60, 10.0, 2.0, 1.0), {});
+  const std::shared_ptr<const OfflineMap> rooms_ = [this] {
+    MappedPlace place = twin_rooms(mission_);
+    return std::make_shared<const OfflineMap>(std::move(place.map), place.index.vocabulary());
+  }();
+  Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), rooms_}};
+  OfflineTracker tracker_{rooms_, {}, {make_inline_executor(), make_inline_executor()}};
+  Whereabouts whereabouts_{{}, {}, {}, true};
+  HybridTrack track_ = [this] {
+    HybridTrack track;
+    track.tracked.camera_from_world = true_camera_from_world(mission_, 0);
+    return track;
+  }();
+};
+
+TEST_F(BetweenTwinRooms, PointsThatBothHaveAreNoEvidenceWhileTheOtherIsARival) {
+  EXPECT_GT(points_alone(false), 0) << "no rival so far";
+  tracker_.begin_place(mission_.frames[0].time, track_.tracked.camera_from_world);
+  HybridTrack elsewhere = track_;
+  elsewhere.tracked.camera_from_world =
+      track_.tracked.camera_from_world * Pose{Eigen::Quaterniond::Identity(), {-10.0, 0.0, 0.0}};
+  tracker_.test_rivals({mission_.frames[0], track_, mission_.rig, 0.0, false, {}, {}}, std::span(&elsewhere, 1),
+                       whereabouts_, mapper_);
+  EXPECT_EQ(points_alone(false), 0);
+  EXPECT_GT(points_alone(true), 0) << "an accepted place is tested by all of its points";
+}
+
 }  // namespace
 }  // namespace byre

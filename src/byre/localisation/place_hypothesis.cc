@@ -69,12 +69,13 @@ int most_on_one_thing(const Places& places) {
 
 }  // namespace
 
-double PlaceHypothesis::evidence() const {
+double PlaceHypothesis::evidence(Count Cell::*points) const {
   double all = 0.0;
   Places agreeing;
   for (const Cell& cell : cells_) {
-    if (cell.expected < kMinExpected) continue;
-    const bool agrees = cell.seen >= std::max(1.0, kMinShare * cell.expected);
+    const auto& [expected, seen] = cell.*points;
+    if (expected < kMinExpected) continue;
+    const bool agrees = seen >= std::max(1.0, kMinShare * expected);
     all += agrees ? kOfAgreement : kOfDisagreement;
     if (agrees) agreeing.push_back(cell.centre_of_seen);
   }
@@ -91,17 +92,18 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log
     auto cell = std::ranges::lower_bound(cells_, seen.cell, {}, &Cell::index);
     if (cell == cells_.end() || cell->index != seen.cell) cell = cells_.insert(cell, Cell{.index = seen.cell});
     const double weight = 1.0 / (cell->frames + 1);
-    cell->expected += weight * (seen.expected - cell->expected);
-    cell->seen += weight * (seen.seen - cell->seen);
+    cell->all.expected += weight * (seen.expected - cell->all.expected);
+    cell->all.seen += weight * (seen.seen - cell->all.seen);
+    cell->alone.expected += weight * (seen.expected_alone - cell->alone.expected);
+    cell->alone.seen += weight * (seen.seen_alone - cell->alone.seen);
     if (seen.seen > 0) cell->centre_of_seen = seen.centre_of_seen;
     cell->frames = std::min(cell->frames + 1, kLengthOfMean - 1);
     cell->last_frame = frame_;
   }
   std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
-  log_odds_ = prior_ + evidence();
-  // The log-odds of a place and of a rival both err, so a place with rivals needs twice as much.
-  const double enough = log_odds_of_rivals > 0.0 ? 2.0 * accept_ : accept_;
-  if (is_believed() && log_odds_ - log_odds_of_rivals >= enough) {
+  log_odds_ = prior_ + evidence(&Cell::all);
+  log_odds_to_rivals_ = prior_ + evidence(&Cell::alone);
+  if (is_believed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
     is_accepted_ = true;
     prior_ = std::max(prior_, 0.0);  // outweighed by cells that may be forgotten before it is
   }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace byre {
@@ -13,12 +14,16 @@ namespace byre {
 // robot that was carried.
 inline const double kLogOddsOfCarried = -std::log(100.0);
 
+inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
+
 // Sequential likelihood-ratio test (Wald 1945) of a pose in the offline map against any other place. Log-odds in nats.
 //
 // The map is divided into cells. A cell whose points should be in view agrees if some of them are seen. Each cell
 // counts once, however many frames and points show it: things are moved and covered as a whole, and a robot at
 // standstill gets no new evidence. A moved thing (a gate's leaf, the side of a wagon) agrees with the map wherever it
 // stands now. So the agreeing cells that one such thing can cover add no more than the log-odds against a moved thing.
+//
+// Against a place that looks alike (the next bay of a barn) only points that it does not have are evidence.
 class PlaceHypothesis {
  public:
   // Accepted without a test: the pose is right by definition, as in the frame of a map that is being made.
@@ -28,14 +33,16 @@ class PlaceHypothesis {
   PlaceHypothesis(double prior, int frames_to_believe, double accept = RegistrationOptions{}.accept_log_odds)
       : prior_(prior), accept_(accept), frames_to_believe_(frames_to_believe), is_accepted_(false) {}
 
-  // Adds a frame. is_tracked: at a pose that continues the one before; false: the first pose. log_odds_of_rivals: see
-  // RivalPlaces.
-  void observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals = 0.0);
+  // Adds a frame. is_tracked: at a pose that continues the one before; false: the first pose. log_odds_of_rivals: log
+  // of the sum of the odds of the places alike that it is tested against, see RivalPlaces.
+  void observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals = kNoRivals);
 
   // The pose was lost for a short time and found again within reach.
   void find_again(int frames_to_believe) { frames_to_believe_ = frames_to_believe; }
 
-  double log_odds() const { return log_odds_; }  // against all places but the rivals
+  double log_odds() const { return log_odds_; }  // against all places but those that look alike
+  // Against a place alike, by points that it does not have.
+  double log_odds_to_rivals() const { return log_odds_to_rivals_; }
   // Enough frames were tracked for mapping to use the pose.
   bool is_believed() const { return frames_to_believe_ == 0; }
   // The test has accepted it, and not rejected it since.
@@ -43,21 +50,26 @@ class PlaceHypothesis {
   bool is_rejected() const;
 
  private:
+  struct Count {
+    double expected = 0.0;  // mean number of points that should be in view
+    double seen = 0.0;      // mean number of points seen
+  };
   struct Cell {
     std::array<int, 3> index{};  // see MapCells
     int last_frame = 0;
-    int frames = 0;                                            // frames in the mean
-    double expected = 0.0;                                     // mean number of points that should be in view
-    double seen = 0.0;                                         // mean number of points seen
+    int frames = 0;  // frames in the means
+    Count all{};
+    Count alone{};                                             // points that no place alike has
     Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
   };
-  double evidence() const;
+  double evidence(Count Cell::*points) const;
 
   double prior_ = 0.0;
   double accept_ = RegistrationOptions{}.accept_log_odds;
   int frames_to_believe_ = 0;
   bool is_accepted_ = true;
   double log_odds_ = 0.0;
+  double log_odds_to_rivals_ = 0.0;
   int frame_ = 0;
   std::vector<Cell> cells_;  // ascending by index
 };

@@ -81,11 +81,21 @@ TEST(PlaceHypothesis, IsAcceptedOnlyOnceItsFramesAreTracked) {
 
 TEST(PlaceHypothesis, MustOutweighItsRivals) {
   PlaceHypothesis place(0.0, 0);
-  place.observe(view_of_room(10, 0), true, 8.0);
+  place.observe(view_of_room(10, 0), true, 9.0);
   EXPECT_GT(place.log_odds(), RegistrationOptions{}.accept_log_odds);
   EXPECT_FALSE(place.is_accepted());
   place.observe(view_of_room(10, 0), true, 2.0);
   EXPECT_TRUE(place.is_accepted());
+}
+
+TEST(PlaceHypothesis, OutweighsARivalOnlyByPointsThatTheRivalDoesNotHave) {
+  PlaceView view = view_of_room(10, 0);
+  for (CellInView& cell : view.cells) cell.expected_alone = cell.seen_alone = 0;
+  PlaceHypothesis with_rival(0.0, 0), without(0.0, 0);
+  with_rival.observe(view, true, 0.0);
+  without.observe(view, true);
+  EXPECT_FALSE(with_rival.is_accepted());
+  EXPECT_TRUE(without.is_accepted());
 }
 
 TEST(PlaceHypothesis, StaysAcceptedWhereCellsThatOutweighedItsPriorAreForgotten) {

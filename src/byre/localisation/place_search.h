@@ -5,7 +5,6 @@
 #include "byre/slam/localisation.h"
 #include "byre/slam/offline_map.h"
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -50,9 +49,5 @@ struct PlaceSearch {
   std::vector<Pose> places{};         // camera_from_offline at each place that shows the frame
 };
 PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options);
-
-// Shifts, metres, at which many points that keyframes near a place saw have points that look alike, as in the bays of a
-// barn. Most such points first.
-std::vector<Eigen::Vector3d> shifts_to_places_alike(const OfflineMap& offline, const Pose& camera_from_place);
 
 }  // namespace byre

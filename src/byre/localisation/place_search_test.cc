@@ -34,16 +34,5 @@ TEST_F(SearchInTwinRooms, ReturnsBothPlacesAndChoosesNone) {
   EXPECT_EQ(search.time, mission_.frames[0].time);
 }
 
-TEST_F(SearchInTwinRooms, FindsTheShiftBetweenTheRooms) {
-  const std::vector<Eigen::Vector3d> shifts = shifts_to_places_alike(twins(), true_camera_from_world(mission_, 0));
-  ASSERT_THAT(shifts, SizeIs(1));
-  EXPECT_LT((shifts[0] - Eigen::Vector3d(10.0, 0.0, 0.0)).norm(), 0.01);
-}
-
-TEST(SearchInOneRoom, FindsNoShift) {
-  const SimulatedMission mission = lap();
-  EXPECT_THAT(shifts_to_places_alike(*offline_map_of(mission), true_camera_from_world(mission, 0)), IsEmpty());
-}
-
 }  // namespace
 }  // namespace byre

@@ -9,7 +9,7 @@ namespace byre {
 inline CellInView cell_in_view(const std::array<int, 3>& cell, int seen) {
   constexpr double kSide = 2.0;  // metres
   const Eigen::Vector3d centre(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5);
-  return {cell, 40, seen, kSide * centre};
+  return {cell, 40, seen, kSide * centre, 40, seen};
 }
 
 // Cells of a room, first the agreeing ones, then the others. No four of them fit on one thing.

@@ -69,6 +69,14 @@ void RivalPlaces::propose(const Pose& camera_from_place, const Pose& camera_from
   rivals_.push_back({inverse(camera_from_rival) * camera_from_place, test, camera});
 }
 
+bool RivalPlaces::has_at(const Pose& camera_from_place, const Pose& camera_from_rival) const {
+  constexpr double kNear = 1.0;  // metres
+  const Eigen::Vector3d camera = inverse(camera_from_place).translation;
+  const Eigen::Vector3d at_rival = inverse(camera_from_rival).translation;
+  return std::ranges::any_of(
+      rivals_, [&](const Rival& rival) { return (rival.rival_from_place * camera - at_rival).norm() <= kNear; });
+}
+
 // If no keyframe saw the map from nearby, a frame that is not tracked is no evidence: points look different from
 // another direction.
 void RivalPlaces::observe(const Pose& camera_from_place, const TrackAt& track_at) {
@@ -89,7 +97,7 @@ void RivalPlaces::note_place(Timestamp time, const Pose& camera_from_place, cons
 }
 
 double RivalPlaces::log_odds() const {
-  double odds = 1.0;
+  double odds = 0.0;
   for (const Rival& rival : rivals_) odds += std::exp(rival.test.log_odds());
   return std::log(odds);
 }
@@ -108,8 +116,8 @@ bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint) const {
   return std::ranges::any_of(rivals_, [&](const Rival& rival) {
     const double log_odds = rival.test.log_odds();
     if (rival.frames < kFrames || log_odds < 0.0) return false;
-    if (!place.is_accepted() && !is_by_hint) return log_odds > place.log_odds();
-    return rival.way >= kWay && log_odds >= place.log_odds() + of_rival;
+    if (!place.is_accepted() && !is_by_hint) return log_odds > place.log_odds_to_rivals();
+    return rival.way >= kWay && log_odds >= place.log_odds_to_rivals() + of_rival;
   });
 }
 

@@ -36,13 +36,16 @@ class RivalPlaces {
   // The test of the robot's place after that frame.
   void note_place(Timestamp time, const Pose& camera_from_place, const PlaceHypothesis& place);
 
-  // What the robot's place must outweigh: log of 1 + the sum of the odds of all rivals; 0 without rivals.
+  // What the robot's place must outweigh: log of the sum of the odds of all rivals; kNoRivals without.
   double log_odds() const;
   // Whether a rival is so much more likely that the robot's place is to be given up. An accepted place, and one found
   // by a hint, is given up only after 2 m of way: places that look alike from one spot differ along a way.
   bool refute(const PlaceHypothesis& place, bool is_by_hint) const;
   // Pose of the last frame at the likeliest rival; empty without rivals.
   std::optional<Pose> camera_from_likeliest() const;
+
+  // Whether there is a rival within a metre. Poses of one frame.
+  bool has_at(const Pose& camera_from_place, const Pose& camera_from_rival) const;
 
   void forget() { rivals_.clear(); }
 

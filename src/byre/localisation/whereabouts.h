@@ -94,7 +94,7 @@ class Whereabouts {
     bool is_by_hint = false;          // where it was found from nothing: it was looked for near a hint alone
     const PlaceView* view = nullptr;  // the part of the offline map that it shows; nullptr without a map
     const PlaceHypothesis* known_place = nullptr;  // where it was found from nothing: see hypothesis_of_find
-    double log_odds_of_rivals = 0.0;               // see PlaceHypothesis::observe
+    double log_odds_of_rivals = kNoRivals;         // see PlaceHypothesis::observe
   };
   // What a tracked frame changed.
   struct Progress {

@@ -222,7 +222,7 @@ void Session::put_most_likely_first(std::vector<HybridTrack>& places, const Fram
     const Pose body = body_pose(rig_, found.tracked.camera_from_world);
     PlaceHypothesis place = whereabouts_.hypothesis_of_find(
         frame.time, body, mission_->known_place_at(frame.time, found.tracked.camera_from_world), rig_, map());
-    place.observe(mission_->view_of(frame, found, rig_, lens_watch_.hidden()), true);
+    place.observe(mission_->view_of(frame, found, rig_, lens_watch_.hidden(), false), true);
     log_odds.push_back(place.log_odds());
   }
   std::swap(places.front(), places[static_cast<std::size_t>(std::ranges::max_element(log_odds) - log_odds.begin())]);
@@ -320,10 +320,6 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   const HybridTrack& track = *located.track;
   if (located.from_nothing && !mission_ && whereabouts_.motion().told()) keyframe_watch_.note_found();
   const bool is_on_map = mission_ && is_registered(mapper_);
-  const std::optional<PlaceView> view =
-      is_on_map && (located.from_nothing || mission_->is_view_due(whereabouts_))
-          ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden()))
-          : std::nullopt;
   std::optional<PlaceHypothesis> known_place;
   if (is_on_map) {
     if (located.from_nothing) {
@@ -332,10 +328,15 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
     mission_->test_rivals({input.frame, track, rig_, 0.0, false, {}, lens_watch_.hidden()}, located.elsewhere,
                           whereabouts_, mapper_);
   }
+  const std::optional<PlaceView> view =
+      is_on_map && (located.from_nothing || mission_->is_view_due(whereabouts_))
+          ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden(),
+                                            !located.from_nothing && whereabouts_.place().is_accepted()))
+          : std::nullopt;
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
                          located.is_by_hint, view ? &*view : nullptr, known_place ? &*known_place : nullptr,
-                         is_on_map ? mission_->log_odds_of_rivals() : 0.0},
+                         is_on_map ? mission_->log_odds_of_rivals() : kNoRivals},
                         rig_, map());
   tracker_.note(track);
   if (!input.cuts.online_points) {

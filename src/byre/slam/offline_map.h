@@ -64,6 +64,8 @@ class OfflineMap {
   // Keyframes near a camera that look in a similar direction, nearest first. Nearness is distance in metres, and a
   // metre for each radian between the directions.
   ReusedVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
+  // Metres from a camera to the nearest keyframe, whatever the directions.
+  double distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const;
 
  private:
   Map map_;

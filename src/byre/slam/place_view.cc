@@ -66,9 +66,12 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({cells.index(points[i].first)});
     CellInView& cell = view.cells.back();
+    const bool is_alone = !query.is_in_common || !query.is_in_common(points[i].second);
     ++cell.expected;
+    cell.expected_alone += is_alone;
     if (!std::ranges::binary_search(shown, points[i].second)) continue;
     ++cell.seen;
+    cell.seen_alone += is_alone;
     cell.centre_of_seen += (map.find_point(points[i].second)->position_in_world - cell.centre_of_seen) / cell.seen;
   }
   return view;

@@ -17,6 +17,9 @@ struct CellInView {
   int expected = 0;
   int seen = 0;  // inliers with the same image patch, not only a similar corner
   Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
+  // Points that no place alike has, see PlaceViewQuery.
+  int expected_alone = 0;
+  int seen_alone = 0;
 };
 
 // The part of the offline map that a frame shows from a pose.
@@ -35,11 +38,12 @@ struct PlaceViewQuery {
   const OfflineMap& offline;
   const Rig& rig;
   const Frame& frame;
-  const TrackedFrame& tracked;                 // pose and inliers, in the offline map's frame
-  std::span<const PointId> nearby;             // points_of_place of the pose
-  std::span<const PointId> candidates;         // offline points around the pose, used if nearby ones are too few
-  HiddenCells hidden{};                        // image cells without expected points
-  std::function<bool(PointId)> is_left_out{};  // points that are never expected; empty: none
+  const TrackedFrame& tracked;                  // pose and inliers, in the offline map's frame
+  std::span<const PointId> nearby;              // points_of_place of the pose
+  std::span<const PointId> candidates;          // offline points around the pose, used if nearby ones are too few
+  HiddenCells hidden{};                         // image cells without expected points
+  std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
+  std::function<bool(PointId)> is_in_common{};  // points that a place alike has as well; empty: none
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);
