@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -65,14 +66,21 @@ ReusedVector<PointId> Mission::due_again(std::span<const PointId> around) const 
   return due;
 }
 
-std::optional<Pose> Mission::consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                                      double median_depth) {
-  const RegistrationOptions& options = options_.registration;
-  hypothesis_ = confirm(hypothesis_, offline_from_online, camera_in_online, median_depth, options);
-  if (!hypothesis_ || hypothesis_->confirmations < options.confirmations) return std::nullopt;
-  const Pose confirmed = hypothesis_->offline_from_online;
-  hypothesis_.reset();
-  return confirmed;
+std::optional<Pose> Mission::registered(const RegistrationEvidence& seen, const PlaceHypothesis& begun) {
+  constexpr double kMostApart = 0.01;  // share of the median depth, and radians
+  if (!registration_) registration_ = {seen.offline_from_online, begun};
+  const Pose& before = registration_->offline_from_online;
+  const double shift = (before * seen.camera_in_online - seen.offline_from_online * seen.camera_in_online).norm();
+  const double turn = angle_between(before.rotation, seen.offline_from_online.rotation);
+  if (shift > kMostApart * seen.median_depth || turn > kMostApart) {
+    if (++registration_->misses > options_.registration.max_misses) registration_.reset();
+    return std::nullopt;
+  }
+  registration_->offline_from_online = seen.offline_from_online;
+  PlaceHypothesis& place = registration_->place;
+  place.observe(seen.view, true);
+  if (!place.is_believed() || (!place.is_accepted() && place.log_odds() < 0.0)) return std::nullopt;
+  return std::exchange(registration_, std::nullopt)->offline_from_online;
 }
 
 }  // namespace byre

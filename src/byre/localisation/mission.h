@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/localisation/place_bounds.h"
+#include "byre/localisation/place_hypothesis.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/moved_points.h"
@@ -55,10 +56,17 @@ class Mission {
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
 
-  // What a frame says of where the online map lies in the offline one: a correction, once enough frames agree.
-  std::optional<Pose> consider(const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                               double median_depth);
-  void forget_hypothesis() { hypothesis_.reset(); }
+  // A frame found or tracked in both maps, see registered().
+  struct RegistrationEvidence {
+    Pose offline_from_online;
+    Eigen::Vector3d camera_in_online;  // metres
+    double median_depth = 0.0;         // metres
+    const PlaceView& view;             // the part of the offline map that it shows
+  };
+  // Tests where the online map lies in the offline one. begun: the test to begin with. Returns the pose once enough
+  // frames agree, and what should be seen does not contradict them.
+  std::optional<Pose> registered(const RegistrationEvidence& seen, const PlaceHypothesis& begun);
+  void forget_registration() { registration_.reset(); }
 
  private:
   // Constant after construction.
@@ -71,7 +79,12 @@ class Mission {
   std::optional<Timestamp> last_offline_time_;
   int frames_ = 0;                       // noted
   std::optional<KeyframeId> reference_;  // offline keyframe that showed most of the last frame's points
-  std::optional<RegistrationHypothesis> hypothesis_;
+  struct Registration {
+    Pose offline_from_online;
+    PlaceHypothesis place;
+    int misses = 0;  // frames that contradict it
+  };
+  std::optional<Registration> registration_;
 };
 
 }  // namespace byre

@@ -212,7 +212,7 @@ OfflineTracker::Consequence OfflineTracker::note(const Seen& seen, const Whereab
   if (is_beyond_doubt(whereabouts)) rivals_.forget();
   rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, whereabouts.place());
   if (!whereabouts.place().is_believed()) return consequence;
-  if (!mapper.has_correction()) consequence.correction = correction_by(seen.track, mapper);
+  if (!mapper.has_correction()) consequence.correction = correction_by(seen.track, whereabouts, mapper);
   if (calibrator_ && whereabouts.place().is_accepted() && !seen.track.maps_disagree) {
     calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
   }
@@ -241,7 +241,7 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
 
 void OfflineTracker::lose() {
   mission_.forget_reference();
-  mission_.forget_hypothesis();
+  mission_.forget_registration();
 }
 
 void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper) {
@@ -295,34 +295,48 @@ OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSe
     }
     if (is_search_by_doubt_) return {};
   }
-  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
-  const double prior = submaps.is_registered() ? 0.0 : whereabouts.log_odds_of_registration(offline_from_online);
-  if (prior < 0.0 && found.log_odds + prior < 0.0) return {};
-  return {.correction = correction_by(found, camera_from_online, submaps.frame())};
+  return {.correction = correction_by(found, camera_from_online, submaps.frame(), whereabouts)};
 }
 
 // The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
 std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
-                                                              Submaps::Frame frame) {
+                                                              Submaps::Frame frame, const Whereabouts& whereabouts) {
   const bool is_registered = frame == Submaps::kMapFrame;
   if (is_registered && !is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift())) {
     return std::nullopt;
   }
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
-  const auto confirmed =
-      mission_.consider(offline_from_online, inverse(camera_from_online).translation, found.median_depth);
+  const auto confirmed = mission_.registered(
+      {offline_from_online, inverse(camera_from_online).translation, found.median_depth, found.view},
+      begun_registration(offline_from_online, is_registered, whereabouts));
   if (!confirmed) return std::nullopt;
   if (is_registered) return OnlineCorrection{frame, last_held_keyframe_, *confirmed, CorrectionShape::spread};
   return OnlineCorrection{frame, 0, *confirmed, CorrectionShape::rigid};
 }
 
-std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack& track, const Mapper& mapper) {
+std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack& track, const Whereabouts& whereabouts,
+                                                              const Mapper& mapper) {
   if (!track.is_online_off()) return std::nullopt;
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
-  const auto confirmed = mission_.consider(offline_from_online, inverse(*track.from_online).translation,
-                                           median_depth(track.tracked, mapper.map()));
+  const PlaceView tested_already;
+  const auto confirmed = mission_.registered({offline_from_online, inverse(*track.from_online).translation,
+                                              median_depth(track.tracked, mapper.map()), tested_already},
+                                             begun_registration(offline_from_online, true, whereabouts));
   if (!confirmed) return std::nullopt;
   return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
+}
+
+// In the map's frame the test of the pose's place goes on; otherwise a new one begins.
+PlaceHypothesis OfflineTracker::begun_registration(const Pose& offline_from_online, bool is_registered,
+                                                   const Whereabouts& whereabouts) const {
+  const RegistrationOptions& options = options_.mission.registration;
+  if (!is_registered) {
+    const double prior = whereabouts.log_odds_of_registration(offline_from_online);
+    return PlaceHypothesis(prior, options.confirmations, options.accept_log_odds);
+  }
+  PlaceHypothesis place = whereabouts.place();
+  place.find_again(options.confirmations);
+  return place;
 }
 
 Health OfflineTracker::added_to(Health health, Timestamp now, Timestamp first_frame) const {

@@ -133,9 +133,12 @@ class OfflineTracker {
                       const Whereabouts& whereabouts, const Mapper& mapper);
   bool is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const;
   // Once enough frames agree.
-  std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Mapper& mapper);
+  std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Whereabouts& whereabouts,
+                                                const Mapper& mapper);
   std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
-                                                Submaps::Frame frame);
+                                                Submaps::Frame frame, const Whereabouts& whereabouts);
+  PlaceHypothesis begun_registration(const Pose& offline_from_online, bool is_registered,
+                                     const Whereabouts& whereabouts) const;
 
   OfflineTrackerOptions options_;              // constant after construction
   std::shared_ptr<const OfflineMap> offline_;  // constant after construction

@@ -48,7 +48,7 @@ class OnAnOfflineMap : public ::testing::Test {
   PlaceSearch place_beside(double metres) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
     PlaceSearch search{.time = mission_.frames[0].time, .rig = mission_.rig};
-    search.found = FoundPlace{beside * true_camera_from_world(mission_, 0), 3.0, 5.0};
+    search.found = FoundPlace{beside * true_camera_from_world(mission_, 0), 3.0, view_of_room(10, 0)};
     search.places = {search.found->camera_from_offline};
     return search;
   }

@@ -1,11 +1,11 @@
 #include "byre/localisation/place_search.h"
 
-#include "byre/localisation/place_hypothesis.h"
 #include "byre/localisation/standing_hint.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -72,9 +72,8 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
   const ReusedVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  const PlaceView view =
-      view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
-  search.found = FoundPlace{found.tracked->camera_from_world, depth, log_odds_of(view)};
+  PlaceView view = view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
+  search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
   search.refused = Doubt::none;
   return search;
 }

@@ -4,6 +4,7 @@
 #include "byre/pose_hint.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/offline_map.h"
+#include "byre/slam/place_view.h"
 
 #include <optional>
 #include <vector>
@@ -37,7 +38,7 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
 struct FoundPlace {
   Pose camera_from_offline;
   double median_depth = 0.0;  // metres, of the matched points
-  double log_odds = 0.0;      // log-odds of the place by this frame alone, see PlaceHypothesis
+  PlaceView view{};           // the part of the map that the frame shows
 };
 
 // What came of looking for a frame in the offline map without a guess.

@@ -6,9 +6,6 @@
 namespace byre {
 namespace {
 
-constexpr double kMaxDisagreement =
-    0.01;  // share of the median depth, and radians, between two frames that say the same
-
 struct PathKeyframe {
   OnlineKeyframeId id;
   Pose camera_from_world;
@@ -51,23 +48,6 @@ void append_points(const Map& online, const std::map<KeyframeId, Pose>& motions,
 }
 
 }  // namespace
-
-std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHypothesis>& hypothesis,
-                                              const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                                              double median_depth, const RegistrationOptions& options) {
-  if (!hypothesis) return RegistrationHypothesis{offline_from_online};
-  RegistrationHypothesis checked = *hypothesis;
-  const double shift =
-      (hypothesis->offline_from_online * camera_in_online - offline_from_online * camera_in_online).norm();
-  const double turn = angle_between(hypothesis->offline_from_online.rotation, offline_from_online.rotation);
-  if (shift <= kMaxDisagreement * median_depth && turn <= kMaxDisagreement) {
-    ++checked.confirmations;
-    checked.offline_from_online = offline_from_online;
-    return checked;
-  }
-  if (++checked.misses > options.max_misses) return std::nullopt;
-  return checked;
-}
 
 MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
                        CorrectionShape shape) {

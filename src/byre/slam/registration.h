@@ -3,7 +3,6 @@
 #include "byre/map/map.h"
 #include "byre/slam/delta.h"
 
-#include <optional>
 #include <vector>
 
 namespace byre {
@@ -12,22 +11,10 @@ struct RegistrationOptions {
   int confirmations = 3;         // frames that must agree before a place is used for mapping
   double accept_log_odds = 2.5;  // log-odds from which a place found is trusted, nats; see PlaceHypothesis
   double max_speed = 3.0;        // metres per second, highest speed of the robot
-  int max_misses = 2;            // contradicting frames before a place is given up
+  int max_misses = 2;            // contradicting finds before a registration is given up
 };
 
 inline constexpr int kConfirmationsOfJump = 10;  // frames, where the robot was carried or went faster than it can
-
-// Where the online map lies in the offline one, as several frames have it.
-struct RegistrationHypothesis {
-  Pose offline_from_online;
-  int confirmations = 1;
-  int misses = 0;
-};
-
-// What another frame says, where there is none yet or one already. Empty when it is refuted.
-std::optional<RegistrationHypothesis> confirm(const std::optional<RegistrationHypothesis>& hypothesis,
-                                              const Pose& offline_from_online, const Eigen::Vector3d& camera_in_online,
-                                              double median_depth, const RegistrationOptions& options);
 
 // A path of online keyframes, in the order of ids, moved so that its newest end lies in the offline map. What comes
 // before:

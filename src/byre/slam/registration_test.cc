@@ -11,37 +11,6 @@ namespace {
 using ::testing::Contains;
 
 const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}};
-constexpr double kWallDepth = 4.0;  // metres
-
-TEST(Confirm, BelievesAPlaceOnceEnoughFramesAgree) {
-  const RegistrationOptions options;
-  std::optional<RegistrationHypothesis> hypothesis;
-  for (int frame = 0; frame < 3; ++frame) {
-    hypothesis = confirm(hypothesis, kOfflineFromOnline, {1.0, 2.0, 0.0}, kWallDepth, options);
-  }
-  EXPECT_EQ(hypothesis.value().confirmations, 3);
-}
-
-TEST(Confirm, GivesUpWhenFramesSayDifferentThings) {
-  const RegistrationOptions options{.max_misses = 2};
-  auto hypothesis = confirm({}, kOfflineFromOnline, {1.0, 2.0, 0.0}, kWallDepth, options);
-  for (int frame = 0; frame < 3; ++frame) {
-    ASSERT_TRUE(hypothesis);
-    hypothesis = confirm(hypothesis, Pose{}, {1.0, 2.0, 0.0}, kWallDepth, options);
-  }
-  EXPECT_FALSE(hypothesis);
-}
-
-TEST(Confirm, ComparesWhereTheCameraIsNotWhereTheWorldBegins) {
-  const Pose turned_about_the_camera = [] {
-    const Eigen::Vector3d camera(50.0, 0.0, 0.0);
-    const Eigen::Quaterniond turn = rotation_exp({0.0, 0.0, 0.005});
-    return Pose{turn, camera - turn * camera};
-  }();
-  const auto first = confirm({}, Pose{}, {50.0, 0.0, 0.0}, kWallDepth, {});
-  EXPECT_EQ(confirm(first, turned_about_the_camera, {50.0, 0.0, 0.0}, kWallDepth, {}).value().confirmations, 2);
-  EXPECT_EQ(confirm(first, turned_about_the_camera, {0.0, 0.0, 0.0}, kWallDepth, {}).value().confirmations, 1);
-}
 
 class CorrectionOf : public ::testing::Test {
  protected:

@@ -1,0 +1,64 @@
+#include "byre/localisation/mission.h"
+
+#include "byre/localisation/place_view_scene.h"
+#include "byre/slam/place_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}};
+
+// An online map whose place in the offline one is tested.
+class RegistrationOfAnOnlineMap : public ::testing::Test {
+ protected:
+  // A frame 4 m in front of what it sees.
+  bool is_registered_by(const Pose& offline_from_online, const PlaceView& view = view_of_room(10, 0),
+                        const Eigen::Vector3d& camera = {1.0, 2.0, 0.0}, double prior = 0.0) {
+    return mission_.registered({offline_from_online, camera, 4.0, view}, PlaceHypothesis(prior, 3)).has_value();
+  }
+
+  Mission mission_{offline_map_of(quarter_circle({})), {}};
+};
+
+TEST_F(RegistrationOfAnOnlineMap, EndsOnceThreeFramesAgree) {
+  EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
+  EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
+  EXPECT_TRUE(is_registered_by(kOfflineFromOnline));
+  EXPECT_FALSE(is_registered_by(kOfflineFromOnline)) << "a new test begins";
+}
+
+TEST_F(RegistrationOfAnOnlineMap, DoesNotEndWhereMostOfTheMapIsNotSeen) {
+  for (int frame = 0; frame < 20; ++frame) EXPECT_FALSE(is_registered_by(kOfflineFromOnline, view_of_room(2, 8)));
+}
+
+TEST_F(RegistrationOfAnOnlineMap, NeedsMoreEvidenceWhereMeasuredMotionContradicts) {
+  const PlaceView three_cells = view_of_room(3, 0), ten_cells = view_of_room(10, 0);
+  for (int frame = 0; frame < 5; ++frame) {
+    EXPECT_FALSE(is_registered_by(kOfflineFromOnline, three_cells, {1.0, 2.0, 0.0}, kLogOddsOfCarried));
+  }
+  EXPECT_TRUE(is_registered_by(kOfflineFromOnline, ten_cells, {1.0, 2.0, 0.0}, kLogOddsOfCarried));
+}
+
+TEST_F(RegistrationOfAnOnlineMap, IsGivenUpAfterThreeFramesElsewhere) {
+  is_registered_by(kOfflineFromOnline);
+  is_registered_by(kOfflineFromOnline);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_FALSE(is_registered_by(Pose{}));
+  EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
+  EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
+  EXPECT_TRUE(is_registered_by(kOfflineFromOnline));
+}
+
+TEST_F(RegistrationOfAnOnlineMap, ComparesPosesOfTheCameraAndNotOfTheOrigin) {
+  const Eigen::Vector3d camera(50.0, 0.0, 0.0);
+  const Eigen::Quaterniond turn = rotation_exp({0.0, 0.0, 0.005});
+  const Pose about_the_camera{turn, camera - turn * camera};
+  const PlaceView view = view_of_room(10, 0);
+  is_registered_by(Pose{}, view, camera);
+  is_registered_by(about_the_camera, view, camera);
+  EXPECT_TRUE(is_registered_by(about_the_camera, view, camera));
+}
+
+}  // namespace
+}  // namespace byre
