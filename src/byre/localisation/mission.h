@@ -1,11 +1,11 @@
 #pragma once
 
 #include "byre/localisation/place_bounds.h"
-#include "byre/localisation/place_hypothesis.h"
 #include "byre/slam/health.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/moved_points.h"
 #include "byre/slam/offline_map.h"
+#include "byre/slam/place_hypothesis.h"
 #include "byre/slam/registration.h"
 #include "byre/slam/state.h"
 

@@ -1,7 +1,7 @@
 #include "byre/localisation/mission.h"
 
-#include "byre/localisation/place_view_scene.h"
 #include "byre/slam/place_scene.h"
+#include "byre/slam/place_view_scene.h"
 
 #include <gtest/gtest.h>
 

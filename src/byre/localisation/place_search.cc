@@ -3,6 +3,7 @@
 #include "byre/localisation/standing_hint.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
+#include "byre/slam/place_hypothesis.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/localisation/place_hypothesis.h"
+#include "byre/slam/place_hypothesis.h"
 #include "byre/trajectory.h"
 
 #include <functional>

@@ -1,6 +1,6 @@
 #include "byre/localisation/rival_places.h"
 
-#include "byre/localisation/place_view_scene.h"
+#include "byre/slam/place_view_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -3,11 +3,11 @@
 #include "byre/features/rolling_shutter.h"
 #include "byre/health.h"
 #include "byre/localisation/odometry.h"
-#include "byre/localisation/place_hypothesis.h"
 #include "byre/map/driven_ground.h"
 #include "byre/mapping/anchored_trajectory.h"
 #include "byre/slam/hybrid_tracking.h"
 #include "byre/slam/motion_model.h"
+#include "byre/slam/place_hypothesis.h"
 #include "byre/slam/registration.h"
 #include "byre/slam/told_motions.h"
 

@@ -1,9 +1,9 @@
 #include "byre/localisation/whereabouts.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/localisation/place_view_scene.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/mission_scene.h"
+#include "byre/slam/place_view_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "byre/localisation/place_hypothesis.h"
+#include "byre/slam/place_hypothesis.h"
 
 #include <algorithm>
 #include <cmath>

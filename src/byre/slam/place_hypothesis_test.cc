@@ -1,6 +1,6 @@
-#include "byre/localisation/place_hypothesis.h"
+#include "byre/slam/place_hypothesis.h"
 
-#include "byre/localisation/place_view_scene.h"
+#include "byre/slam/place_view_scene.h"
 
 #include <gtest/gtest.h>
 
