@@ -79,7 +79,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
   }
   const std::vector<PointId> in_common = is_accepted ? std::vector<PointId>() : points_in_common(pose);
-  return view_of_place({*offline_, rig, frame, track.tracked, nearby_points_, around, hidden,
+  return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden,
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); },
                         [&](PointId id) { return std::ranges::binary_search(in_common, id); }});
 }
@@ -138,7 +138,7 @@ RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& 
     return std::ranges::any_of(
         alike_, [id](const PlaceAlike& place) { return std::ranges::binary_search(place.repeated, id); });
   };
-  return {pose, view_of_place({*offline_, rig, frame, there, nearby, around, hidden, is_repeated}),
+  return {pose, view_of_place({offline_->map(), rig, frame, there, nearby, around, hidden, is_repeated}),
           tracked.has_value()};
 }
 

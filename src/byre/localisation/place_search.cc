@@ -73,7 +73,8 @@ PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, c
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
   const ReusedVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  PlaceView view = view_of_place({offline, sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
+  PlaceView view =
+      view_of_place({offline.map(), sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
   search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
   search.refused = Doubt::none;
   return search;

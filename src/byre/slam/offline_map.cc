@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace byre {
@@ -45,32 +44,9 @@ std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& r
   return PlacedWalls{registration, std::move(walls)};
 }
 
-MapCells::MapCells(const Map& map) {
-  constexpr double kSide = 2.0;  // metres
-  std::map<std::array<int, 3>, std::uint32_t> cells;
-  const auto index_of_point = [&](PointId id) -> std::array<int, 3> {
-    const Eigen::Vector3d& position = map.find_point(id)->position_in_world;
-    const auto along = [](double metres) {
-      return static_cast<int>(std::floor(std::clamp(metres / kSide, -1e6, 1e6)));
-    };
-    return {along(position.x()), along(position.y()), along(position.z())};
-  };
-  const std::vector<PointId> points = map.point_ids();
-  for (const PointId id : points) cells.try_emplace(index_of_point(id), 0);
-  for (auto& [index, cell] : cells) {
-    cell = static_cast<std::uint32_t>(indices_.size());
-    indices_.push_back(index);
-  }
-  for (const PointId id : points) {
-    if (id.number >= cell_of_point_.size()) cell_of_point_.resize(id.number + std::size_t{1});
-    cell_of_point_[id.number] = cells.at(index_of_point(id));
-  }
-}
-
 OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
                        std::optional<PlacedWalls> walls, const KnownMounting& mounting)
     : map_(std::move(map)),
-      cells_(map_),
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
       frame_covariance_(median_covariance(map_)),

@@ -6,7 +6,6 @@
 #include "byre/motion/known_mounting.h"
 #include "byre/place/place_index.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -23,20 +22,6 @@ struct PlacedWalls {
 // deep inside: then the plan, or the registration, is of something else.
 std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls);
 
-// Grid of cubes (2 m) over the points of a map.
-class MapCells {
- public:
-  explicit MapCells(const Map& map);
-
-  // Precondition: the point is in the map.
-  std::uint32_t cell_of(PointId id) const { return cell_of_point_[id.number]; }
-  const std::array<int, 3>& index(std::uint32_t cell) const { return indices_[cell]; }  // along x, y and z
-
- private:
-  std::vector<std::uint32_t> cell_of_point_;  // by the point's number
-  std::vector<std::array<int, 3>> indices_;   // by cell, ascending
-};
-
 // A kept map as missions use it. Never changed once made, so that any number of sessions and threads may share it.
 class OfflineMap {
  public:
@@ -45,7 +30,6 @@ class OfflineMap {
              std::optional<PlacedWalls> walls = {}, const KnownMounting& mounting = {});
 
   const Map& map() const { return map_; }
-  const MapCells& cells() const { return cells_; }
   const PlaceIndex& places() const { return places_; }
 
   const std::vector<SourceRecording>& recordings() const { return recordings_; }  // what the map was made from
@@ -69,7 +53,6 @@ class OfflineMap {
 
  private:
   Map map_;
-  MapCells cells_;
   PlaceIndex places_;
   std::vector<SourceRecording> recordings_;
   struct View {

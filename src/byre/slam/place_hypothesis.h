@@ -55,7 +55,7 @@ class PlaceHypothesis {
     double seen = 0.0;      // mean number of points seen
   };
   struct Cell {
-    std::array<int, 3> index{};  // see MapCells
+    std::array<int, 3> index{};  // see CellInView
     int last_frame = 0;
     int frames = 0;  // frames in the means
     Count all{};

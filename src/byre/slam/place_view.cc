@@ -3,19 +3,24 @@
 #include "byre/slam/tracking_steps.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
 
 namespace byre {
 namespace {
 
-ReusedVector<PointId> points_shown(const TrackedFrame& tracked, const Features& features) {
+ReusedVector<PointId> points_shown(const TrackedFrame& tracked, Origin origin, const Features& features) {
   ReusedVector<PointId> shown;
   for (const TrackedFeature& feature : tracked.features) {
-    if (feature.point.origin == Origin::offline && shows_patch(feature, features)) shown.push_back(feature.point);
+    if (feature.point.origin == origin && shows_patch(feature, features)) shown.push_back(feature.point);
   }
   std::ranges::sort(shown);
   return shown;
+}
+
+std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
+  constexpr double kSide = 2.0;  // metres
+  const Eigen::Vector3d along = (position / kSide).array().max(-1e6).min(1e6).floor();
+  return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z())};
 }
 
 }  // namespace
@@ -48,23 +53,26 @@ ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const
 PlaceView view_of_place(const PlaceViewQuery& query) {
   constexpr std::size_t kEnough = 60;  // points of nearby keyframes in view
   const Map nothing_online(Origin::online);
-  const MapView map(&query.offline.map(), nothing_online);
+  const bool is_offline = query.map.origin() == Origin::offline;
+  const MapView map = is_offline ? MapView(&query.map, nothing_online) : MapView(query.map);
   const Pose& pose = query.tracked.camera_from_world;
   PlaceView view;
   thread_local std::vector<ExpectedPoint> expected;
   project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
-  const ReusedVector<PointId> shown = points_shown(query.tracked, *query.frame.features);
-  const MapCells& cells = query.offline.cells();
-  ReusedVector<std::pair<std::uint32_t, PointId>> points;  // by cell
+  const ReusedVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
+  const auto position_of = [&](PointId id) -> Eigen::Vector3d {
+    return map.find_point(id)->position_in_world / query.metre;
+  };
+  ReusedVector<std::pair<std::array<int, 3>, PointId>> points;  // by cell
   for (const ExpectedPoint& point : expected) {
     if (query.is_left_out && query.is_left_out(point.id)) continue;
-    points.emplace_back(cells.cell_of(point.id), point.id);
+    points.emplace_back(cell_at(position_of(point.id)), point.id);
   }
   std::ranges::sort(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({cells.index(points[i].first)});
+    if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({points[i].first});
     CellInView& cell = view.cells.back();
     const bool is_alone = !query.is_in_common || !query.is_in_common(points[i].second);
     ++cell.expected;
@@ -72,7 +80,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
     if (!std::ranges::binary_search(shown, points[i].second)) continue;
     ++cell.seen;
     cell.seen_alone += is_alone;
-    cell.centre_of_seen += (map.find_point(points[i].second)->position_in_world - cell.centre_of_seen) / cell.seen;
+    cell.centre_of_seen += (position_of(points[i].second) - cell.centre_of_seen) / cell.seen;
   }
   return view;
 }

@@ -11,9 +11,9 @@
 
 namespace byre {
 
-// Offline points of one map cell that should be in view, and those that are seen.
+// Points of one map cell (2 m cube) that should be in view, and those that are seen.
 struct CellInView {
-  std::array<int, 3> cell{};  // index along x, y and z, see MapCells
+  std::array<int, 3> cell{};  // index along x, y and z
   int expected = 0;
   int seen = 0;  // inliers with the same image patch, not only a similar corner
   Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
@@ -22,7 +22,7 @@ struct CellInView {
   int seen_alone = 0;
 };
 
-// The part of the offline map that a frame shows from a pose.
+// The part of a map that a frame shows from a pose.
 struct PlaceView {
   // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
   // them. False: all points in the frustum are expected, though walls may hide them.
@@ -35,15 +35,16 @@ ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pos
 ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
 
 struct PlaceViewQuery {
-  const OfflineMap& offline;
+  const Map& map;
   const Rig& rig;
   const Frame& frame;
-  const TrackedFrame& tracked;                  // pose and inliers, in the offline map's frame
-  std::span<const PointId> nearby;              // points_of_place of the pose
-  std::span<const PointId> candidates;          // offline points around the pose, used if nearby ones are too few
+  const TrackedFrame& tracked;                  // pose and inliers, in the map's frame
+  std::span<const PointId> nearby;              // points of keyframes near the pose
+  std::span<const PointId> candidates;          // points around the pose, used if nearby ones are too few
   HiddenCells hidden{};                         // image cells without expected points
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
   std::function<bool(PointId)> is_in_common{};  // points that a place alike has as well; empty: none
+  double metre = 1.0;                           // in lengths of the map
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);

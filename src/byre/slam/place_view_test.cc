@@ -2,6 +2,8 @@
 
 #include "byre/slam/place_scene.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -34,7 +36,7 @@ class ViewOfAPlace : public ::testing::Test {
     return tracked;
   }
   PlaceViewQuery query(const TrackedFrame& tracked, std::span<const PointId> candidates = {}) const {
-    return {*offline_, mission_.rig, mission_.frames[kFrame], tracked, nearby_, candidates};
+    return {offline_->map(), mission_.rig, mission_.frames[kFrame], tracked, nearby_, candidates};
   }
 
   const SimulatedMission mission_ = quarter_circle({});
@@ -78,14 +80,18 @@ TEST_F(ViewOfAPlace, LeavesOutPointsThatAreNeverExpected) {
   EXPECT_TRUE(view_of_place(all_moved).cells.empty());
 }
 
-TEST(CellsOfAMap, HoldThePointsByTheirPosition) {
-  const auto offline = offline_map_of(quarter_circle({}));
-  for (const PointId id : offline->map().point_ids()) {
-    const Eigen::Vector3d& position = offline->map().find_point(id)->position_in_world;
-    const std::array<int, 3>& cell = offline->cells().index(offline->cells().cell_of(id));
-    for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_LE(2.0 * cell[static_cast<std::size_t>(axis)], position[axis]);
-      EXPECT_GT(2.0 * cell[static_cast<std::size_t>(axis)] + 2.0, position[axis]);
+TEST_F(ViewOfAPlace, HasCellsByThePositionOfTheirPoints) {
+  const TrackedFrame tracked = tracked_at(pose_);
+  for (const double metre : {1.0, 0.3}) {
+    PlaceViewQuery scaled = query(tracked);
+    scaled.metre = metre;
+    const PlaceView view = view_of_place(scaled);
+    EXPECT_EQ(counts_of(view).seen, counts_of(view_of_place(query(tracked))).seen);
+    for (const CellInView& cell : view.cells) {
+      if (cell.seen == 0) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(std::floor(cell.centre_of_seen[axis] / 2.0), cell.cell[static_cast<std::size_t>(axis)]);
+      }
     }
   }
 }
