@@ -28,10 +28,9 @@ void announce(const FinishHooks& hooks, const char* step) {
 std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis) {
   for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {
     const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
-    const LoopHypothesis checked =
-        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map);
-    hypothesis.confirmations = checked.confirmations;  // the drift stays the keyframe's own
-    hypothesis.misses = checked.misses;
+    // The drift stays the keyframe's own.
+    hypothesis.test =
+        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map).test;
   }
   if (!is_confirmed(hypothesis)) return std::nullopt;
   return hypothesis;

@@ -19,7 +19,6 @@ constexpr LocaliseOptions kStrictness{};
 constexpr float kMinScoreShare = 0.5f;   // share of a covisible neighbour's similarity, below which a place is another
 constexpr double kMaxDriftTurn = 0.2;    // radians of drift
 constexpr double kMaxDriftDepths = 0.1;  // median depths of drift without stereo, in place of max_drift
-constexpr double kMaxDriftDisagreement = 0.01;  // share of the median depth, and radians, between two frames' drifts
 
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
 std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
@@ -108,9 +107,27 @@ bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOp
          shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
 }
 
+bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, const Map& map) {
+  constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians
+  const Pose motion = tracked.camera_from_world * inverse(predicted_camera_from_old);
+  return motion.translation.norm() <= kMaxDisagreement * median_depth(tracked, map) &&
+         rotation_log(motion.rotation).norm() <= kMaxDisagreement;
+}
+
 // The drift that takes a camera from where the newer part has it to where the older one does.
 Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, double scale) {
   return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
+}
+
+// The view of the older part from a pose there. Lengths are scaled to a median depth of 5 m: one camera has no metres,
+// and the test's cells and moved things then have the same size in the image in every map.
+PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
+                             const Rig& rig, const Map& map) {
+  constexpr int kKeyframesNearby = 3;
+  constexpr double kDepth = 5.0;  // metres
+  const ReusedVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
+  const ReusedVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
+  return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, hypothesis.median_depth / kDepth});
 }
 
 // A rig with stereo measures lengths itself. Else points in both parts tell, no better than the camera's own place in
@@ -162,34 +179,35 @@ std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceInde
   hypothesis.old_from_new =
       drift_between(found.tracked->camera_from_world, keyframe->camera_from_world, hypothesis.scale);
   if (!is_plausible(hypothesis, map, options)) return std::nullopt;
+  const Rig& rig = rig_of(map, *keyframe);
+  hypothesis.test.observe(view_of_older_part(hypothesis, keyframe->frame, *found.tracked, rig, map), false);
   return hypothesis;
 }
 
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
                           const Rig& rig, const Map& map) {
   LoopHypothesis checked = hypothesis;
-  const MapView view(nullptr, map);
-  const Pose predicted_camera_from_old = move_camera(drift_of(hypothesis), camera_from_world);
+  TrackedFrame there;
+  there.camera_from_world = move_camera(drift_of(hypothesis), camera_from_world);
+  there.reference = hypothesis.place;
   const auto tracked =
-      track(frame, predicted_camera_from_old, rig, view, local_points(view, hypothesis.place, kKeyframesOfPlace), {});
-  if (!tracked || reason_to_doubt(*tracked, rig, view, kStrictness) != LocalisationFailure::none) {
-    ++checked.misses;
-    return checked;
-  }
-  const Pose motion = tracked->camera_from_world * inverse(predicted_camera_from_old);
-  const double depth = median_depth(*tracked, view);
-  const bool agrees = motion.translation.norm() <= kMaxDriftDisagreement * depth &&
-                      rotation_log(motion.rotation).norm() <= kMaxDriftDisagreement;
+      track(frame, there.camera_from_world, rig, map, local_points(map, hypothesis.place, kKeyframesOfPlace), {});
+  const bool agrees = tracked && is_same_pose(*tracked, there.camera_from_world, map);
+  if (agrees) there = *tracked;
+  checked.test.observe(view_of_older_part(hypothesis, frame, there, rig, map), agrees);
   if (!agrees) {
-    ++checked.misses;
+    ++checked.untracked;
     return checked;
   }
-  ++checked.confirmations;
-  checked.place = tracked->reference;
-  checked.old_from_new = drift_between(tracked->camera_from_world, camera_from_world, hypothesis.scale);
-  checked.covariance = tracked->match_covariance;
-  checked.median_depth = depth;
+  checked.place = there.reference;
+  checked.old_from_new = drift_between(there.camera_from_world, camera_from_world, hypothesis.scale);
+  checked.covariance = there.match_covariance;
   return checked;
+}
+
+bool is_refuted(const LoopHypothesis& hypothesis) {
+  constexpr int kMaxUntracked = 3;  // frames
+  return hypothesis.test.is_rejected() || hypothesis.untracked >= kMaxUntracked;
 }
 
 std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map) {

@@ -4,6 +4,7 @@
 #include "byre/map/map.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/localisation.h"
+#include "byre/slam/place_hypothesis.h"
 
 #include <cstdint>
 #include <optional>
@@ -29,8 +30,6 @@ struct PlaceNoise {
   std::uint64_t seed = 0;      // seed of the order and of what is left out; 0: no noise at all
 };
 
-inline constexpr int kMinConfirmations = 3;  // frames, not only keyframes, that must find the place again
-inline constexpr int kMaxMisses = 3;         // frames without the place, from which it is given up
 // Frames between loops: until mapping knows of the one before, the next frames would find it again.
 inline constexpr int kMinFramesBetweenLoops = 10;
 
@@ -52,11 +51,13 @@ struct LoopHypothesis {
   Pose old_from_new;
   // Covariance of the keyframe's camera in the older part, as TrackedFrame::match_covariance.
   Matrix6 covariance = Matrix6::Zero();
-  double median_depth = 0.0;  // metres, over the points that say so
-  int confirmations = 0;
-  int misses = 0;
-  double scale = 1.0;        // other than 1 only for a keyframe without stereo
-  double scale_sigma = 0.0;  // standard deviation of the scale's logarithm
+  double median_depth = 0.0;  // median depth of the keyframe's points in the older part, lengths of that part
+  double scale = 1.0;         // other than 1 only for a keyframe without stereo
+  double scale_sigma = 0.0;   // standard deviation of the scale's logarithm
+  // Test of the poses in the older part, by the points there that should be in view. Its prior is even: LoopOptions
+  // bound the drift, and within the bounds any drift is as likely.
+  PlaceHypothesis test{0.0, 3};
+  int untracked = 0;  // frames that could not be tracked in the older part
 };
 
 inline Similarity drift_of(const LoopHypothesis& hypothesis) {
@@ -78,17 +79,15 @@ std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceInde
 // By which the keyframe was seen.
 const Rig& rig_of(const Map& map, const Keyframe& keyframe);
 
-// Looks for a later frame, tracked in the newer part of the map, in the older one. The hypothesis with one confirmation
-// or miss more, and with the drift as this frame saw it.
+// Tracks a frame with a pose in the newer part of the map in the older part too. Returns the hypothesis with this
+// frame in its test, and with the drift by this frame if it was tracked.
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
                           const Rig& rig, const Map& map);
 
 inline bool is_confirmed(const LoopHypothesis& hypothesis) {
-  return hypothesis.confirmations >= kMinConfirmations;
+  return hypothesis.test.is_accepted();
 }
-inline bool is_refuted(const LoopHypothesis& hypothesis) {
-  return hypothesis.misses >= kMaxMisses;
-}
+bool is_refuted(const LoopHypothesis& hypothesis);  // rejected by the test, or no longer tracked
 
 // The loop as an edge between two keyframes; empty when one of them has gone.
 std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map);
