@@ -16,7 +16,7 @@ inline const double kLogOddsOfCarried = -std::log(100.0);
 
 inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
 
-// Sequential likelihood-ratio test (Wald 1945) of a pose in the offline map against any other place. Log-odds in nats.
+// Sequential likelihood-ratio test (Wald 1945) of a pose in a map against any other place. Log-odds in nats.
 //
 // The map is divided into cells. A cell whose points should be in view agrees if some of them are seen. Each cell
 // counts once, however many frames and points show it: things are moved and covered as a whole, and a robot at
@@ -28,7 +28,7 @@ class PlaceHypothesis {
  public:
   // Accepted without a test: the pose is right by definition, as in the frame of a map that is being made.
   PlaceHypothesis() = default;
-  // A pose found without a prediction. prior: log-odds by other evidence than offline points. frames_to_believe:
+  // A pose found without a prediction. prior: log-odds by other evidence than map points. frames_to_believe:
   // tracked frames until mapping uses it. accept: log-odds from which it is accepted.
   PlaceHypothesis(double prior, int frames_to_believe, double accept = RegistrationOptions{}.accept_log_odds)
       : prior_(prior), accept_(accept), frames_to_believe_(frames_to_believe), is_accepted_(false) {}
