@@ -119,15 +119,17 @@ Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, dou
   return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
 }
 
-// The view of the older part from a pose there. Lengths are scaled to a median depth of 5 m: one camera has no metres,
-// and the test's cells and moved things then have the same size in the image in every map.
+// The view of the older part from a pose there. One camera has no metres, so its lengths are scaled to a median depth
+// of 5 m. So are those of nearer stereo views, which would have too few cells.
 PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
                              const Rig& rig, const Map& map) {
   constexpr int kKeyframesNearby = 3;
   constexpr double kDepth = 5.0;  // metres
   const ReusedVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
   const ReusedVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
-  return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, hypothesis.median_depth / kDepth});
+  const double share = hypothesis.median_depth / kDepth;
+  const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
+  return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, metre});
 }
 
 // A rig with stereo measures lengths itself. Else points in both parts tell, no better than the camera's own place in
