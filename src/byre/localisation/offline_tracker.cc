@@ -63,7 +63,7 @@ bool OfflineTracker::is_view_due(const Whereabouts& whereabouts) {
 }
 
 PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
-                                  const HiddenCells& hidden, bool is_accepted) {
+                                  const HiddenCells& hidden, bool finds_rivals) {
   const Pose& pose = track.tracked.camera_from_world;
   ReusedVector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
   if (keyframes != nearby_keyframes_) {
@@ -78,7 +78,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (!reference) reference = mission_.keyframe_near(pose);
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
   }
-  const std::vector<PointId> in_common = is_accepted ? std::vector<PointId>() : points_in_common(pose);
+  const std::vector<PointId> in_common = finds_rivals ? points_in_common(pose) : std::vector<PointId>();
   return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden,
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); },
                         [&](PointId id) { return std::ranges::binary_search(in_common, id); }});

@@ -74,10 +74,10 @@ class OfflineTracker {
   // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then one in
   // three, to save time.
   bool is_view_due(const Whereabouts& whereabouts);
-  // The part of the map that a frame, tracked in the map's frame, shows. Until the place is accepted, points that a
-  // place alike has as well are told apart.
+  // The part of the map that a frame, tracked in the map's frame, shows. finds_rivals: points that a place alike has as
+  // well are marked, as a place needs that is not accepted yet; costs 10 ms at a new place.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden,
-                    bool is_accepted);
+                    bool finds_rivals);
   // Log-odds of a frame's pose by what that frame alone shows.
   double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // See RivalPlaces.

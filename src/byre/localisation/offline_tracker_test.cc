@@ -178,9 +178,9 @@ TEST_F(OnAnOfflineMap, LooksForNoPlacesWhileTheyDo) {
 // Each frame fits two rooms of the map.
 class BetweenTwinRooms : public ::testing::Test {
  protected:
-  int points_alone(bool is_accepted) {
+  int points_alone(bool finds_rivals) {
     int points = 0;
-    const PlaceView view = tracker_.view_of(mission_.frames[0], track_, mission_.rig, {}, is_accepted);
+    const PlaceView view = tracker_.view_of(mission_.frames[0], track_, mission_.rig, {}, finds_rivals);
     for (const CellInView& cell : view.cells) points += cell.expected_alone;
     return points;
   }
@@ -201,15 +201,15 @@ class BetweenTwinRooms : public ::testing::Test {
 };
 
 TEST_F(BetweenTwinRooms, PointsThatBothHaveAreNoEvidenceWhileTheOtherIsARival) {
-  EXPECT_GT(points_alone(false), 0) << "no rival so far";
+  EXPECT_GT(points_alone(true), 0) << "no rival so far";
   tracker_.begin_place(mission_.frames[0].time, track_.tracked.camera_from_world);
   HybridTrack elsewhere = track_;
   elsewhere.tracked.camera_from_world =
       track_.tracked.camera_from_world * Pose{Eigen::Quaterniond::Identity(), {-10.0, 0.0, 0.0}};
   tracker_.test_rivals({mission_.frames[0], track_, mission_.rig, 0.0, false, {}, {}}, std::span(&elsewhere, 1),
                        whereabouts_, mapper_);
-  EXPECT_EQ(points_alone(false), 0);
-  EXPECT_GT(points_alone(true), 0) << "an accepted place is tested by all of its points";
+  EXPECT_EQ(points_alone(true), 0);
+  EXPECT_GT(points_alone(false), 0) << "an accepted place is tested by all of its points";
 }
 
 }  // namespace

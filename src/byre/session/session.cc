@@ -331,7 +331,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   const std::optional<PlaceView> view =
       is_on_map && (located.from_nothing || mission_->is_view_due(whereabouts_))
           ? std::optional(mission_->view_of(input.frame, track, rig_, lens_watch_.hidden(),
-                                            !located.from_nothing && whereabouts_.place().is_accepted()))
+                                            located.from_nothing || !whereabouts_.place().is_accepted()))
           : std::nullopt;
   const Whereabouts::Progress progress =
       whereabouts_.note({input.frame, track, located.from_nothing, is_registered(mapper_), mapper_.submaps().present(),
