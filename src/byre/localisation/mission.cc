@@ -66,7 +66,7 @@ ReusedVector<PointId> Mission::due_again(std::span<const PointId> around) const 
   return due;
 }
 
-std::optional<Pose> Mission::registered(const RegistrationEvidence& seen, const PlaceHypothesis& begun) {
+std::optional<Pose> Mission::test_registration(const RegistrationEvidence& seen, const PlaceHypothesis& begun) {
   constexpr double kMostApart = 0.01;  // share of the median depth, and radians
   if (!registration_) registration_ = {seen.offline_from_online, begun};
   const Pose& before = registration_->offline_from_online;

@@ -56,7 +56,7 @@ class Mission {
   // Offline points are not known to hold the pose any more, or not yet.
   void forget_reference() { reference_.reset(); }
 
-  // A frame found or tracked in both maps, see registered().
+  // A frame found or tracked in both maps, see test_registration().
   struct RegistrationEvidence {
     Pose offline_from_online;
     Eigen::Vector3d camera_in_online;  // metres
@@ -65,7 +65,7 @@ class Mission {
   };
   // Tests where the online map lies in the offline one. begun: the test to begin with. Returns the pose once enough
   // frames agree, and what should be seen does not contradict them.
-  std::optional<Pose> registered(const RegistrationEvidence& seen, const PlaceHypothesis& begun);
+  std::optional<Pose> test_registration(const RegistrationEvidence& seen, const PlaceHypothesis& begun);
   void forget_registration() { registration_.reset(); }
 
  private:

@@ -16,7 +16,7 @@ class RegistrationOfAnOnlineMap : public ::testing::Test {
   // A frame 4 m in front of what it sees.
   bool is_registered_by(const Pose& offline_from_online, const PlaceView& view = view_of_room(10, 0),
                         const Eigen::Vector3d& camera = {1.0, 2.0, 0.0}, double prior = 0.0) {
-    return mission_.registered({offline_from_online, camera, 4.0, view}, PlaceHypothesis(prior, 3)).has_value();
+    return mission_.test_registration({offline_from_online, camera, 4.0, view}, PlaceHypothesis(prior, 3)).has_value();
   }
 
   Mission mission_{offline_map_of(quarter_circle({})), {}};

@@ -306,7 +306,7 @@ std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& 
     return std::nullopt;
   }
   const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
-  const auto confirmed = mission_.registered(
+  const auto confirmed = mission_.test_registration(
       {offline_from_online, inverse(camera_from_online).translation, found.median_depth, found.view},
       begun_registration(offline_from_online, is_registered, whereabouts));
   if (!confirmed) return std::nullopt;
@@ -319,9 +319,9 @@ std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack&
   if (!track.is_online_off()) return std::nullopt;
   const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const PlaceView tested_already;
-  const auto confirmed = mission_.registered({offline_from_online, inverse(*track.from_online).translation,
-                                              median_depth(track.tracked, mapper.map()), tested_already},
-                                             begun_registration(offline_from_online, true, whereabouts));
+  const auto confirmed = mission_.test_registration({offline_from_online, inverse(*track.from_online).translation,
+                                                     median_depth(track.tracked, mapper.map()), tested_already},
+                                                    begun_registration(offline_from_online, true, whereabouts));
   if (!confirmed) return std::nullopt;
   return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
 }

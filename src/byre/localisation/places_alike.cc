@@ -100,7 +100,6 @@ PlaceAlike take_place(std::span<const AlikePoint> agreeing, std::vector<AlikePoi
 
 }  // namespace
 
-// By chance, 1.5 % of the points of a place look like others at one shift.
 std::vector<PlaceAlike> places_alike(const OfflineMap& offline, const Pose& camera_from_place) {
   constexpr std::size_t kMostPlaces = 4;
   constexpr std::size_t kMinPoints = 8;

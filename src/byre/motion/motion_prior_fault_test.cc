@@ -12,27 +12,27 @@ namespace {
 // Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
 TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const Told wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
+  const DriveSensors wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
   const MotionPrior prior = followed(drive, wrong, 60.0, 72.0);
   ASSERT_TRUE(prior.wheels());
   EXPECT_NEAR(prior.wheels()->turn_errors.scale, 1.0 / 0.97, 0.003);
   EXPECT_NEAR(prior.wheels()->turn_errors.per_metre, -0.004, 0.0015);
-  const BodyMotion told = over(prior, 60.0, 70.0);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
-  EXPECT_LT(error.tail<3>().norm(), 0.01);  // radians; 0.05 are told wrongly
+  const BodyMotion measured = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.tail<3>().norm(), 0.01);  // radians; the wheels are 0.05 off
   EXPECT_LT(error.head<3>().norm(), 0.05);  // metres, of 5
 }
 
 TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const Told lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
-  const BodyMotion told = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
+  const DriveSensors lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
+  const BodyMotion measured = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
   const BodyMotion sound = over(followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0), 60.0, 70.0);
-  const double told_variance = told.covariance.topLeftCorner<3, 3>().trace();
+  const double variance = measured.covariance.topLeftCorner<3, 3>().trace();
   const double sound_variance = sound.covariance.topLeftCorner<3, 3>().trace();
-  EXPECT_GT(told_variance, 25.0 * sound_variance);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
-  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+  EXPECT_GT(variance, 25.0 * sound_variance);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 70.0));
+  EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
 // A wheel in the air seems to turn the robot, which is no delay.

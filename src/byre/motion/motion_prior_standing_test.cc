@@ -12,10 +12,10 @@ namespace {
 // A drive with a gyroscope and an accelerometer that stops for good at a time, with the sensor turned in a body that is
 // seen until dark.
 struct Stop {
-  double at = 40.0;             // seconds
-  double dark = 30.0;           // seconds
-  double drift = 0.0;           // radians per second that the gyroscope's bias changes by in the dark
-  bool is_told_of_stop = true;  // by wheels; else they go on telling a slow drive
+  double at = 40.0;        // seconds
+  double dark = 30.0;      // seconds
+  double drift = 0.0;      // radians per second that the gyroscope's bias changes by in the dark
+  bool shows_stop = true;  // by wheels; false: they continue a slow drive
 };
 
 MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {
@@ -34,7 +34,7 @@ MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end)
     const double t = step * 0.01, driven = time_driven(t);
     StampedPose wheels = drive.wheels(driven);
     wheels.time = from_seconds(t);
-    if (t > stop.at && !stop.is_told_of_stop) wheels.world_from_body.translation.x() += 0.05 * (t - stop.at);
+    if (t > stop.at && !stop.shows_stop) wheels.world_from_body.translation.x() += 0.05 * (t - stop.at);
     if (step % 2 == 0) prior.add(wheels);
     Eigen::Vector3d rate = speed(t) * (kBodyFromGyroscope.conjugate() * rate_of_body(drive, driven)) + kBias;
     if (t >= stop.dark) rate += Eigen::Vector3d::Constant(stop.drift);
@@ -56,15 +56,15 @@ TEST(MotionPrior, FindsTheGyroscopesBiasWhereItStandsInTheDark) {
   const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004}, 50.0);
   ASSERT_TRUE(prior.gyroscope());
   EXPECT_LT((prior.gyroscope()->bias - kBias - Eigen::Vector3d::Constant(0.004)).norm(), 1e-3);
-  const BodyMotion told = over(prior, 47.0, 49.9);
-  EXPECT_LT(rotation_log(told.last_from_body.rotation).norm(), 1e-3);
-  EXPECT_LT(std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace()), 2e-3);
-  EXPECT_LT(std::sqrt(told.covariance.topLeftCorner<3, 3>().trace()), 0.01);
+  const BodyMotion measured = over(prior, 47.0, 49.9);
+  EXPECT_LT(rotation_log(measured.last_from_body.rotation).norm(), 1e-3);
+  EXPECT_LT(std::sqrt(measured.covariance.bottomRightCorner<3, 3>().trace()), 2e-3);
+  EXPECT_LT(std::sqrt(measured.covariance.topLeftCorner<3, 3>().trace()), 0.01);
 }
 
 TEST(MotionPrior, DoesNotStandWhereWheelsCreep) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004, .is_told_of_stop = false}, 50.0);
+  const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004, .shows_stop = false}, 50.0);
   EXPECT_EQ(prior.standing().stops(), 0);
   EXPECT_FALSE(prior.tilt(from_seconds(49.9)));
 }

@@ -32,11 +32,11 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   ASSERT_TRUE(prior.wheels());
   EXPECT_NEAR(prior.time_offset(), 0.07, 0.01);
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.37, 0.004);
-  const BodyMotion told = over(prior, 60.0, 70.0);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  const BodyMotion measured = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 70.0));
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05);  // metres, of 5
   EXPECT_LT(error.tail<3>().norm(), 0.02);
-  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6);  // within 95 %
+  EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
 // Wheels that tell how fast the base moves, at 50 Hz, but for a gap in the stream while all is seen and another one in
@@ -54,10 +54,10 @@ TEST(MotionPrior, BridgesTheDarkByVelocities) {
   ASSERT_TRUE(prior.wheels());
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.37, 0.004);
   EXPECT_EQ(prior.slips(), 0);
-  const BodyMotion told = over(prior, 60.0, 67.9);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 67.9));
+  const BodyMotion measured = over(prior, 60.0, 67.9);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 67.9));
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.05) << "metres, of 4";
-  EXPECT_LT(error.transpose() * told.covariance.ldlt().solve(error), 12.6) << "within 95 %";
+  EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6) << "within 95 %";
   EXPECT_FALSE(prior.between(from_seconds(68.5), from_seconds(68.55))) << "in the gap";
   EXPECT_FALSE(prior.between(from_seconds(67.9), from_seconds(69.1))) << "across it";
   EXPECT_TRUE(prior.between(from_seconds(69.2), from_seconds(69.25)));
@@ -66,9 +66,9 @@ TEST(MotionPrior, BridgesTheDarkByVelocities) {
 TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.gyroscope = true}, 60.0, 60.0);
-  const auto told = prior.way_between(from_seconds(2.0), from_seconds(3.0));
-  ASSERT_TRUE(told);
-  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 2.0, 3.0));
+  const auto measured = prior.way_between(from_seconds(2.0), from_seconds(3.0));
+  ASSERT_TRUE(measured);
+  const Vector6 error = log_pose(inverse(measured->last_from_body) * true_motion(drive, 2.0, 3.0));
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.01);
   EXPECT_LT(error.tail<3>().norm(), 0.01);
 }
@@ -105,30 +105,30 @@ TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.38, 0.001);
 }
 
-// Poses that wheels themselves have told do not tell how they are mounted.
+// Poses by wheels themselves are no evidence of their mounting.
 TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 40.0, 60.0);
-  Drive told_wrongly = drive;
-  told_wrongly.base_from_body.translation.setZero();
+  Drive moved_camera = drive;
+  moved_camera.base_from_body.translation.setZero();
   std::mt19937 random(7);
   Trajectory poses;
   for (int i = 0; i <= 1200; ++i) {
     const double t = 0.05 * i;
-    poses.push_back({from_seconds(t), (t < 40.0 ? drive : told_wrongly).seen(t, random)});
+    poses.push_back({from_seconds(t), (t < 40.0 ? drive : moved_camera).seen(t, random)});
   }
   prior.look_again(poses);
   EXPECT_NEAR(prior.wheels()->base_from_body.translation.x(), 0.4, 0.02);
 }
 
 // The last frames are led to by wheels that were heard up to then only, and tell what they did later.
-TEST(MotionPrior, GoesOnWithWhatWheelsToldLast) {
+TEST(MotionPrior, ContinuesTheLastMotionByWheels) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.15, .noise = 0.0005};
   const MotionPrior late = heard_until_now(drive, 60.0);
   EXPECT_NEAR(late.time_offset(), 0.15, 0.01);
-  const auto told = late.between(from_seconds(59.95), from_seconds(60.0));
-  ASSERT_TRUE(told);
-  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 59.95, 60.0));
+  const auto measured = late.between(from_seconds(59.95), from_seconds(60.0));
+  ASSERT_TRUE(measured);
+  const Vector6 error = log_pose(inverse(measured->last_from_body) * true_motion(drive, 59.95, 60.0));
   EXPECT_LT(error.head<3>().norm(), 0.005);
   EXPECT_LT(error.tail<3>().norm(), 0.005);
 }
@@ -160,8 +160,8 @@ TEST(MotionPrior, TurnsByTheGyroscope) {
   const MotionPrior prior = followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0);
   ASSERT_TRUE(prior.gyroscope());
   EXPECT_LT((prior.gyroscope()->bias - kBias).norm(), 0.003);
-  const BodyMotion told = over(prior, 60.0, 70.0);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(drive, 60.0, 70.0));
+  const BodyMotion measured = over(prior, 60.0, 70.0);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 70.0));
   EXPECT_LT(error.head<3>().norm(), 0.05);
   EXPECT_LT(error.tail<3>().norm(), 0.03);
 }
@@ -178,13 +178,13 @@ TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
 
 TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .wheel_delay = 0.07, .noise = 0.001};
-  const Told told{.wheels = true, .gyroscope = true};
-  const KnownMounting known = followed(drive, told, 60.0, 60.0).to_keep();
+  const DriveSensors sensors{.wheels = true, .gyroscope = true};
+  const KnownMounting known = followed(drive, sensors, 60.0, 60.0).to_keep();
   ASSERT_TRUE(known.wheels && known.gyroscope);
-  EXPECT_FALSE(followed(drive, told, 1.0, 14.0).between(from_seconds(2.0), from_seconds(2.05))) << "without it";
+  EXPECT_FALSE(followed(drive, sensors, 1.0, 14.0).between(from_seconds(2.0), from_seconds(2.05))) << "without it";
   for (const double dark : {0.0, 1.0, 4.0}) {
-    const MotionPrior prior = followed(drive, told, dark, 14.0, known);
-    const double from = dark + 0.2;  // wheels have told by then where they were
+    const MotionPrior prior = followed(drive, sensors, dark, 14.0, known);
+    const double from = dark + 0.2;  // wheel samples up to then have arrived
     ASSERT_TRUE(prior.between(from_seconds(from), from_seconds(from + 0.05))) << dark;
     const BodyMotion motion = over(prior, from, from + 8.0);
     const Vector6 error = log_pose(inverse(motion.last_from_body) * true_motion(drive, from, from + 8.0));
@@ -198,7 +198,7 @@ TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
 // A gap in sight before the motions tell how wheels are mounted.
 TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
-  const auto last_told = [&](double dark, bool is_upright) {
+  const auto last_motion = [&](double dark, bool is_upright) {
     MotionPrior prior;
     if (is_upright) prior.presume_upright(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
     std::mt19937 random(5);
@@ -211,14 +211,14 @@ TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
     EXPECT_FALSE(prior.to_keep().wheels);
     return prior.between(from_seconds(dark), from_seconds(3.0));
   };
-  EXPECT_FALSE(last_told(1.5, false));
-  EXPECT_FALSE(last_told(0.4, true));
-  const auto told = last_told(1.5, true);
-  ASSERT_TRUE(told);
-  const Vector6 error = log_pose(inverse(told->last_from_body) * true_motion(drive, 1.5, 3.0));
+  EXPECT_FALSE(last_motion(1.5, false));
+  EXPECT_FALSE(last_motion(0.4, true));
+  const auto measured = last_motion(1.5, true);
+  ASSERT_TRUE(measured);
+  const Vector6 error = log_pose(inverse(measured->last_from_body) * true_motion(drive, 1.5, 3.0));
   EXPECT_LT(error.head<3>().norm() * drive.metres_per_unit, 0.1);  // metres, of 0.75
   EXPECT_LT(error.tail<3>().norm(), 0.1);
-  EXPECT_LT(error.transpose() * told->covariance.ldlt().solve(error), 12.6);  // within 95 %
+  EXPECT_LT(error.transpose() * measured->covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
 // A map is to begin, and nothing was seen yet: the length of the way is known, but hardly which way it goes.
@@ -232,13 +232,13 @@ TEST(MotionPrior, TellsHowFarItWentBeforeAnythingIsSeenWhereAMapIsMade) {
       prior.add(drive.wheels(0.05 * i));
       prior.note(from_seconds(0.05 * i), {});
     }
-    const auto told = prior.between(from_seconds(0.5), from_seconds(1.5));
-    ASSERT_EQ(told.has_value(), makes_map);
-    if (!told) continue;
+    const auto measured = prior.between(from_seconds(0.5), from_seconds(1.5));
+    ASSERT_EQ(measured.has_value(), makes_map);
+    if (!measured) continue;
     const Pose truth = true_motion(drive, 0.5, 1.5);
-    EXPECT_NEAR(told->last_from_body.translation.norm(), truth.translation.norm(), 0.1);
-    EXPECT_GT(told->covariance(0, 0), 0.2 * truth.translation.squaredNorm());
-    EXPECT_LT(angle_between(told->last_from_body.rotation, truth.rotation), 0.05);
+    EXPECT_NEAR(measured->last_from_body.translation.norm(), truth.translation.norm(), 0.1);
+    EXPECT_GT(measured->covariance(0, 0), 0.2 * truth.translation.squaredNorm());
+    EXPECT_LT(angle_between(measured->last_from_body.rotation, truth.rotation), 0.05);
     std::mt19937 random(5);
     prior.note(from_seconds(2.05), drive.seen(2.05, random));
     EXPECT_FALSE(prior.between(from_seconds(0.5), from_seconds(1.5))) << "from here on what is seen tells the mounting";
@@ -279,8 +279,8 @@ TEST(MotionPrior, DropsAMountingThatIsAnotherOneByNow) {
   moved.base_from_body.translation.y() -= 0.1;
   const MotionPrior prior = followed(moved, {}, 40.0, 52.0, known);
   EXPECT_TRUE(prior.is_mounted_otherwise());
-  const BodyMotion told = over(prior, 40.0, 50.0);
-  const Vector6 error = log_pose(inverse(told.last_from_body) * true_motion(moved, 40.0, 50.0));
+  const BodyMotion measured = over(prior, 40.0, 50.0);
+  const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(moved, 40.0, 50.0));
   EXPECT_LT(error.head<3>().norm(), 0.06) << "metres, of 5";
   ASSERT_TRUE(prior.to_keep().wheels);
   EXPECT_NEAR(prior.to_keep().wheels->base_from_body.translation.x(), 0.55, 0.02);

@@ -19,7 +19,7 @@ inline Eigen::Vector3d rate_of_body(const Drive& drive, double seconds) {
 }
 
 // Sensors beside the camera, and errors of the wheels.
-struct Told {
+struct DriveSensors {
   bool wheels = true;
   bool gyroscope = false;
   double slip_from = 1e9;       // seconds, begin of wheel slip
@@ -30,7 +30,7 @@ struct Told {
 };
 
 // A prior after a drive. dark: time of the last tracked frame; end: of the last sample. known: from an earlier drive.
-inline MotionPrior followed(const Drive& drive, const Told& told, double dark, double end,
+inline MotionPrior followed(const Drive& drive, const DriveSensors& sensors, double dark, double end,
                             const KnownMounting& known = {}) {
   MotionPrior prior;
   prior.begin_with(known);
@@ -38,18 +38,19 @@ inline MotionPrior followed(const Drive& drive, const Told& told, double dark, d
   Pose wheels;
   for (int step = 0; step * 0.01 < end; ++step) {
     const double t = step * 0.01;
-    if (told.wheels && step % 2 == 0) {
+    if (sensors.wheels && step % 2 == 0) {
       Pose motion = inverse(Drive::world_from_base(t - 0.02)) * Drive::world_from_base(t);
       const Eigen::Vector3d turn = rotation_log(motion.rotation);
-      motion.rotation = rotation_exp(told.turn_scale * turn + Eigen::Vector3d(0.0, 0.0, 0.01 * told.turn_per_metre));
-      if (t > told.slip_from && t < told.slip_to) {
+      motion.rotation =
+          rotation_exp(sensors.turn_scale * turn + Eigen::Vector3d(0.0, 0.0, 0.01 * sensors.turn_per_metre));
+      if (t > sensors.slip_from && t < sensors.slip_to) {
         motion.translation.x() += 0.02;
-        motion.rotation = motion.rotation * rotation_exp({0.0, 0.0, told.slip_turn});
+        motion.rotation = motion.rotation * rotation_exp({0.0, 0.0, sensors.slip_turn});
       }
       wheels = wheels * motion;
       prior.add(StampedPose{from_seconds(t + drive.wheel_delay), wheels});
     }
-    if (told.gyroscope) {
+    if (sensors.gyroscope) {
       prior.add(AngularRate{from_seconds(t), kBodyFromGyroscope.conjugate() * rate_of_body(drive, t) + kBias});
     }
     if (step % 5 == 0) prior.note(from_seconds(t), t < dark ? std::optional(drive.seen(t, random)) : std::nullopt);

@@ -4,14 +4,14 @@
 
 namespace byre {
 
-double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit) {
+double disagreement(const Pose& measured, const SeenMotion& seen, double metres_per_unit) {
   constexpr double kMetres = 0.03;
   constexpr double kRadians = 0.03;
   constexpr double kShare = 0.2;
-  const double way = metres_per_unit * std::max(told.translation.norm(), seen.body.translation.norm());
-  const double turn = std::max(rotation_log(told.rotation).norm(), rotation_log(seen.body.rotation).norm());
-  const double way_error = metres_per_unit * (told.translation - seen.body.translation).norm();
-  const double turn_error = angle_between(told.rotation, seen.body.rotation);
+  const double way = metres_per_unit * std::max(measured.translation.norm(), seen.body.translation.norm());
+  const double turn = std::max(rotation_log(measured.rotation).norm(), rotation_log(seen.body.rotation).norm());
+  const double way_error = metres_per_unit * (measured.translation - seen.body.translation).norm();
+  const double turn_error = angle_between(measured.rotation, seen.body.rotation);
   return std::max(way_error / (kMetres + kShare * (way + 0.2 * turn)), turn_error / (kRadians + kShare * turn));
 }
 

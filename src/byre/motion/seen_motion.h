@@ -19,6 +19,6 @@ struct SeenMotion {
 };
 
 // Difference between the same motion by wheels and by images, as a multiple of the tolerance.
-double disagreement(const Pose& told, const SeenMotion& seen, double metres_per_unit);
+double disagreement(const Pose& measured, const SeenMotion& seen, double metres_per_unit);
 
 }  // namespace byre

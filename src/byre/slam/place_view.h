@@ -44,7 +44,7 @@ struct PlaceViewQuery {
   HiddenCells hidden{};                         // image cells without expected points
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
   std::function<bool(PointId)> is_in_common{};  // points that a place alike has as well; empty: none
-  double metre = 1.0;                           // in lengths of the map
+  double metre = 1.0;                           // one metre in lengths of the map
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);
