@@ -7,6 +7,7 @@
 //   --from S --to S    first and last start, seconds of the recording
 //   --camera C         stereo or left (stereo)
 //   --no-wheels        without wheel.txt and gyroscope
+//   --no-gyroscope     without gyroscope
 //   --cover A:B        black images from A to B seconds after each start
 //   --trace FILE       writes a line of CSV for each frame
 // Found late: the map was in view for 3 s without a trusted pose. Features of each frame are extracted once. Exit code:
@@ -49,6 +50,10 @@ std::optional<StartOptions> parse(std::span<char*> arguments) {
     const std::string argument = arguments[i];
     if (argument == "--no-wheels") {
       options.open.use_wheels = options.open.use_gyroscope = false;
+      continue;
+    }
+    if (argument == "--no-gyroscope") {
+      options.open.use_gyroscope = false;
       continue;
     }
     if (!argument.starts_with("--")) {
@@ -140,7 +145,8 @@ int main(int argc, char** argv) {
   if (!options) {
     std::cerr
         << "usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [--every S] [--length S] [--from S]\n"
-           "         [--to S] [--camera stereo|left] [--no-wheels] [--cover A:B] [--trace FILE]\n";
+           "         [--to S] [--camera stereo|left] [--no-wheels] [--no-gyroscope] [--cover A:B]\n"
+           "         [--trace FILE]\n";
     return 2;
   }
   try {

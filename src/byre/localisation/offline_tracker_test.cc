@@ -155,7 +155,7 @@ TEST_F(OnAnOfflineMap, LooksForPlacesWhileItsPointsDoNotHoldThePoseBeyondDoubt) 
 
 TEST_F(OnAnOfflineMap, LooksForPlacesOnceASecondWhereFewOfItsPointsAreSeen) {
   note_found(0);
-  const PlaceView view = view_of_room(3, 7);
+  const PlaceView view = view_of_room(4, 6);
   for (int i = 0; i < 6; ++i) {
     whereabouts_.note({mission_.frames[4], track_of(4), false, true, 0, false, &view}, mission_.rig, mapper_.map());
   }

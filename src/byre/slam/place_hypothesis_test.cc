@@ -81,7 +81,7 @@ TEST(PlaceHypothesis, IsAcceptedOnlyOnceItsFramesAreTracked) {
 
 TEST(PlaceHypothesis, MustOutweighItsRivals) {
   PlaceHypothesis place(0.0, 0);
-  place.observe(view_of_room(10, 0), true, 9.0);
+  place.observe(view_of_room(10, 0), true, 13.5);
   EXPECT_GT(place.log_odds(), RegistrationOptions{}.accept_log_odds);
   EXPECT_FALSE(place.is_accepted());
   place.observe(view_of_room(10, 0), true, 2.0);
