@@ -7,14 +7,14 @@
 namespace byre {
 namespace {
 
-constexpr double kSearchDistance = 4.0;  // metres about the pose within which offline keyframes are looked for
-// How far a place found beside tracking may lie off the pose: always, and for each metre of the path since offline
-// points last held it.
+constexpr double kSearchDistance = 4.0;  // metres around the pose, within which offline keyframes are searched
+// Largest offset of a place search from the tracked pose: a constant, plus a share of the path since offline points
+// last constrained the pose.
 constexpr double kMinDrift = 0.01;       // metres
-constexpr double kDriftShare = 0.02;     // metres a metre
+constexpr double kDriftShare = 0.02;     // metres per metre
 constexpr double kMinTurn = 0.005;       // radians
-constexpr double kTurnPerMetre = 0.002;  // radians a metre
-constexpr int kLookAgainEvery = 5;       // frames between looks for suspended points in their places
+constexpr double kTurnPerMetre = 0.002;  // radians per metre
+constexpr int kLookAgainEvery = 5;       // frames between searches for suspended points
 
 }  // namespace
 
@@ -24,8 +24,8 @@ DriftBound Mission::drift() const {
 
 HybridLimits Mission::limits(bool is_stereo, double seconds) const {
   constexpr double kLeast = 0.3;                 // metres, and radians
-  const double drift = is_stereo ? 0.05 : 0.15;  // metres a metre: the scale of one camera drifts as well
-  const double reach = options_.registration.max_speed * seconds;  // the prediction may be all wrong
+  const double drift = is_stereo ? 0.05 : 0.15;  // metres per metre; the scale of one camera drifts as well
+  const double reach = options_.registration.max_speed * seconds;  // prediction error, metres
   const double metres = kLeast + drift * distance_since_offline_;
   return {{metres, kLeast + kTurnPerMetre * distance_since_offline_}, metres + reach};
 }

@@ -7,9 +7,9 @@ namespace byre {
 MissionCalibrator::MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor)
     : on_map_(given, prior_sigmas), calibrator_(given, {}), worker_(std::move(executor)) {}
 
-// Looks become rare: what many frames have told, a few more do not change.
+// Estimates double their interval: a few more frames do not change the result of many.
 void MissionCalibrator::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map) {
-  constexpr double kLeastChange = 0.3;  // sigmas of the parameters: a hundredth of a pixel or so
+  constexpr double kLeastChange = 0.3;  // sigmas of the parameters, about 0.01 pixels
   on_map_.add(frame, rig, tracked, map, calibrator_.state().change);
   if (on_map_.frames() < next_frames_ || !worker_.idle()) return;
   next_frames_ = 2 * on_map_.frames();

@@ -9,8 +9,8 @@
 
 namespace byre {
 
-// Refines the calibration of a mission's cameras on the points of its offline map, a little with each frame. What takes
-// long, how features change by it, is worked out beside. Called from the session's thread.
+// Refines the calibration of a mission's cameras on the points of the offline map, frame by frame. The change of
+// rectified features takes long to compute and runs as a job. Called from the session's thread.
 class MissionCalibrator {
  public:
   MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor);
@@ -18,19 +18,18 @@ class MissionCalibrator {
   Frame corrected(const Frame& frame) { return calibrator_.corrected(frame); }
   const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
 
-  // A frame, as corrected, whose pose is beyond doubt.
+  // Adds a corrected frame whose pose is beyond doubt.
   void note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map);
 
-  // How the rectified camera changes from this frame on.
+  // Change of the rectified camera from this frame on.
   struct Switch {
-    Pose after_from_before;  // a turn
+    Pose after_from_before;  // rotation only
     Rig rig;
   };
-  std::optional<Switch> collect();  // once per frame; empty unless there is a better calibration
+  std::optional<Switch> collect();  // once per frame; empty without a better calibration
   void finish() { worker_.finish(); }
 
  private:
-  // What a job came to.
   struct Outcome {
     RefinedCalibration refined;
     RectifiedChange from_given;
@@ -40,7 +39,7 @@ class MissionCalibrator {
   CalibrationOnMap on_map_;
   Calibrator calibrator_;
   Worker<Outcome> worker_;
-  int next_frames_ = 60;  // frames noted until the next look
+  int next_frames_ = 60;  // frames noted before the next estimate
 };
 
 }  // namespace byre

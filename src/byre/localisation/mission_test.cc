@@ -10,10 +10,10 @@ namespace {
 
 const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}};
 
-// An online map whose place in the offline one is tested.
+// Registration tests of an online map.
 class RegistrationOfAnOnlineMap : public ::testing::Test {
  protected:
-  // A frame 4 m in front of what it sees.
+  // A camera with a median depth of 4 m.
   bool is_registered_by(const Pose& offline_from_online, const PlaceView& view = view_of_room(10, 0),
                         const Eigen::Vector3d& camera = {1.0, 2.0, 0.0}, double prior = 0.0) {
     return mission_.test_registration({offline_from_online, camera, 4.0, view}, PlaceHypothesis(prior, 3)).has_value();

@@ -31,7 +31,7 @@ void Odometry::go_by(const Pose& last_from_body, const Pose& map_from_body) {
 }
 
 Pose Odometry::without_change_of(const std::optional<Offset>& offset, const Pose& map_from_body) const {
-  constexpr double kLeastChange = 0.01;  // metres: less is noise
+  constexpr double kLeastChange = 0.01;  // metres; smaller changes are noise
   constexpr double kSigmas = 3.0;
   if (!offset || !offset_) return map_from_body;
   const Pose &now = offset->online_from_body, &before = offset_->online_from_body;

@@ -6,36 +6,37 @@
 
 namespace byre {
 
-// The pose of the body in the map, and the smooth pose (odometry), which corrections of the map do not move. The frame
-// of the smooth pose is that of the body at the start. Poses that are not finite are ignored.
+// The body's pose in the map, and the smooth pose (odometry), which map corrections do not move. The frame of the
+// smooth pose is the body's at the start. Non-finite poses are ignored.
 class Odometry {
  public:
-  const Pose& map_from_body() const { return map_from_body_; }  // last pose, as it was then
+  const Pose& map_from_body() const { return map_from_body_; }  // last pose, with its corrections
   Pose odometry_from_body() const { return odometry_from_map_ * map_from_body_; }
   double travelled() const { return travelled_; }  // metres
 
-  // The body did not move: what was taken for one pose turned out to be the other. The first pose comes so too.
+  // Map correction: the map pose jumps, odometry does not. Also sets the first pose.
   void correct(const Pose& map_from_body);
 
-  // From where online points alone have the body to where it was tracked.
+  // Tracked body pose relative to the body pose from online points alone.
   struct Offset {
     Pose online_from_body;
-    double sigma = 0.0;  // metres, of the position that online points give
+    double sigma = 0.0;  // metres, of the position from online points
   };
 
-  // The way from the last frame to this one.
+  // Motion since the last frame.
   struct Step {
-    Pose smooth;          // map_from_body, had the map not moved the pose
-    double metres = 0.0;  // to there
+    Pose smooth;          // map_from_body without a jump by offline points
+    double metres = 0.0;  // length of the motion
   };
-  // The body was tracked to a pose. What offline points do to a pose that online points hold as well is no motion:
-  // where the offset changes at once, by more than its uncertainty explains, the body is where it would be had it not.
+  // The body was tracked to a pose. A sudden change of the offset, beyond its uncertainty, is a jump by offline points
+  // and no motion: odometry does not follow it.
   Step follow(const Pose& map_from_body, const std::optional<Offset>& offset);
 
-  // The body is at a pose in the map that it was not tracked to, and has moved since the last frame as it was told.
+  // Sets a map pose that was not tracked from the last one, and moves the odometry by the measured motion since the
+  // last frame.
   void go_by(const Pose& last_from_body, const Pose& map_from_body);
 
-  // Sets the offset that the next pose is compared with; empty where the two have nothing to do with each other.
+  // Sets the offset that the next pose is compared with; empty: not comparable.
   void remember_offset(const std::optional<Offset>& offset) { offset_ = offset; }
 
  private:

@@ -13,7 +13,7 @@ Pose at(double x) {
   return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
 }
 
-// The offset of a body that online points have so many metres before where it was tracked.
+// Body pose, so many metres ahead of its pose by online points.
 Odometry::Offset ahead_by(double x, double sigma = 0.0) {
   return {at(x), sigma};
 }
@@ -48,7 +48,7 @@ TEST(Odometry, FollowsTheBodyAfterACorrection) {
   const Pose after = at(3.0);
   odometry.follow(before, {});
   odometry.correct(after);
-  const Pose motion{rotation_exp({0.1, 0.0, 0.0}), {0.2, 0.0, 0.0}};  // body's motion, as it sees it itself
+  const Pose motion{rotation_exp({0.1, 0.0, 0.0}), {0.2, 0.0, 0.0}};  // motion in the body's own frame
   odometry.follow(after * motion, {});
   EXPECT_THAT(odometry.odometry_from_body(), PoseNear(before * motion, 1e-12, 1e-12));
 }
@@ -73,7 +73,7 @@ TEST(Odometry, GoesByWhatIsToldWhereverTheBodyIsTakenToBe) {
 TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), ahead_by(0.0));
-  const Odometry::Step step = odometry.follow(at(1.5), ahead_by(0.3));  // 0.2 metres on by online points
+  const Odometry::Step step = odometry.follow(at(1.5), ahead_by(0.3));  // 0.2 m by online points
   EXPECT_THAT(step.smooth, PoseNear(at(1.2), 1e-12, 1e-12));
   EXPECT_NEAR(step.metres, 0.2, 1e-12);
   EXPECT_THAT(odometry.odometry_from_body(), PoseNear(at(1.2), 1e-12, 1e-12));

@@ -16,7 +16,7 @@ bool is_beyond_doubt(const Whereabouts& whereabouts) {
   return whereabouts.place().is_accepted() && whereabouts.place().log_odds() >= 0.0;
 }
 
-// camera_from_offline of a robot at the place alike.
+// camera_from_offline at the look-alike place.
 Pose camera_at(const PlaceAlike& place, const Pose& camera_from_place) {
   return camera_from_place * Pose{Eigen::Quaterniond::Identity(), -place.shift};
 }
@@ -71,7 +71,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     nearby_keyframes_ = std::move(keyframes);
   }
   ReusedVector<PointId> around;
-  constexpr std::size_t kFew = 200;  // points of nearby keyframes, of which too few may be in view
+  constexpr std::size_t kFew = 200;  // nearby points; with fewer, too few may be in view
   if (nearby_points_.size() < kFew) {
     const Map nothing_online(Origin::online);
     auto reference = track.offline_reference;
@@ -124,7 +124,7 @@ ReusedVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offl
   return around;
 }
 
-// A rival is proposed because of points that look alike, so those are no evidence for it.
+// Points that look alike proposed the rival, so they are no evidence for it.
 RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
                                                 const HiddenCells& hidden) const {
   const ReusedVector<PointId> around = points_around(predicted);
@@ -179,15 +179,15 @@ std::span<const PlaceAlike> OfflineTracker::alike_at(const Pose& camera_from_pla
   return alike_;
 }
 
-// Whether the robot may be at a place alike although a frame cannot be tested there: the map was driven nearby, but no
-// keyframe saw it in this direction.
+// The robot may be at a look-alike place, but frames cannot be tested there: the map was driven nearby, and no keyframe
+// has this viewing direction.
 bool OfflineTracker::is_untestable(const Pose& camera_from_alike) const {
   constexpr double kNear = 3.0;  // metres
   return keyframes_of_place(*offline_, camera_from_alike).empty() &&
          offline_->distance_to_keyframes(inverse(camera_from_alike).translation) <= kNear;
 }
 
-// Points of a place, ascending, that may be those of a place alike.
+// Points of a place, ascending, that may be those of a look-alike place.
 std::vector<PointId> OfflineTracker::points_in_common(const Pose& camera_from_place) {
   std::vector<PointId> in_common;
   untestable_ = 0;
@@ -253,7 +253,7 @@ void OfflineTracker::search_beside(const SoughtFrame& sought, const Whereabouts&
   if (is_search_by_doubt_ && (is_beyond_doubt(whereabouts) || !is_due)) return;
   last_search_ = sought.frame.time;
   const bool is_hint_to_be_checked = whereabouts.is_by_hint() && mapper.submaps().is_registered();
-  // A find elsewhere refutes an accepted pose, so the way measured from that pose must not constrain the search.
+  // A find elsewhere refutes an accepted pose, so the motion measured from that pose must not constrain the search.
   const bool is_way_in_doubt = whereabouts.place().is_accepted() && mapper.submaps().is_registered();
   search_.start([frame = sought.frame, rig = sought.rig, hint = is_hint_to_be_checked ? std::nullopt : sought.hint,
                  way = is_way_in_doubt ? std::nullopt : sought.way, hidden = sought.hidden, offline = offline_,
@@ -267,8 +267,7 @@ bool OfflineTracker::is_search_needed(const Whereabouts& whereabouts, const Mapp
          mission_.distance_since_offline() > options_.mission.search_after;
 }
 
-// A place gives way to a rival that is much more likely. The online map is corrected where offline points do not hold
-// it.
+// A much more likely rival replaces the place. The online map is corrected if offline points do not constrain it.
 OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSearch>& search,
                                                      const Whereabouts& whereabouts, const Mapper& mapper) {
   const PlaceHypothesis& place = whereabouts.place();
@@ -298,7 +297,7 @@ OfflineTracker::Consequence OfflineTracker::consider(const std::optional<PlaceSe
   return {.correction = correction_by(found, camera_from_online, submaps.frame(), whereabouts)};
 }
 
-// The robot was not carried, for it was tracked all the while: farther off than drift is a place that looks the same.
+// Tracking was continuous, so the robot was not carried: a find beyond the drift bound is a look-alike place.
 std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
                                                               Submaps::Frame frame, const Whereabouts& whereabouts) {
   const bool is_registered = frame == Submaps::kMapFrame;
@@ -326,7 +325,7 @@ std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack&
   return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
 }
 
-// In the map's frame the test of the pose's place goes on; otherwise a new one begins.
+// In the map's frame the test of the present place continues; otherwise a new test begins.
 PlaceHypothesis OfflineTracker::begun_registration(const Pose& offline_from_online, bool is_registered,
                                                    const Whereabouts& whereabouts) const {
   const RegistrationOptions& options = options_.mission.registration;

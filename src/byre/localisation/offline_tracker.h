@@ -20,16 +20,16 @@ namespace byre {
 struct OfflineTrackerOptions {
   MissionOptions mission;
   TrackOptions track;
-  LocaliseOptions relocalise;  // for place searches beside tracking
+  LocaliseOptions relocalise;  // for place searches in parallel with tracking
   int local_keyframes = 15;    // see SessionOptions
-  bool is_planar = false;      // the body is held to the ground that the map was driven on
+  bool is_planar = false;      // constrains the body to the ground that the map was driven on
 };
 
-// What a mission on an offline map adds to a session: the way in that map, places looked for in it beside tracking,
-// what it says of the online map's place and of the cameras. Called from the session's thread.
+// The part of a session that needs an offline map: the registration to it, place searches in parallel with tracking,
+// and evidence about the online map's pose and the cameras. Called from the session's thread.
 class OfflineTracker {
  public:
-  // Where places are looked for, and where calibrations are worked out.
+  // Executors of place searches and of calibration jobs.
   struct Lanes {
     std::unique_ptr<Executor> search;
     std::unique_ptr<Executor> calibration;
@@ -39,10 +39,10 @@ class OfflineTracker {
 
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
-  // The frame as the calibration that is refined has it; itself without one.
+  // The frame by the refined calibration; unchanged without one.
   Frame corrected(const Frame& frame) { return calibrator_ ? calibrator_->corrected(frame) : frame; }
   bool is_focal_length_off() const { return focal_check_.is_off(); }
-  // What the body is held to; nullptr where nothing is known of it, or the last pose does not lie in the map's frame.
+  // Ground that constrains the body; nullptr if unknown, or if the last pose is not in the map's frame.
   const DrivenGround* ground_under(const Whereabouts& whereabouts, const Mapper& mapper) const;
 
   // Before the first frame.
@@ -51,69 +51,70 @@ class OfflineTracker {
   // Once for each frame.
   std::optional<MissionCalibrator::Switch> collect_camera();
   std::optional<PlaceSearch> collect_place();
-  bool ask_for_focal_length() { return focal_check_.is_due(); }  // whether this frame is to be asked
+  bool ask_for_focal_length() { return focal_check_.is_due(); }  // whether this frame weighs focal lengths
 
-  // A frame tracked while the online map is known to lie in the offline one.
+  // A frame tracked while the online map is registered in the offline one.
   struct Seen {
     const Frame& frame;
     const HybridTrack& track;
     const Rig& rig;
     double step = 0.0;  // metres from the frame before
     bool image_is_faulty = false;
-    std::span<const PointId> offline_around;  // suspended ones included
-    const HiddenCells& hidden;                // where no points are asked for
+    std::span<const PointId> offline_around;  // suspended points included
+    const HiddenCells& hidden;                // image cells without expected points
   };
-  // What a frame, or a place found, means for the session.
+  // Effect of a frame, or of a place search, on the session.
   struct Consequence {
     std::vector<SessionEvent> events{};
-    bool refutes_pose = false;                     // the robot is elsewhere
-    bool refutes_way = false;                      // it was elsewhere while it was trusted, nobody knows since when
-    bool agrees_with_hint = false;                 // it is where a hint had led, and nowhere else
-    std::optional<OnlineCorrection> correction{};  // where a part of the online map really lies
+    bool refutes_pose = false;  // the robot is elsewhere
+    // Earlier trusted poses were wrong, since an unknown time.
+    bool refutes_way = false;
+    bool agrees_with_hint = false;                 // a search of the whole map confirms the place found by a hint
+    std::optional<OnlineCorrection> correction{};  // true pose of a part of the online map
   };
-  // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then one in
-  // three, to save time.
+  // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then every
+  // third, to save time.
   bool is_view_due(const Whereabouts& whereabouts);
-  // The part of the map that a frame, tracked in the map's frame, shows. finds_rivals: points that a place alike has as
-  // well are marked, as a place needs that is not accepted yet; costs 10 ms at a new place.
+  // The part of the map in view of a frame that was tracked in the map's frame. finds_rivals: marks points that a
+  // look-alike place has as well, needed while the place is not accepted; takes 10 ms at a new place.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden,
                     bool finds_rivals);
-  // Log-odds of a frame's pose by what that frame alone shows.
+  // Log-odds of a frame's pose by that frame alone.
   double log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const HiddenCells& hidden);
   // See RivalPlaces.
   const PlaceHypothesis* known_place_at(Timestamp time, const Pose& camera_from_offline) const {
     return rivals_.known_at(time, camera_from_offline);
   }
-  // A frame was found at a place without a prediction. Returns the test of that place by earlier frames, if there is
-  // one.
+  // Begins a place found without a prediction. Returns its test by earlier frames; empty for a new place.
   std::optional<PlaceHypothesis> begin_place(Timestamp time, const Pose& camera_from_place);
-  // Tracks a frame at the rival that refuted the last frame's place; empty if none did.
+  // Tracks a frame at the rival that refuted the last frame's place; empty without one.
   std::optional<TrackedFrame> find_at_rival(const Frame& frame, const Rig& rig, const HiddenCells& hidden);
-  // Tests a tracked frame at the rivals of its place. New rivals are the places elsewhere, at which the search found
-  // the frame as well, and, while the place is not accepted, places that look alike in the map.
+  // Tests a tracked frame at the rivals of its place. New rivals are the other places at which the search found the
+  // frame (elsewhere) and, while the place is not accepted, look-alike places of the map.
   void test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere, const Whereabouts& whereabouts,
                    const Mapper& mapper);
-  // Log of the sum of the odds of the places alike that a place, not accepted yet, is tested against.
+  // Log of the sum of the odds of the look-alike places that a place, not accepted yet, is tested against.
   double log_odds_of_rivals() const;
   Consequence note(const Seen& seen, const Whereabouts& whereabouts, const Mapper& mapper);
-  // Once for each frame. search: a search that has ended since the last frame.
+  // Once for each frame. search: a search that ended since the last frame.
   Consequence consider(const std::optional<PlaceSearch>& search, const Whereabouts& whereabouts, const Mapper& mapper);
   void note_focal_length(const FocalEvidence& evidence) { focal_check_.note(evidence); }
-  // A submap begins where offline points do not hold the pose yet.
+  // A submap begins in which offline points do not constrain the pose yet.
   void begin_submap() {
     mission_.forget_reference();
     rivals_.forget();
   }
   void lose();
 
-  // Looks for the last frame in the offline map beside tracking: while its points do not hold the pose, or may do so by
-  // chance, and from time to time where few of them are seen. What a hint led to is looked for everywhere.
+  // Searches the last frame in the offline map in parallel with tracking: while its points do not constrain the pose,
+  // or may do so by chance, and once a second while the place is in doubt. A place found by a hint is searched without
+  // the hint.
   void search_beside(const SoughtFrame& sought, const Whereabouts& whereabouts, const Mapper& mapper);
 
-  // A health with what is known of the offline map in it.
+  // Adds measures of the offline map.
   Health added_to(Health health, Timestamp now, Timestamp first_frame) const;
 
-  void finish();  // waits for what is in flight, and forgets what comes of it
+  void finish();  // waits for running jobs, and discards their results
 
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
@@ -132,7 +133,7 @@ class OfflineTracker {
   void propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
                       const Whereabouts& whereabouts, const Mapper& mapper);
   bool is_search_needed(const Whereabouts& whereabouts, const Mapper& mapper) const;
-  // Once enough frames agree.
+  // Empty until enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const Whereabouts& whereabouts,
                                                 const Mapper& mapper);
   std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
@@ -146,20 +147,21 @@ class OfflineTracker {
   Mission mission_;
   int frames_since_view_ = 0;
   ReusedVector<KeyframeId> nearby_keyframes_;  // keyframes near the last view_of
-  ReusedVector<PointId> nearby_points_;        // points seen by these keyframes
+  ReusedVector<PointId> nearby_points_;        // points that these keyframes see
   RivalPlaces rivals_;
   ReusedVector<KeyframeId> keyframes_of_alike_;  // keyframes of the last place that was not accepted
-  std::vector<PlaceAlike> alike_;                // places that look like it
-  int untestable_ = 0;                           // untestable places alike at the pose of the last view_of
+  std::vector<PlaceAlike> alike_;                // look-alikes of that place
+  int untestable_ = 0;                           // look-alike places of the last view_of that cannot be tested
   int frames_since_rivals_ = 0;
   bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;
-  bool is_search_by_doubt_ = false;  // the one in flight, and not by need
+  bool is_search_by_doubt_ = false;  // the running search is due to doubt, not to need
   Worker<PlaceSearch> search_;
   std::unique_ptr<Executor> calibration_lane_;  // until calibration begins
   std::optional<MissionCalibrator> calibrator_;
   FocalCheck focal_check_;
-  std::uint32_t last_held_keyframe_ = 0;  // number of the newest online keyframe when offline points last held the pose
+  // Number of the newest online keyframe when offline points last constrained the pose.
+  std::uint32_t last_held_keyframe_ = 0;
 };
 
 }  // namespace byre

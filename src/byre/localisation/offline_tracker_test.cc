@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// A robot that was found in its offline map, at a true pose.
+// A robot at its true pose in an offline map.
 class OnAnOfflineMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
@@ -44,7 +44,7 @@ class OnAnOfflineMap : public ::testing::Test {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
                          whereabouts_, mapper_);
   }
-  // A search that found the first frame so many metres beside where it was believed to be.
+  // A search that found the first frame so many metres off its believed pose.
   PlaceSearch place_beside(double metres) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
     PlaceSearch search{.time = mission_.frames[0].time, .rig = mission_.rig};
@@ -52,7 +52,7 @@ class OnAnOfflineMap : public ::testing::Test {
     search.places = {search.found->camera_from_offline};
     return search;
   }
-  // Frames at a place 5 m beside where they were taken, of which a search finds the true place.
+  // Tracks frames at a place 5 m off the true one, which the search finds.
   void track_beside(std::size_t begin, std::size_t end) {
     const Pose beside{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
     const PlaceView view = view_of_room(2, 8);

@@ -8,8 +8,8 @@
 namespace byre {
 namespace {
 
-constexpr double kSigmasOfLine = 1.96;   // 95 % of one number
-constexpr double kSigmasOfPlane = 2.45;  // 95 % of two numbers
+constexpr double kSigmasOfLine = 1.96;   // 95 % in one dimension
+constexpr double kSigmasOfPlane = 2.45;  // 95 % in two dimensions
 
 double largest_sigma(const Eigen::Matrix2d& covariance) {
   return std::sqrt(std::max(0.0, symmetric_eigenvalues(covariance)[1]));
@@ -38,9 +38,9 @@ PlanDisc PlaceBounds::disc_around(const Pose& map_from_body, const Matrix6& cova
           options_.wall_margin + kSigmasOfPlane * largest_sigma(of_position.topLeftCorner<2, 2>())};
 }
 
-// That a way leads around a wall takes time. Who is not seen for so long that help is called may have been carried.
+// A way around a wall takes time. After kUntilItIsCarried without a pose help is called, and the robot may be carried.
 Doubt PlaceBounds::wall_against(const PlaceToJudge& place, const std::optional<Way>& way) const {
-  constexpr double kSlack = 1.0;            // metres by which a way may be longer than it is measured
+  constexpr double kSlack = 1.0;            // metres, error of the length of the way
   constexpr double kUntilItIsCarried = 10;  // seconds
   const PlanWalls& walls = walls_->walls;
   const PlanDisc here = disc_around(place.map_from_body, place.covariance);
@@ -50,7 +50,8 @@ Doubt PlaceBounds::wall_against(const PlaceToJudge& place, const std::optional<W
   const double seconds = to_seconds(place.time - way->before.time);
   if (seconds >= kUntilItIsCarried) return Doubt::none;
   const PlanDisc before = disc_around(way->before.map_from_body, Matrix6::Zero());
-  // Farther off than anybody drives takes more frames to be believed, but is no matter of walls where there are none.
+  // The straight distance is always allowed: a place beyond the reach of max_speed needs more frames to be believed,
+  // but is no evidence of a wall.
   const double longest = kSlack + std::max(way->max_speed * seconds, (here.centre - before.centre).norm());
   return walls.way_between(before, here, longest) ? Doubt::none : Doubt::behind_wall;
 }

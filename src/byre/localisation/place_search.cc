@@ -17,7 +17,7 @@ PlaceToJudge place_of(const TrackedFrame& tracked, const SoughtFrame& sought) {
           move_covariance(tracked.match_covariance, rig.body_from_camera)};
 }
 
-// What is seen from near a hint may have been mapped from farther back, and at an angle.
+// Keyframes that show the scene around a hint may be farther back, and at another angle.
 PoseHint surroundings_of(const PoseHint& hint) {
   constexpr double kTurnBetweenViews = 0.5;  // radians
   PoseHint around = hint;

@@ -16,36 +16,36 @@ struct PlaceSearchOptions {
   PlaceBoundsOptions bounds;
 };
 
-// What is looked for from nothing.
+// A frame to localise without a prediction.
 struct SoughtFrame {
   const Frame& frame;
   const Rig& rig;
-  std::optional<PoseHint> hint{};         // where alone it is looked for; empty: everywhere
-  std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
-  HiddenCells hidden{};                   // where no points are asked for
+  std::optional<PoseHint> hint{};         // limits the search; empty: the whole map
+  std::optional<PlaceBounds::Way> way{};  // motion since the last trusted pose
+  HiddenCells hidden{};                   // image cells without expected points
 };
 
-// The frame in the offline map alone, but not where the robot cannot be.
+// Localisation in the offline map alone, restricted to possible places.
 struct BoundedLocalisation {
   Localisation found;
-  Doubt refused = Doubt::none;  // why it cannot be at a place where the frame was found otherwise
+  Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
 };
 
 BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
                                 const PlaceSearchOptions& options);
 
-// Where the offline map shows what a frame saw.
+// Pose of a frame in the offline map.
 struct FoundPlace {
   Pose camera_from_offline;
   double median_depth = 0.0;  // metres, of the matched points
-  PlaceView view{};           // the part of the map that the frame shows
+  PlaceView view{};           // part of the map in view
 };
 
-// What came of looking for a frame in the offline map without a guess.
+// Result of localising a frame in the offline map without a prediction.
 struct PlaceSearch {
   Timestamp time{};                   // time of the frame
   Rig rig{};                          // cameras of the frame
-  std::optional<FoundPlace> found{};  // empty where it was not found
+  std::optional<FoundPlace> found{};  // empty: not found
   Doubt refused = Doubt::none;        // see BoundedLocalisation
   std::vector<Pose> places{};         // camera_from_offline at each place that shows the frame
 };

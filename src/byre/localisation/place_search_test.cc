@@ -14,7 +14,7 @@ SimulatedMission lap() {
   return simulate_mission(simulated_rig(), circling_trajectory(60, 10.0, 2.0, 1.0), {});
 }
 
-// Two rooms that look the same, ten metres apart.
+// Two equal rooms, 10 m apart.
 class SearchInTwinRooms : public ::testing::Test {
  protected:
   static const OfflineMap& twins() {

@@ -21,16 +21,16 @@ struct PlacedDescriptor {
   Descriptor descriptor;
 };
 
-// A point elsewhere that looks like one of the place.
+// A point elsewhere that looks like a point of the place.
 struct AlikePoint {
   std::array<int, 3> cell{};  // cell of the shift
   PointId of_place;
   PointId elsewhere;
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // metres, from the former to the latter
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // metres, from of_place to elsewhere
 };
 
 bool look_alike(const Descriptor& a, const Descriptor& b) {
-  constexpr int kMostBits = 55;  // between descriptors
+  constexpr int kMostBits = 55;  // bits
   return std::popcount(a[0] ^ b[0]) + std::popcount(a[1] ^ b[1]) <= kMostBits && hamming_distance(a, b) <= kMostBits;
 }
 
@@ -44,7 +44,7 @@ std::vector<PlacedDescriptor> descriptors_of(const Map& map, std::span<const Poi
   return placed;
 }
 
-// Points within reach of a shift.
+// Points within kLargestShift.
 std::vector<PlacedDescriptor> descriptors_around(const Map& map, std::span<const PlacedDescriptor> place) {
   Eigen::AlignedBox3d box;
   for (const PlacedDescriptor& point : place) box.extend(point.position);
@@ -55,7 +55,7 @@ std::vector<PlacedDescriptor> descriptors_around(const Map& map, std::span<const
   return around;
 }
 
-// Ascending by cell, then by the point of the place.
+// Look-alike pairs, ascending by cell, then by the point of the place.
 std::vector<AlikePoint> points_alike(const Map& map, std::span<const PointId> points_of_place) {
   constexpr double kLeastShift = 1.0;  // metres
   const std::vector<PlacedDescriptor> place = descriptors_of(map, points_of_place);
@@ -73,7 +73,7 @@ std::vector<AlikePoint> points_alike(const Map& map, std::span<const PointId> po
   return alike;
 }
 
-// Those of the cell with most points of the place, one for each point.
+// Pairs of the cell with most points of the place, one pair for each point.
 std::vector<AlikePoint> most_agreeing(std::span<const AlikePoint> alike) {
   std::vector<AlikePoint> most, cell;
   for (const AlikePoint& pair : alike) {
@@ -84,7 +84,7 @@ std::vector<AlikePoint> most_agreeing(std::span<const AlikePoint> alike) {
   return most;
 }
 
-// Takes the points that look alike at about the shift of these.
+// Removes the pairs whose shift is about the mean of the agreeing ones, and returns them as a place.
 PlaceAlike take_place(std::span<const AlikePoint> agreeing, std::vector<AlikePoint>& alike) {
   PlaceAlike place;
   for (const AlikePoint& pair : agreeing) place.shift += pair.shift / static_cast<double>(agreeing.size());

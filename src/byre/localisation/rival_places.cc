@@ -10,7 +10,7 @@ namespace {
 constexpr double kSamePlace = 0.5;      // metres
 constexpr std::size_t kMostRivals = 5;  // bounds the time of a frame
 
-// Log-odds of the rivals of a rival, so that its test never accepts it.
+// Log-odds of the rivals of a rival: its test never accepts.
 constexpr double kNeverAccepted = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -77,8 +77,8 @@ bool RivalPlaces::has_at(const Pose& camera_from_place, const Pose& camera_from_
       rivals_, [&](const Rival& rival) { return (rival.rival_from_place * camera - at_rival).norm() <= kNear; });
 }
 
-// If no keyframe saw the map from nearby, a frame that is not tracked is no evidence: points look different from
-// another direction.
+// A frame that is not tracked is no evidence if no keyframe saw the map from nearby: points look different from another
+// direction.
 void RivalPlaces::observe(const Pose& camera_from_place, const TrackAt& track_at) {
   const Eigen::Vector3d camera = inverse(camera_from_place).translation;
   for (Rival& rival : rivals_) {
@@ -112,7 +112,7 @@ std::optional<Pose> RivalPlaces::camera_from_likeliest() const {
 bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint) const {
   constexpr int kFrames = 3;
   constexpr double kWay = 2.0;             // metres
-  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to such a place
+  const double of_rival = std::log(20.0);  // least log-likelihood ratio of the rival to an accepted place
   return std::ranges::any_of(rivals_, [&](const Rival& rival) {
     const double log_odds = rival.test.log_odds();
     if (rival.frames < kFrames || log_odds < 0.0) return false;

@@ -20,12 +20,12 @@ PlaceHypothesis open_place(const PlaceView& view = view_of_room(4, 6)) {
   return place;
 }
 
-// A camera at the robot's place, and a rival 5 m beside it.
+// A camera at the robot's place, with a rival 5 m to the side.
 class RivalBeside : public ::testing::Test {
  protected:
   RivalBeside() { rivals_.propose(camera_at(0.0), camera_at(5.0), 0.0); }
 
-  // A frame at x that has this view at every rival.
+  // Observes a frame at x with the same view at every rival.
   void observe(double x, const PlaceView& view, bool is_tracked = true) {
     rivals_.observe(camera_at(x), [&](const Pose& predicted) { return View{predicted, view, is_tracked}; });
   }

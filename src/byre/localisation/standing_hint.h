@@ -7,21 +7,21 @@
 
 namespace byre {
 
-// Whether a pose lies where a hint says that the robot is.
+// Whether a pose is within the hint's radius and turn.
 bool is_near(const PoseHint& hint, const Pose& map_from_body);
 
-// The last hint given, while it counts.
+// The last hint given, until it expires.
 class StandingHint {
  public:
   void withdraw() { hint_.reset(); }
-  void give(const PoseHint& hint);  // one that is not finite takes the last one back
+  void give(const PoseHint& hint);  // a non-finite hint withdraws the last one
   // Once for each frame, in order of time.
   void pass(Timestamp frame);
-  const std::optional<PoseHint>& get() const { return hint_; }  // empty: none counts
+  const std::optional<PoseHint>& get() const { return hint_; }  // empty: none, or expired
 
  private:
   std::optional<PoseHint> hint_;
-  std::optional<Timestamp> first_frame_;  // since it was given
+  std::optional<Timestamp> first_frame_;  // first frame after give()
 };
 
 }  // namespace byre

@@ -6,17 +6,17 @@
 
 namespace byre {
 
-// Where the robot was last trusted to be in the offline map, and what was told since of places that were refused.
+// The last trusted pose in the offline map, and the rejected places reported since.
 class TrustedPlace {
  public:
   explicit TrustedPlace(double max_speed) : max_speed_(max_speed) {}  // metres per second
 
   void note(const PlaceBefore& place) { place_ = place; }
-  void forget() { place_.reset(); }  // it may have been carried since, or was never there
+  void forget() { place_.reset(); }  // the robot may have been carried, or the pose was wrong
 
-  std::optional<PlaceBounds::Way> way_from_there() const;  // empty where nothing is known
+  std::optional<PlaceBounds::Way> way_from_there() const;  // empty without a trusted pose
 
-  // Whether it is to be told that a place was refused: once for each reason, until a pose is of use again.
+  // Whether to report a rejected place: once for each reason, until a pose is not untrusted.
   bool is_news(Doubt refused, Verdict verdict);
 
  private:

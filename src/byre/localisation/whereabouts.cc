@@ -33,9 +33,9 @@ void Whereabouts::tell(const std::optional<BodyMotion>& motion) {
   since_believed_ = since_believed_ && motion ? std::optional(*since_believed_ * *motion) : std::nullopt;
 }
 
-// What is told leads so well that a place can be told from the next by it.
+// Measured motion is precise enough to distinguish a place from its neighbours.
 bool Whereabouts::leads_well(const BodyMotion& told) const {
-  constexpr double kMostShare = 0.15;  // share of the depth of what was seen
+  constexpr double kMostShare = 0.15;  // share of the scene depth
   constexpr double kMostTurn = 0.1;    // radians
   return std::sqrt(told.covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
          std::sqrt(told.covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
@@ -57,7 +57,7 @@ Matrix6 Whereabouts::bridged_odometry_covariance() const {
                          inverse(odometry_.odometry_from_body()) * odometry_open_->map_from_body);
 }
 
-// The odometry follows measured motion to a place that was found; its covariance is added.
+// Adds the covariance of a measured motion that ends at a found place, which the odometry follows.
 void Whereabouts::open_odometry(const std::optional<BodyMotion>& led) {
   if (!led) return;
   const Matrix6 covariance = bridged_odometry_covariance() + led->covariance;
@@ -70,7 +70,7 @@ bool Whereabouts::is_continued(Timestamp time, const Pose& now, const Rig& rig, 
   constexpr double kMostTurning = 30.0;       // radians per second squared
   constexpr double kShare = 0.05;             // share of the median depth of the scene
   constexpr double kTurn = 0.1;               // radians
-  constexpr double kLongest = 0.3;            // seconds between frames for which the velocity predicts the motion
+  constexpr double kLongest = 0.3;  // longest frame interval over which the velocity predicts the motion, seconds
   if (!has_pose_ || trajectory_.empty() || !place_.is_believed()) return false;
   const double seconds = to_seconds(time - trajectory_.back().time);
   if (seconds > kLongest) return false;
@@ -109,9 +109,9 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
   return (now.translation - before.translation).norm() > *reach + kSigmas * carried || is_elsewhere;
 }
 
-// Whether a pose is farther from where what is told leads than that may err.
+// Whether a pose differs from the predicted one by more than the error of measured motion.
 bool Whereabouts::is_beyond(const Matrix6& covariance, const Pose& led_from_body) const {
-  constexpr double kLeastShare = 0.2;  // share of the depth of what was seen
+  constexpr double kLeastShare = 0.2;  // share of the scene depth
   constexpr double kLeastTurn = 0.5;   // radians
   constexpr double kSigmas = 3.0;
   const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
@@ -120,7 +120,7 @@ bool Whereabouts::is_beyond(const Matrix6& covariance, const Pose& led_from_body
          rotation_log(led_from_body.rotation).norm() > kLeastTurn + kSigmas * turn_sigma;
 }
 
-// Every pose so far is believed, and the last one was seen.
+// All poses so far are believed, and the last one is visual.
 void Whereabouts::believe() {
   trajectory_.believe_all();
   since_believed_ = no_motion();
@@ -129,7 +129,7 @@ void Whereabouts::believe() {
   bridge_end_.reset();
 }
 
-// Precondition: the frame that was found is not in the trajectory yet.
+// Precondition: the found frame is not in the trajectory yet.
 void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_.reset();
   if (!bridge_ || !motion_.told()) return;
@@ -138,11 +138,11 @@ void Whereabouts::note_end_of_bridge(const Rig& rig, const MapView& map) {
   bridge_end_ = {bridge_begin_, trajectory_.size(), first * inverse(predicted)};
 }
 
-// Log-odds of a find by its Mahalanobis distance from the measured pose. 0 if there is none, or if the distance is
-// usual.
+// Log-odds of a find by its Mahalanobis distance from the pose by measured motion. 0 without such a pose, or if the
+// distance is usual.
 double Whereabouts::log_odds_of_way(const Pose& body, const Rig& rig, const MapView& map) const {
-  constexpr double kSlack = 0.05;  // share of the depth of what was seen, and radians
-  constexpr double kUsual = 6.0;   // squared distance, expected of six numbers
+  constexpr double kSlack = 0.05;  // share of the scene depth, and radians
+  constexpr double kUsual = 6.0;   // squared distance, the mean for six dimensions
   const std::optional<MeasuredPose> measured = measured_pose(rig, map);
   if (!reach_ || !measured || quality_.verdict == Verdict::untrusted) return 0.0;
   Matrix6 covariance = measured->covariance;
@@ -153,7 +153,7 @@ double Whereabouts::log_odds_of_way(const Pose& body, const Rig& rig, const MapV
   return std::isfinite(distance) ? std::max(kLogOddsOfCarried, -0.5 * std::max(0.0, distance - kUsual)) : 0.0;
 }
 
-// What a find is compared with: the last accepted pose, or the pose by measured motion since then.
+// Reference of a find: the last accepted pose, or the pose by measured motion since then.
 Whereabouts::Accepted Whereabouts::last_known(const Rig& rig, const MapView& map) const {
   const bool is_bridged = bridge_ && is_led_well() && quality_.verdict != Verdict::untrusted;
   if (!is_bridged) return *last_accepted_;
@@ -170,7 +170,7 @@ double Whereabouts::log_odds_of_find(Timestamp time, const Pose& body, const Rig
   return log_odds_of_way(body, rig, map);
 }
 
-// Within a second of an accepted pose, and within reach, its test goes on.
+// Within a second of an accepted pose, and within reach, the test of its place continues.
 PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body, const PlaceHypothesis* known,
                                                 const Rig& rig, const MapView& map) const {
   constexpr double kShortly = 1.0;  // seconds
@@ -186,7 +186,7 @@ PlaceHypothesis Whereabouts::hypothesis_of_find(Timestamp time, const Pose& body
   return PlaceHypothesis(prior, is_carried ? kConfirmationsOfJump : frames, registration_.accept_log_odds);
 }
 
-// The metres that the body went.
+// Returns the length of the motion, metres.
 double Whereabouts::move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {
   const std::optional<Odometry::Offset> offset = offset_from_online(seen.track, rig);
   if (seen.from_nothing) {
@@ -292,7 +292,7 @@ void Whereabouts::give_up() {
   bridge_.reset();
 }
 
-// The bridge ends where the ground has the body then.
+// The bridge ends at the pose on the ground.
 Pose Whereabouts::held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map) {
   const auto prior = planar_prior(ground, rig, camera_from_map);
   if (!prior) return camera_from_map;
@@ -309,7 +309,7 @@ std::optional<Pose> Whereabouts::told_beginning() const {
   return bridge_ ? bridge_->last_from_body * last_told_->last_from_body : last_told_->last_from_body;
 }
 
-// Once it is not told, nobody knows where the body is from where it began.
+// A gap in the measured motion makes the pose relative to the beginning unknown.
 void Whereabouts::wait_for_map() {
   if (bridge_ && !last_told_) is_way_known_ = false;
   if (!is_way_known_ || !last_told_) return bridge_.reset();
@@ -318,12 +318,12 @@ void Whereabouts::wait_for_map() {
   odometry_.go_by(last_told_->last_from_body, bridge_->last_from_body);
 }
 
-// By what accelerations told where the body stopped. A pose that agrees with them stays as it is: a gyroscope drifts
-// less in seconds than an accelerometer's bias is, whatever its covariance says. All that they tell of one stop is one
-// measurement: the first frame of it moves the pose, and later ones know it as well.
+// Constrains the bridge by the tilt measured at a stop. A pose that agrees with the tilt is not changed: a gyroscope
+// drifts less in seconds than the bias of an accelerometer, whatever its covariance. All measurements of one stop are
+// one: the first frame of the stop moves the pose, later ones keep it.
 Pose Whereabouts::held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map) {
   constexpr double kSigmas = 4.0;
-  constexpr double kAgreeing = 2.0;  // sigmas of what is told
+  constexpr double kAgreeing = 2.0;  // sigmas of the measured tilt
   const PosePrior prior = tilt_prior(tilt, rig, camera_from_map);
   const PosePrior told{camera_from_map, move_covariance(covariance_of_bridge(), inverse(rig.body_from_camera))};
   const double apart = angle_between(told.camera_from_world.rotation, prior.camera_from_world.rotation);

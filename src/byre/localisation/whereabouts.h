@@ -17,21 +17,20 @@
 
 namespace byre {
 
-// The keyframe that a tracked frame's pose is kept relative to.
+// Keyframe that a tracked frame's pose is stored relative to.
 KeyframeId anchor_of(const HybridTrack& track);
 
-// What is known of where the robot is, and was: what a frame adds to that, and what changes of the map do to it. Reads
-// maps, and changes nothing but itself. Called from the session's thread.
+// Pose state of the robot from frame to frame: updated by frames, measured motion and changes of the map. Reads maps,
+// changes only itself. Called from the session's thread.
 class Whereabouts {
  public:
-  // What was reported of a pose.
   struct PoseQuality {
     Matrix6 covariance = Matrix6::Zero();           // see FrameReport
     Matrix6 odometry_covariance = Matrix6::Zero();  // see FrameReport
     Verdict verdict = Verdict::untrusted;
   };
 
-  // on_offline_map: finds are to be confirmed, and sightings kept.
+  // on_offline_map: finds need confirmation, and sightings are kept.
   Whereabouts(const RegistrationOptions& registration, const HindsightOptions& hindsight,
               const TrajectoryOptions& trajectory, bool on_offline_map)
       : registration_(registration), on_offline_map_(on_offline_map), trajectory_(hindsight, trajectory) {}
@@ -50,40 +49,41 @@ class Whereabouts {
   CameraMotion camera_motion() const { return {motion_.velocity(), scene_depth_}; }
   // Time of the last believed pose in the reports' frame.
   std::optional<Timestamp> last_believed() const { return last_believed_; }
-  // The pose was lost, and it is known how the body has moved since, so well that points are found by it.
+  // The pose is lost, but measured motion since then is precise enough to match points from the predicted pose.
   bool may_be_led_back() const { return !has_pose_ && is_way_known_ && is_led_well(); }
-  // The way from the last pose that was seen to where the body is by what is told; empty unless the last frame showed
-  // nothing. Before there is a map it is the way from the first frame that was told of, where the map's frame will be.
+  // Measured motion from the last visual pose to the present one; empty if the last frame was tracked. Before there is
+  // a map: motion since the first frame with measured motion, whose body frame becomes the map's.
   std::optional<BodyMotion> bridge() const { return has_pose_ ? std::nullopt : bridge_; }
-  // Before there is a map: the body in the frame that a map which begins with this frame is to have.
+  // Before there is a map: pose of the body at this frame in the frame of the future map, by measured motion.
   std::optional<Pose> told_beginning() const;
-  const PoseQuality& quality_before() const { return quality_; }  // what was reported of the last pose that was seen
-  Matrix6 covariance_of_bridge() const;  // covariance of the pose in the map, now; precondition: there is a bridge
-  Matrix6 carried_covariance() const;  // covariance of the pose in the map, beside what the present submap leaves open
-  // Covariance of the odometry by bridges that ended at found places; without the drift of visual odometry.
+  const PoseQuality& quality_before() const { return quality_; }  // quality of the last visual pose
+  Matrix6 covariance_of_bridge() const;  // covariance of the present pose in the map; precondition: there is a bridge
+  // Covariance of the present submap's beginning in the map, moved to the present pose; adds to the covariance within
+  // the submap.
+  Matrix6 carried_covariance() const;
+  // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
-  std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last pose that was seen
-  // Whether measured motion since the last pose that was seen contradicts the pose of a track: then it is another place
-  // that looks alike. False for a pose that continues the camera's motion, and while the last pose was untrusted.
-  // Without an offline map false after half a minute, when the robot may have been carried.
+  std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last visual pose
+  // Whether measured motion since the last visual pose contradicts a tracked pose, which then is a look-alike place.
+  // False for a pose that continues the camera's motion, and while the last pose was untrusted. Without an offline map
+  // also false after 30 s, when the robot may have been carried.
   bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
-  // Prior log-odds that the present submap, not registered yet, lies so in the offline map, by the measured motion up
-  // to its beginning. 0 where that is not known.
+  // Prior log-odds that offline_from_online registers the present submap, by the measured motion up to its beginning. 0
+  // if that motion is unknown.
   double log_odds_of_registration(const Pose& offline_from_online) const;
 
-  // Prior log-odds of a place where the body is found without a prediction, by the way from the last accepted pose.
+  // Prior log-odds of a place found without a prediction, by the motion since the last accepted pose.
   double log_odds_of_find(Timestamp time, const Pose& map_from_body, const Rig& rig, const MapView& map) const;
   // Test of the place at which a frame is found. known: test of that place by earlier frames; nullptr: none.
   PlaceHypothesis hypothesis_of_find(Timestamp time, const Pose& map_from_body, const PlaceHypothesis* known,
                                      const Rig& rig, const MapView& map) const;
 
-  // A frame later; motion is that of the body, where it is known.
+  // Begins a frame. motion: of the body since the last frame; empty: unknown.
   void tell(const std::optional<BodyMotion>& motion);
-  // How the body is tilted at this frame, where accelerations tell it.
+  // Tilt of the body at this frame, measured by accelerations; empty: unknown.
   void tell_tilt(const std::optional<BodyTilt>& tilt) { tilt_ = tilt; }
-  int tilts_held() const { return tilts_held_; }  // poses of bridges, held by what accelerations told
-  // What the last frame's report says, of a pose that was seen.
-  void note_quality(const PoseQuality& quality) { quality_ = quality; }
+  int tilts_held() const { return tilts_held_; }  // number of bridged poses that a measured tilt constrained
+  void note_quality(const PoseQuality& quality) { quality_ = quality; }  // quality of a visual pose
 
   struct TrackedPose {
     const Frame& frame;
@@ -91,49 +91,46 @@ class Whereabouts {
     bool from_nothing = false;
     bool is_registered = false;
     std::size_t submap = 0;
-    bool is_by_hint = false;          // where it was found from nothing: it was looked for near a hint alone
-    const PlaceView* view = nullptr;  // the part of the offline map that it shows; nullptr without a map
-    const PlaceHypothesis* known_place = nullptr;  // where it was found from nothing: see hypothesis_of_find
+    bool is_by_hint = false;                       // the search that found it was limited to a hint
+    const PlaceView* view = nullptr;               // part of the offline map in view; nullptr without a map
+    const PlaceHypothesis* known_place = nullptr;  // for finds: see hypothesis_of_find; nullptr: none
     double log_odds_of_rivals = kNoRivals;         // see PlaceHypothesis::observe
   };
-  // What a tracked frame changed.
   struct Progress {
-    double step = 0.0;               // metres, smooth
-    bool was_proven = false;         // the pose before, beyond doubt
-    bool was_ever_believed = false;  // a pose in the reports' frame before
+    double step = 0.0;               // metres of smooth motion
+    bool was_proven = false;         // the pose before was at an accepted place
+    bool was_ever_believed = false;  // an earlier pose was believed, in the reports' frame
   };
   Progress note(const TrackedPose& seen, const Rig& rig, const MapView& map);
-  // A submap of the online map begins with the last of these keyframes, made of this frame.
+  // A submap of the online map begins with these keyframes; the last one is the present frame.
   void begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig, const Map& online);
-  // The last frame has become a keyframe.
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
   void lose();
-  // As lose(), and where the robot was believed to be was wrong: it is not led on from there.
+  // Same as lose(), after the believed pose was refuted: no dead reckoning from it.
   void give_up();
-  // Nothing was seen, and the pose goes on by what is told, where it is: whether it does. ground: that the body is held
-  // to; nullptr for none.
+  // Dead reckoning: propagates a lost pose by measured motion; false without it. ground: constrains the body unless
+  // null.
   bool go_on(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground = nullptr);
-  // Places told of the present submap anew: nothing is left of what a bridge to it left open.
+  // A map correction placed the present submap: the covariance of the bridge to it no longer applies.
   void forget_carried() { carried_.reset(); }
 
-  // Changes of the map, or of the camera.
   void follow(const LengthChanges& changes);
   void turn(const RigTurn& turn, const Map& online);
   void turn_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.remember_offset({}); }
-  // The submap was registered in the offline map, and moved by offline_from_online. Starts the test of its place.
+  // The submap was registered in the offline map, moved by offline_from_online. Starts the test of its place.
   void note_registration(const Pose& offline_from_online, bool is_by_hint);
-  // A search of the whole map agrees with the pose found by the hint.
+  // A search of the whole map confirmed the pose found by the hint.
   void note_agreement() { is_by_hint_ = false; }
-  // By what the map moved the last pose, after_from_before; empty where there is none.
+  // Follows changes of the map. Returns the motion of the last pose, after_from_before; empty without a pose.
   std::optional<Pose> follow_map(const Rig& rig, const MapView& map);
 
-  // Once for each frame: what was long ago is settled, and thinned out.
+  // Once for each frame: refines and thins out old poses.
   void settle_overdue(const MapView& map, const TrackOptions& tracking);
   void settle_all(const MapView& map, const TrackOptions& tracking) { trajectory_.settle_all(map, tracking); }
 
  private:
-  // Pose by measured motion since the last believed pose, and its covariance since the last pose that was seen.
+  // Pose by measured motion since the last believed pose, with the covariance since the last visual pose.
   struct MeasuredPose {
     Pose map_from_body;
     Matrix6 covariance;
@@ -151,7 +148,7 @@ class Whereabouts {
   void open_odometry(const std::optional<BodyMotion>& led);
   bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
   bool leads_well(const BodyMotion& told) const;
-  bool is_led_well() const;  // by what was told since the last pose that was believed
+  bool is_led_well() const;  // by the measured motion since the last visual pose
   void believe();
   Pose held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map);
   Pose held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map);
@@ -160,44 +157,45 @@ class Whereabouts {
   // Constant after construction.
   RegistrationOptions registration_;
   bool on_offline_map_;
-  TellReach reach_;  // empty: nothing is told
+  TellReach reach_;  // empty: no measured motion
 
   AnchoredTrajectory trajectory_;
   MotionModel motion_;
-  std::optional<BodyMotion> last_told_;                     // since the frame before
-  std::optional<BodyMotion> since_believed_ = no_motion();  // since the last pose that is believed
+  std::optional<BodyMotion> last_told_;                     // motion since the frame before
+  std::optional<BodyMotion> since_believed_ = no_motion();  // motion since the last believed pose
   std::optional<BodyMotion> bridge_;
-  std::optional<Matrix6> bridge_covariance_;  // covariance in the map, where the ground adds to what is told
+  std::optional<Matrix6> bridge_covariance_;  // covariance in the map after the ground or a tilt constrained the bridge
   std::size_t bridge_begin_ = 0;              // index of the last pose before the bridge
   std::optional<BodyTilt> tilt_;              // at this frame
-  std::optional<int> stop_;                   // the last stop at which the bridge was tilted
+  std::optional<int> stop_;                   // last stop at which a tilt changed the bridge
   int tilts_held_ = 0;
-  // Poses led on by what was told, until the pose that was found after them is believed.
+  // Poses by measured motion, until the pose found after them is believed.
   struct BridgeEnd {
-    std::size_t first = 0;   // index of the last pose before
-    std::size_t second = 0;  // index of the pose that was found
-    Pose told;               // first_from_second of the camera
+    std::size_t first = 0;   // index of the last pose before the bridge
+    std::size_t second = 0;  // index of the found pose
+    Pose told;               // measured first_from_second of the camera
   };
   std::optional<BridgeEnd> bridge_end_;
   PoseQuality quality_;
   std::optional<Timestamp> last_seen_;
-  // Where the present submap was begun by a bridge, and how uncertain that was.
+  // Pose of a submap's beginning after a bridge, with its covariance.
   struct Carried {
     Pose map_from_body;
     Matrix6 covariance;
   };
   std::optional<Carried> carried_;
-  std::optional<Carried> bridged_beginning_;  // where a mission's submap began after a bridge, until it is registered
-  std::optional<Carried> odometry_open_;      // covariance by bridges, at the odometry pose where the last one ended
+  std::optional<Carried> bridged_beginning_;  // beginning of a mission's submap after a bridge, until it is registered
+  // Covariance due to bridges, at the odometry pose at the end of the last one.
+  std::optional<Carried> odometry_open_;
   Odometry odometry_;
   PlaceHypothesis place_;
-  PlaceHypothesis place_before_;  // the last one that was believed and accepted, before its pose was lost
+  PlaceHypothesis place_before_;  // last believed and accepted place before its pose was lost
   bool is_by_hint_ = false;
   std::optional<Timestamp> last_believed_;  // in the reports' frame
   std::optional<Accepted> last_accepted_;   // the last pose at an accepted place, in the reports' frame
   bool has_pose_ = false;
-  bool is_way_known_ = true;  // from the last pose that was believed
-  double scene_depth_ = 1.0;  // metres, median of the points in the last frame
+  bool is_way_known_ = true;  // motion since the last believed pose is known
+  double scene_depth_ = 1.0;  // metres, median depth of the points in the last frame
 };
 
 }  // namespace byre

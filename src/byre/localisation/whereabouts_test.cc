@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Frames that were tracked to their true poses, on a true map of every fourth.
+// Frames tracked at their true poses, on a true map in which every fourth frame is a keyframe.
 class TrueWhereabouts : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
@@ -31,7 +31,7 @@ class TrueWhereabouts : public ::testing::Test {
     return whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0, false, &view_},
                              mission_.rig, map_);
   }
-  // Found at a frame, and tracked until it is believed.
+  // Finds the pose at a frame without a prediction, then tracks until it is believed.
   void find_and_believe(std::size_t frame) {
     note(frame, true);
     while (!whereabouts_.place().is_believed()) note(++frame);
@@ -173,7 +173,7 @@ TEST_F(TrueWhereabouts, AreNotWhereWheelsHaveNotLedTo) {
   EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where they led to";
 }
 
-// Found where wheels have not led to, after it was known well where the robot is.
+// A find that contradicts measured motion after a trusted pose.
 TEST_F(TrueWhereabouts, AreNotFoundElsewhereOnAMissionThanMeasuredMotionLeads) {
   whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   find_and_believe(0);
@@ -221,7 +221,7 @@ TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
   EXPECT_FALSE(whereabouts_.bridge());
 }
 
-// A find that comes to nothing does not end a bridge that was there before.
+// A find that is lost before it is believed does not end the bridge before it.
 TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
@@ -305,7 +305,7 @@ TEST_F(TrueWhereabouts, DoubtAFindManySigmasFromWhereMeasuredMotionLed) {
     standing.covariance = 0.01 * Matrix6::Identity();
     whereabouts.tell(is_measured ? std::optional(standing) : std::nullopt);
     Frame seen = mission_.frames[here];
-    seen.time += from_seconds(2.0);  // enough to drive there
+    seen.time += from_seconds(2.0);  // enough time to drive there
     whereabouts.note({seen, track_of(frame), true, true, 0}, mission_.rig, map_);
     return whereabouts.place().log_odds();
   };
