@@ -1,5 +1,4 @@
-// Whether a session knows how precise its poses are: its errors over several simulated missions against the
-// covariances it reports.
+// Consistency of reported covariances with the errors of poses over several simulated missions.
 
 #include "byre/session/session.h"
 #include "byre/slam/mission_scene.h"
@@ -15,9 +14,9 @@ using ::testing::AllOf;
 using ::testing::Ge;
 using ::testing::Le;
 
-constexpr double kBound95 = 12.592;  // 95 % of chi-square with six degrees of freedom
+constexpr double kBound95 = 12.592;  // 95 % quantile of chi-square with six degrees of freedom
 
-// One causal pose: its error as seen in the body, and the covariance reported with it.
+// Error and reported covariance of one causal pose, both in the body.
 struct Judged {
   double seconds = 0.0;  // since the mission began
   Vector6 error = Vector6::Zero();
@@ -30,11 +29,11 @@ SimulatedMission simulate(const Trajectory& truth, std::uint64_t seed) {
   SimulationOptions options;
   options.seed = seed;
   options.noise_seed = seed;
-  options.pixel_sigma = 0.8;  // what a corner without a patch is taken to have
+  options.pixel_sigma = 0.8;  // sigma of a corner without a patch
   return simulate_mission(simulated_rig(robot_from_camera()), truth, options);
 }
 
-// The first pose defines the world and is exact.
+// Judges all frames but the first, whose pose defines the world and is exact.
 std::vector<Judged> judge(const SimulatedMission& mission) {
   Session session(mission.rig, {}, make_inline_executor());
   std::vector<Judged> judged;
@@ -64,7 +63,7 @@ TEST(ReportedCovariance, BoundsNineteenErrorsInTwenty) {
       const std::vector<Judged> mission = judge(simulate(trajectory, seed));
       of_trajectory.insert(of_trajectory.end(), mission.begin(), mission.end());
     }
-    // Drift is shared by all frames of a mission, so a few missions scatter more than the sum of them.
+    // All frames of a mission share its drift, so single trajectories scatter more than their union.
     EXPECT_GE(share_within_bound(of_trajectory), 0.85);
     all.insert(all.end(), of_trajectory.begin(), of_trajectory.end());
   }

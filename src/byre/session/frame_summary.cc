@@ -10,14 +10,15 @@
 namespace byre {
 namespace {
 
-// Points and keyframes share errors that their single covariances know nothing of; found on simulated missions.
+// Inflation for the correlation between errors of points and keyframes, which their covariances neglect; measured on
+// simulated missions.
 constexpr double kNeglectedCorrelation = 1.1;
 
 Matrix6 body_covariance(const Matrix6& camera_covariance, const Rig& rig) {
   return kNeglectedCorrelation * move_covariance(camera_covariance, rig.body_from_camera);
 }
 
-// What the matches leave open, and the drift that stereo odometry may have gathered on its way.
+// Covariance of the matches plus the drift of stereo odometry.
 Matrix6 odometry_covariance(const Matrix6& match_covariance, double travelled) {
   constexpr double kDriftShare = 0.005;
   constexpr double kTurnPerMetre = 0.0005;  // radians
@@ -27,15 +28,14 @@ Matrix6 odometry_covariance(const Matrix6& match_covariance, double travelled) {
   return covariance;
 }
 
-// In a mission the map's frame itself is only as exact as the offline map. Where offline points hold the pose, that and
-// the matches are all.
+// In a mission the covariance of the offline map's frame is added. If offline points constrain the pose, the covariance
+// of the online keyframes does not apply.
 Matrix6 covariance_in_map(const TrackedFrame& tracked, const OfflineTracker* mission) {
   if (!mission) return tracked.covariance;
   const bool is_online = tracked.reference.origin == Origin::online;
   return (is_online ? tracked.covariance : tracked.match_covariance) + mission->mission().offline().frame_covariance();
 }
 
-// What the points say that a frame was tracked on.
 Health measured(const HybridTrack& track, const Rig& rig) {
   Health health;
   health.offline_expected = track.offline_expected;
@@ -48,7 +48,7 @@ Health measured(const HybridTrack& track, const Rig& rig) {
   return health;
 }
 
-// Without an offline map it is the map made that tells a calibration that lies, once it was asked for the first time.
+// Without an offline map the self-calibration detects a wrong calibration, after its first run.
 HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) {
   const auto& result = calibrator.result();
   evidence.is_calibration_open = calibrator.is_open();
@@ -57,7 +57,7 @@ HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) 
   return evidence;
 }
 
-// The poses of a frame that nothing was recognised in, by what is told of the body's motion since the last one.
+// Poses of a frame without a visual pose, by measured motion since the last visual one.
 FrameReport bridged(FrameReport report, const FrameSummary& summary) {
   const Whereabouts& whereabouts = summary.whereabouts;
   const BodyMotion bridge = *whereabouts.bridge();

@@ -9,28 +9,28 @@
 
 namespace byre {
 
-// A frame as it is tracked, and what speaks against its images.
+// A frame to track, with evidence against its images.
 struct InputFrame {
   Frame frame;
   ImageFault fault = ImageFault::none;
   InputEvidence evidence;
-  FrameCuts cuts{};  // what is left out of it
+  FrameCuts cuts{};  // skipped work
 };
 
-// All that is told of a frame, once the session has taken it in.
+// The state after a frame, from which its report is made.
 struct FrameSummary {
   const InputFrame& input;
-  const HybridTrack* track = nullptr;  // where it was tracked
+  const HybridTrack* track = nullptr;  // nullptr: not tracked
   const Rig& rig;
   const Whereabouts& whereabouts;
   const Mapper& mapper;
-  const OfflineTracker* mission = nullptr;  // on an offline map
+  const OfflineTracker* mission = nullptr;  // nullptr without an offline map
   const LensWatch& lens;
   Timestamp first_frame{};
   Doubt refused_place = Doubt::none;  // see FrameReport
 
   bool is_registered() const { return mapper.submaps().is_registered(); }
-  // The pose goes on by what is told, from one in the map.
+  // The pose is dead-reckoned from a pose in the map's frame.
   bool is_bridged_in_map() const {
     if (!whereabouts.bridge()) return false;
     const AnchoredTrajectory& trajectory = whereabouts.trajectory();
@@ -38,15 +38,15 @@ struct FrameSummary {
   }
 };
 
-// A report with the frame's poses, their covariances and the counts of points in it.
+// Adds the frame's poses, their covariances and the counts of points to a report.
 FrameReport described(FrameReport report, const FrameSummary& summary);
 
-// Evidence of a frame by itself, without lasting doubts.
+// Evidence of this frame alone, without lasting doubts.
 HealthEvidence evidence_of(const FrameSummary& summary);
-// Removes numbers that are not finite from a report. A pose with such numbers is withheld, with the verdict untrusted.
+// Resets non-finite numbers of a report. A non-finite pose is removed, and the verdict is untrusted.
 void withhold_non_finite(FrameReport& report);
 
-// How far the pose may be relied on. covariance: of the pose in the map.
+// Health and verdict of the pose. covariance: of the pose in the map.
 Health health_of(const FrameSummary& summary, const Matrix6& covariance, const HealthEvidence& evidence,
                  const HealthOptions& options);
 

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Whether poses lie in the offline map, where there is one.
+// True without an offline map.
 bool is_registered(const Mapper& mapper) {
   return mapper.submaps().is_registered();
 }
@@ -36,7 +36,7 @@ Session::Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std
                                            options.is_planar},
                      OfflineTracker::Lanes{std::move(lanes.global), std::move(lanes.calibration)});
   } else {
-    options_.map_online = true;  // there is nothing else to track
+    options_.map_online = true;  // no other map to track on
   }
 }
 
@@ -133,7 +133,7 @@ FrameReport Session::process(const Frame& rectified, const std::optional<BodyMot
   return report;
 }
 
-// A pose that goes on from a believed one is as good as that was.
+// Stored only for a believed pose, and used for poses predicted from it.
 void Session::note_quality(const FrameReport& report) {
   if (!whereabouts_.has_pose() || !report.map_from_body || !whereabouts_.place().is_believed()) return;
   whereabouts_.note_quality({report.covariance, report.odometry_covariance, report.health.verdict});
@@ -141,7 +141,7 @@ void Session::note_quality(const FrameReport& report) {
 }
 
 void Session::take_over_results(FrameReport& report) {
-  constexpr double kLeastCorrection = 1e-6;  // metres and radians: less is rounding
+  constexpr double kLeastCorrection = 1e-6;  // metres and radians; smaller values are rounding
   mapper_.collect_reading();
   if (mapper_.is_read()) return;
   const bool was_registered = is_registered(mapper_);
@@ -184,8 +184,8 @@ void Session::take_over_place(FrameReport& report) {
   }
 }
 
-// A map's own calibration turns its keyframes as well; in a mission frames are of another rig from here on, and
-// keyframes stay as they were seen.
+// A correction of the online map's own calibration turns its keyframes as well. In a mission frames have a new rig from
+// here on, and keyframes keep theirs.
 bool Session::take_over_camera() {
   if (const auto turn = mapper_.take_over_calibration(rig_)) {
     take_turn(*turn);
@@ -214,7 +214,7 @@ InputFrame Session::input_of(const Frame& rectified, const std::optional<BodyMot
   return {std::move(frame), fault, evidence};
 }
 
-// Puts the place first at which the frame, and those before where it continues them, is most likely.
+// Puts the place with the highest log-odds first, by this frame and, at a place that continues a test, by those before.
 void Session::put_most_likely_first(std::vector<HybridTrack>& places, const Frame& frame) {
   if (places.size() < 2) return;
   std::vector<double> log_odds;
@@ -254,7 +254,8 @@ Session::Located Session::locate(const InputFrame& input) {
   };
   drop_non_finite();
   if (located.track && located.track->focal) mission_->note_focal_length(*located.track->focal);
-  // Measured motion leads elsewhere, and the offline points in view do not outweigh that. Then the motion is followed.
+  // Measured motion contradicts the pose, and the offline points in view do not outweigh it. The motion is then
+  // followed.
   const auto contradicts_motion = [&] {
     const HybridTrack& track = *located.track;
     if (!whereabouts_.is_out_of_reach(frame, track, rig_, map())) return false;
@@ -361,7 +362,7 @@ void Session::remember(const InputFrame& input, const Located& located, FrameRep
   }
 }
 
-// Where the pose is known by what is seen all over the image.
+// Only for tracked, believed poses on a faultless image.
 void Session::look_for_dirt(const InputFrame& input, const Located& located, FrameReport& report) {
   const bool is_known = whereabouts_.place().is_believed();
   if (located.from_nothing || !is_known || input.fault != ImageFault::none || located.track->maps_disagree) return;
@@ -370,7 +371,7 @@ void Session::look_for_dirt(const InputFrame& input, const Located& located, Fra
   if (const auto news = lens_watch_.news()) report.events.push_back(*news);
 }
 
-// A keyframe is made where one is needed; loops and places are looked for with every tracked frame.
+// Adds a keyframe if needed; searches loops and places with every tracked frame.
 void Session::extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report) {
   if (may_add_keyframe(input, track)) {
     const KeyframeId id = mapper_.add_keyframe(input.frame, track, rig_);
@@ -393,7 +394,7 @@ bool Session::may_add_keyframe(const InputFrame& input, const HybridTrack& track
   return keyframe_watch_.asks_for_keyframe(track, evidence, input.cuts, options_.keyframes);
 }
 
-// While offline points hold the pose there is no drift that a loop could tell of.
+// Offline points that constrain the pose leave no drift for a loop to correct.
 bool Session::look_for_loop(const Frame& frame, bool keyframe_added) {
   const auto newest = mapper_.newest_keyframe();
   if (!newest || (mission_ && is_registered(mapper_) && mission_->mission().view() == OfflineView::held)) return false;

@@ -25,10 +25,10 @@
 
 namespace byre {
 
-// Where mapping runs: the neighbourhood of new keyframes, and corrections of the whole map; in a mission on an offline
-// map the second looks for places in that instead.
+// Executors of jobs. local: mapping around new keyframes. global: corrections of the whole map; in a mission on an
+// offline map, place searches.
 struct Lanes {
-  // NOLINTNEXTLINE(google-explicit-constructor): a session that is to close no loops needs one lane
+  // NOLINTNEXTLINE(google-explicit-constructor): a session without loop closing needs one lane
   Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane = make_inline_executor(),
         std::unique_ptr<Executor> calibration_lane = make_inline_executor(),
         std::unique_ptr<Executor> reading_lane = make_inline_executor())
@@ -39,95 +39,94 @@ struct Lanes {
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
-  std::unique_ptr<Executor> calibration;  // calibrating a mission's cameras
-  std::unique_ptr<Executor> reading;      // looking at the map itself, which does not change meanwhile
+  std::unique_ptr<Executor> calibration;  // calibration of a mission's cameras
+  std::unique_ptr<Executor> reading;      // jobs that read the map, which is constant meanwhile
 };
 
-// The one stateful object: give it frames in order of time. It has the tracker find each frame, and the mapper make
-// keyframes of some; what is known of the pose is kept in its whereabouts. Call every method from one thread; only the
-// executors have others.
+// Tracks frames in order of time and maps the scene. The tracker localises each frame, the mapper makes keyframes of
+// some, and whereabouts hold the pose state. Call every method from one thread; only executors use others.
 class Session {
  public:
-  // With a vocabulary the session recognises places: it closes loops, and finds itself again when lost.
-  // With an offline map it is a mission on that: it finds itself in it, and its poses are in the map's frame.
+  // A vocabulary enables place recognition: loop closing and relocalisation. An offline map makes the session a
+  // mission: it localises in that map, and its poses are in the map's frame.
   Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {},
           std::shared_ptr<const OfflineMap> offline = nullptr);
 
-  // What wheels tell of the way between keyframes, and of how far the robot can be. Call it before the first frame.
+  // Sets the sources of measured motion between keyframes and of the robot's reach. Call it before the first frame.
   void hear(TellMotion tell, TellReach reach) {
     mapper_.hear(std::move(tell));
     whereabouts_.hear(std::move(reach));
   }
 
-  // Goes on with a map made before, of another recording: the session is lost until it finds itself in it, and what it
-  // maps becomes part of it. Call it before the first frame, with a vocabulary whose words the keyframes have.
+  // Continues an online map of another recording: the session is lost until it relocalises in it, and extends it. Call
+  // it before the first frame. Precondition: the keyframes have words of the session's vocabulary.
   void continue_map(Map online);
 
-  // The calibration by which the frames are rectified may err, and is refined from what is seen, the readout time of a
-  // rolling shutter with it. Call it before the first frame.
+  // Refines the calibration that frames are rectified by, and the readout time of a rolling shutter. Call it before the
+  // first frame.
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Refines the readout time alone, and keeps all else as it is known to be. Call it before the first frame.
+  // Refines the readout time alone; keeps the rest of the given calibration. Call it before the first frame.
   void refine_readout(const RefinedCalibration& known);
 
-  // What is known of the calibration by now; empty until it was refined.
+  // The refined calibration; empty before the first refinement.
   std::optional<RefinedCalibration> self_calibration() const;
 
-  // Where the robot is in the offline map, as somebody says: where it is looked for from nothing while the hint counts.
+  // Limits localisation in the offline map to the hint until it expires.
   void look_near(const PoseHint& hint) {
     hint_.give(hint);
     trusted_place_.forget();
   }
 
-  // While it is paused frames are tracked on the map as it is, and nothing is added to it.
+  // While paused, frames are tracked and nothing is added to the map.
   void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
   bool is_mapping_paused() const { return is_mapping_paused_; }
 
-  // How the body is tilted at the next frame, where that is known: of use where nothing is seen.
+  // Tilt of the body at the next frame, measured by accelerations; empty: unknown. Constrains dead reckoning.
   void tell_tilt(const std::optional<BodyTilt>& tilt) { whereabouts_.tell_tilt(tilt); }
-  int tilts_held() const { return whereabouts_.tilts_held(); }  // frames of which it was of use
-  // motion: of the body since the last frame, where that is known. budget: what the frame may take, if that is limited;
-  // its begin() was called, and its end() is left to the caller.
+  int tilts_held() const { return whereabouts_.tilts_held(); }  // number of frames that a tilt constrained
+  // motion: of the body since the last frame; empty: unknown. budget: time limit of the frame; nullptr: none. The
+  // caller calls its begin() before and its end() after.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {},
                       FrameBudget* budget = nullptr);
 
-  // A correction of the whole map that is in flight ends soon, with what it has reached: for stopping early.
+  // Ends a running correction of the whole map early, with its present result.
   void hurry() { mapper_.hurry(); }
 
-  // Takes over what mapping still has to give. Call it once, after the last frame.
+  // Applies the results of running jobs. Call it once, after the last frame.
   void finish();
 
-  // The last search for loops and adjustment of the whole map. Call it after finish().
+  // Last loop search and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishHooks& hooks);
   Map take_online() { return mapper_.take_online(); }  // see Mapper
 
-  // All lengths so many times as long. Call it after finish_map().
+  // Scales all lengths. Call it after finish_map().
   void stretch(double factor) { whereabouts_.follow(mapper_.stretch(factor)); }
 
-  // Adjusts all that was mapped beside the offline map at once, around that. Call it after finish().
+  // Adjusts the whole online map around the fixed offline map. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 
   MapView map() const { return mapper_.map(); }
 
-  // Map points matched in the last frame; none when it had no pose.
+  // Map points matched in the last frame; empty without a pose.
   const std::vector<SeenPoint>& seen_points() const { return seen_; }
 
-  // Places found again so far, each with what was seen of it then.
+  // Loops found so far, with the measurement at that time.
   const std::vector<LoopEdge>& loops() const { return mapper_.loops(); }
 
-  // Every frame that had a pose, recomputed from its keyframe as that one lies now. world_from_body.
+  // Poses world_from_body of all frames with a pose, by the present poses of their keyframes.
   Trajectory final_trajectory() const;
 
  private:
-  // What a frame came to.
+  // Result of tracking or localising a frame.
   struct Located {
     std::optional<HybridTrack> track;
     std::vector<HybridTrack> elsewhere;  // other places that show the frame
     bool from_nothing = false;
-    bool is_by_hint = false;     // it was looked for near a hint alone
-    bool begins_submap = false;  // a first keyframe was made of it
+    bool is_by_hint = false;     // the search was limited to a hint
+    bool begins_submap = false;  // the frame became the first keyframe of a submap
     TwoViewFailure start_failure = TwoViewFailure::none;
-    Doubt refused = Doubt::none;  // why the robot cannot be where it was found
+    Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
   };
 
   void take_over_results(FrameReport& report);
@@ -150,7 +149,7 @@ class Session {
   SessionOptions options_;  // constant after construction
 
   // Owned by the calling thread.
-  Rig rig_;  // rig of the frames that come
+  Rig rig_;  // rig of the present frame
   Mapper mapper_;
   Tracker tracker_;
   std::optional<OfflineTracker> mission_;
@@ -164,9 +163,9 @@ class Session {
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
   TrustedPlace trusted_place_;
-  bool is_error_told_ = false;  // a navigation error
+  bool is_error_told_ = false;  // a navigation error was reported
   bool is_mapping_paused_ = false;
-  std::vector<SeenPoint> seen_;  // in the last frame
+  std::vector<SeenPoint> seen_;  // points of the last frame
 };
 
 }  // namespace byre

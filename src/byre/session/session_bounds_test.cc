@@ -1,5 +1,5 @@
-// Missions in which a place looks like one where the robot cannot be: behind a wall of the floor plan, or off the
-// ground that the map was driven on.
+// Missions in which the view looks like an impossible place: behind a wall of the floor plan, or off the ground that
+// the map was driven on.
 
 #include "byre/session/session_scene.h"
 
@@ -12,8 +12,8 @@ namespace byre {
 namespace {
 
 constexpr int kFramesOfLap = 120;             // frames, at 10 Hz, of a circle of 2 m radius
-constexpr std::size_t kFramesOnOneSide = 15;  // from the start, all at x > 1 m
-constexpr double kWallHalfWidth = 1.05;       // metres about x = 0 that are not mapped
+constexpr std::size_t kFramesOnOneSide = 15;  // frames from the start, all at x > 1 m
+constexpr double kWallHalfWidth = 1.05;       // metres, half width of the unmapped strip along x = 0
 
 SimulatedMission lap_at(std::uint64_t noise_seed, double height = 0.0) {
   SimulationOptions options;
@@ -23,7 +23,7 @@ SimulatedMission lap_at(std::uint64_t noise_seed, double height = 0.0) {
   return simulate_mission(simulated_rig(), way, options);
 }
 
-// Without what lies about x = 0, so that no way of the map leads from one side to the other.
+// The lap without the strip along x = 0, so that no path of the map crosses it.
 SimulatedMission parts_beside_the_wall(const SimulatedMission& lap) {
   SimulatedMission parts = lap;
   parts.truth.clear();
@@ -38,7 +38,7 @@ SimulatedMission parts_beside_the_wall(const SimulatedMission& lap) {
   return parts;
 }
 
-// A plan of 20 x 20 m in the map's own frame, with a wall of 0.2 m all along x = 0, but for a door as wide as that.
+// A plan of 20 x 20 m in the map's frame, with a wall of 0.2 m along x = 0. door: width of a gap in that wall, metres.
 PlanWalls wall_across(double door = 0.0) {
   constexpr double kPixel = 0.1;  // metres
   constexpr int kSide = 200;      // pixels
@@ -53,7 +53,7 @@ PlanWalls wall_across(double door = 0.0) {
     if (is_door) continue;
     for (const int column : {99, 100}) occupancy[static_cast<std::size_t>(row * kSide + column)] = kOccupiedPixel;
   }
-  // Walls around all of it, as the ends of the wall would be open else.
+  // The outer walls close the ends of the wall.
   for (int i = 0; i < kSide; ++i) {
     for (const int edge : {0, kSide - 1}) {
       occupancy[static_cast<std::size_t>(i * kSide + edge)] = kOccupiedPixel;
@@ -81,7 +81,7 @@ Session session_within(std::shared_ptr<const OfflineMap> offline, bool map_onlin
           std::move(offline)};
 }
 
-// Some frames on one side of the room; then all looks like the other one, to and fro.
+// Some frames on one side of the room, then frames of the other side, to and fro.
 std::vector<Frame> as_if_across(const SimulatedMission& lap, std::size_t frames) {
   constexpr std::size_t kToAndFro = 12;
   std::vector<Frame> seen;
@@ -181,9 +181,9 @@ TEST(PlaceBounds, DoNotHoldOtherCamerasToTheGround) {
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
-// The worst heights and tilts off the ground of a robot that is blind for 3 s, and told that it climbs and rolls.
+// Largest height and tilt off the ground of a robot without features for 3 s, whose measured motion climbs and rolls.
 Agreement worst_off_the_ground(bool is_planar) {
-  constexpr std::size_t kDark = 20, kLight = 50;  // numbers of the first frames that show nothing, and something again
+  constexpr std::size_t kDark = 20, kLight = 50;  // first frame without features, and first frame with features again
   const Rig rig = simulated_rig(robot_from_camera());
   const Trajectory way = circling_trajectory(kFramesOfLap, 10.0, 2.0, 1.0, robot_from_camera());
   SimulationOptions options;

@@ -1,5 +1,5 @@
-// Missions in a world that has not changed, by a camera whose calibration errs: a smooth field of errors in the image,
-// the same in every frame, which no number of points averages out.
+// Missions in an unchanged world with a calibration error: a smooth field of image errors, equal in all frames, which
+// does not average out over points.
 
 #include "byre/alignment.h"
 #include "byre/features/recalibrated.h"
@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 
 constexpr int kFrames = 90;
 
-// Pixels at the corners of the image, as an error of focal length, of the principal point and of the lens makes them.
+// Errors at the image corners, pixels, due to focal length, principal point and lens.
 struct SeenError {
   double zoom = 0.0;
   double shift = 0.0;
@@ -55,9 +55,9 @@ std::shared_ptr<const OfflineMap> mapped_circle() {
 }
 
 struct CalibrationOutcome {
-  double error = 0.0;            // metres, root mean square over the frames that have a pose
+  double error = 0.0;            // metres, root mean square over frames with a pose
   double worst_trusted = 0.0;    // metres
-  double offline_inliers = 0.0;  // a frame
+  double offline_inliers = 0.0;  // mean of a frame
   int poses = 0;
 };
 
@@ -91,7 +91,7 @@ CalibrationOutcome mission_outcome(bool map_online, const SeenError& error) {
                     error);
 }
 
-// Without any map, laid over the truth as well as it goes.
+// SLAM without an offline map, aligned with the truth.
 double error_without_map(const SeenError& error) {
   const SimulatedMission mission = visit(2);
   Session session(mission.rig, {}, Lanes(make_inline_executor()));
@@ -111,12 +111,12 @@ double error_without_map(const SeenError& error) {
 class MissionWithCalibrationError : public ::testing::TestWithParam<SeenError> {};
 
 TEST_P(MissionWithCalibrationError, IsNoWorseForMappingBesideTheOfflineMap) {
-  constexpr double kNoise = 0.002;  // metres: what two runs differ by anyhow
+  constexpr double kNoise = 0.002;  // metres, difference between two runs
   const CalibrationOutcome hybrid = mission_outcome(true, GetParam());
   const CalibrationOutcome localised = mission_outcome(false, GetParam());
   EXPECT_EQ(hybrid.poses, kFrames);
   EXPECT_LE(hybrid.error, 1.1 * localised.error + kNoise);
-  // An error of the zoom shifts every pose on an exact map: no mission that does not calibrate itself can know.
+  // A zoom error shifts every pose on an exact map; only self-calibration can detect it.
   EXPECT_LE(hybrid.error, std::max(localised.error, 1.1 * error_without_map(GetParam())) + kNoise);
   EXPECT_GT(hybrid.offline_inliers, 0.5 * localised.offline_inliers);
   EXPECT_LT(hybrid.worst_trusted, 0.2);
@@ -127,7 +127,6 @@ INSTANTIATE_TEST_SUITE_P(Errors, MissionWithCalibrationError,
                                            SeenError{.lens = 2.0}, SeenError{.disparity = 0.3},
                                            SeenError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
 
-// As the simulated rig has it.
 Calibration calibration_of(const Rig& rig) {
   Calibration calibration;
   calibration.left = {CameraModel::pinhole, rig.width, rig.height, rig.focal, rig.focal, rig.cx, rig.cy, {}};
@@ -151,7 +150,7 @@ TEST(MappingWithACalibration, IsTrustedOnceThatHasBeenLookedAt) {
   EXPECT_TRUE(was_looked_at);
 }
 
-// Jobs take a few frames each, while keyframes come.
+// Jobs take several frames, in which keyframes are added.
 TEST(MappingWithACalibration, HasEveryKeyframeAsTheRefinedOneShowsIt) {
   const SimulatedMission mission = visit(2);
   const Calibration real = calibration_of(mission.rig);
@@ -174,7 +173,7 @@ TEST(MappingWithACalibration, HasEveryKeyframeAsTheRefinedOneShowsIt) {
   EXPECT_GE(refined, 2);
   EXPECT_THAT(find_faults(session.map().online()), IsEmpty());
 
-  constexpr float kPrecise = 0.05f;  // pixels: what was changed in turns is rounded in turns
+  constexpr float kPrecise = 0.05f;  // pixels; repeated changes accumulate rounding errors
   const RectifiedChange refined_from_given(given, session.self_calibration()->calibration);
   for (const KeyframeId id : session.map().online().keyframe_ids()) {
     const Keyframe& keyframe = *session.map().online().find_keyframe(id);

@@ -1,4 +1,4 @@
-// Sessions whose frames are to be done sooner than they can be: what is left out, and what comes of it.
+// Sessions with a deadline that is shorter than the time of a frame: skipped work and its effects.
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/session/session_scene.h"
@@ -18,7 +18,7 @@ SimulatedMission timed_lap(std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(kFramesInTime, 10.0, 2.0, 1.0), options);
 }
 
-// A clock that has gone on by a second whenever somebody looks at it.
+// A clock that advances by a second at each call.
 FrameBudget budget_always_spent() {
   return FrameBudget(1e-3, [now = 0.0]() mutable { return now += 1.0; });
 }

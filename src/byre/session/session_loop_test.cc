@@ -1,4 +1,4 @@
-// Sessions that recognise places: loops, being lost and found, and maps that level off.
+// Sessions with place recognition: loops, relocalisation, and maps that stop growing.
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"
@@ -27,7 +27,7 @@ Session recognising_session(const Rig& rig) {
   return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary()};
 }
 
-// Metres from where the frame truly was, the first frame being the world.
+// Metres from the true position in the frame of the first pose.
 double error_of(const SimulatedMission& mission, std::size_t frame, const Pose& world_from_body) {
   const Pose truth = inverse(mission.truth[0].world_from_body) * mission.truth[frame].world_from_body;
   return (world_from_body.translation - truth.translation).norm();
@@ -40,7 +40,7 @@ int parts_of(const Session& session) {
 struct MissionResult {
   int loops = 0;
   int corrections = 0;
-  double last_error = 0.0;  // metres, mean over the last ten frames as they were published
+  double last_error = 0.0;  // metres, mean over the last ten causal poses
 };
 
 MissionResult run(Session& session, const SimulatedMission& mission) {
@@ -76,7 +76,7 @@ TEST(SessionThatRecognisesPlaces, FindsNoLoopWhereThereIsNone) {
 }
 
 #ifdef BYRE_SANITIZED
-constexpr bool kMemoryIsOurs = false;  // sanitizers keep what is freed
+constexpr bool kMemoryIsOurs = false;  // sanitizers keep freed memory
 #else
 constexpr bool kMemoryIsOurs = true;
 #endif
@@ -114,7 +114,7 @@ TEST(SessionThatRecognisesPlaces, FindsItselfAgainAfterBeingLost) {
   blind.features = std::make_shared<Features>();
   EXPECT_EQ(session.process(blind).state, State::relocalising);
 
-  Frame somewhere = mission.frames[10];  // where it was before, not where it was lost
+  Frame somewhere = mission.frames[10];  // an earlier place, not the one where the pose was lost
   somewhere.time = mission.frames[41].time;
   const FrameReport found = session.process(somewhere);
   EXPECT_EQ(found.state, State::tracking);
@@ -162,7 +162,7 @@ TEST(SessionThatRecognisesPlaces, GivesTheSameMapEachTime) {
   EXPECT_EQ(bytes(), bytes());
 }
 
-// Jobs that read the map see it as it was when they were begun, wherever they run.
+// Jobs that read the map see its state at their start, on any executor.
 TEST(SessionThatRecognisesPlaces, GivesTheSameMapWhetherItIsReadAtOnceOrBesideTracking) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&](std::unique_ptr<Executor> reading) {
@@ -194,7 +194,7 @@ TEST(SessionThatRecognisesPlaces, LeavesTheMapAsItIsWhileAJobReadsIt) {
       EXPECT_FALSE(report.keyframe_added);
       EXPECT_EQ(session.map().online().point_count(), points);
     }
-    if (report.keyframe_added && ++keyframes > 1) frames_since_keyframe = 0;  // the first is not read
+    if (report.keyframe_added && ++keyframes > 1) frames_since_keyframe = 0;  // no job reads the first keyframe
     points = session.map().online().point_count();
   }
   EXPECT_GT(keyframes, 10);
@@ -206,11 +206,11 @@ TEST(SessionThatRecognisesPlaces, LeavesTheMapAsItIsWhileAJobReadsIt) {
 TEST(SessionThatRecognisesPlaces, CarriesKeyframesAlongThatCameWhileTheMapWasCorrected) {
   const SimulatedMission mission = laps(1.6);
   SessionOptions options;
-  options.max_drift_to_fuse = 0.0;  // a correction of the whole map, however small the drift
+  options.max_drift_to_fuse = 0.0;  // corrects the whole map after any drift
   Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(15)), simulated_vocabulary());
   const MissionResult closed = run(session, mission);
   EXPECT_GE(closed.corrections, 1);
-  EXPECT_LT(closed.last_error, 0.05);  // in the noise, as it would not be with a keyframe left behind
+  EXPECT_LT(closed.last_error, 0.05);  // noise level; a keyframe left behind would exceed it
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 

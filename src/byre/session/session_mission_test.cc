@@ -1,4 +1,4 @@
-// Missions on an offline map: finding oneself in it, leaving it, being blinded, carried and lost.
+// Missions on an offline map: localising in it, leaving it, blinded, kidnapped and lost robots.
 
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -23,7 +23,7 @@ SimulatedMission circling(double laps, std::uint64_t noise_seed, std::uint64_t r
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, laps), options);
 }
 
-// A map of so many laps, by a visit before.
+// Map of so many laps, made by another visit.
 std::shared_ptr<const OfflineMap> mapped(double laps, std::uint64_t room = 1) {
   return offline_map_of(circling(laps, 1, room));
 }
@@ -39,7 +39,7 @@ Frame frame_of(Timestamp time, std::vector<Keypoint> keypoints, std::vector<Desc
                                                  std::vector<Patch>{})};
 }
 
-// A third of its features.
+// Frame with a third of its features.
 Frame thinned(const Frame& frame) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
@@ -50,12 +50,12 @@ Frame thinned(const Frame& frame) {
   return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
 }
 
-// The left third of the image.
+// Frame with the features of the left third of the image.
 Frame left_third_of(const Frame& frame) {
   return seen_beside(frame, simulated_rig(), [](const Eigen::Vector2f& pixel) { return pixel.x() > 250.0f; });
 }
 
-// What both see, as if one place looked like two.
+// Features of both frames, as if one place looked like two.
 Frame overlaid(const Frame& frame, const Frame& other) {
   std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
   std::vector<Descriptor> descriptors = to_vector(frame.features->descriptors());
@@ -64,7 +64,7 @@ Frame overlaid(const Frame& frame, const Frame& other) {
   return frame_of(frame.time, std::move(keypoints), std::move(descriptors));
 }
 
-// The frames of other, at the times of mission.
+// Frame with the time of another one.
 Frame at_time_of(const Frame& frame, const Frame& now) {
   return {now.time, frame.features};
 }
@@ -78,7 +78,7 @@ int count_trusted(const std::vector<FrameReport>& reports) {
       std::ranges::count(reports, Verdict::trusted, [](const FrameReport& report) { return report.health.verdict; }));
 }
 
-// What is seen through a lens with blots on it.
+// Frame seen through a lens with dirt.
 Frame soiled(const Frame& frame) {
   const auto is_behind = [](const Eigen::Vector2f& pixel) {
     const bool is_in_middle = pixel.x() > 250.0f && pixel.x() < 450.0f && pixel.y() > 150.0f && pixel.y() < 330.0f;
@@ -87,7 +87,7 @@ Frame soiled(const Frame& frame) {
   return seen_beside(frame, simulated_rig(), is_behind);
 }
 
-// The largest error of a pose that was reported as trusted, metres; the map's frame is the truth's.
+// Largest error of trusted poses, metres; the map's frame is that of the truth.
 double worst_trusted(const std::vector<FrameReport>& reports, const Trajectory& truth) {
   double worst = 0.0;
   for (std::size_t i = 0; i < reports.size(); ++i) {
@@ -97,7 +97,7 @@ double worst_trusted(const std::vector<FrameReport>& reports, const Trajectory& 
   return worst;
 }
 
-// By how much the odometry's steps differ from the true ones at most, metres.
+// Largest error of the steps of the odometry, metres.
 double worst_step(const std::vector<FrameReport>& reports, const Trajectory& truth) {
   double worst = 0.0;
   for (std::size_t i = 1; i < reports.size(); ++i) {
@@ -138,7 +138,7 @@ TEST(Mission, IsNotTrustedBeforeItSeesMuchOfTheMap) {
   EXPECT_EQ(reports[30].health.verdict, Verdict::trusted);
 }
 
-// From the start something looks like the other side of the room, and later what is really there comes into view too.
+// Part of the view looks like the other side of the room from the start; the true view appears later.
 void expect_to_leave_the_wrong_place(bool map_online) {
   const SimulatedMission mission = circling(1.0, 2);
   SessionOptions options;
@@ -172,7 +172,7 @@ TEST(Mission, LeavesAWrongPlaceAlsoWhereItOnlyLocalises) {
   expect_to_leave_the_wrong_place(false);
 }
 
-// What is there is hardly seen, and something looks like the other side of the room.
+// Frames with a third of their features, overlaid with those of the other side of the room.
 std::vector<Frame> seen_as_the_other_side(const SimulatedMission& lap) {
   std::vector<Frame> frames;
   for (std::size_t i = 0; i < kLapFrames / 2; ++i) {
@@ -301,7 +301,7 @@ TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
 TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
   SimulatedMission mission = circling(0.6, 2);
   std::ranges::reverse(mission.truth);
-  std::vector<Frame> frames;  // backwards: from what the map has not seen to where it begins
+  std::vector<Frame> frames;  // reversed: from outside the map to its first frame
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     frames.push_back(at_time_of(mission.frames[mission.frames.size() - 1 - i], mission.frames[i]));
   }
@@ -313,7 +313,7 @@ TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
   EXPECT_EQ(count(reports, SessionEvent::localised), 1);
   ASSERT_TRUE(reports.back().map_from_body);
   EXPECT_THAT(*reports.back().map_from_body, PoseNear(mission.truth.back().world_from_body, 0.05, kDegree));
-  // What came before is in the map's frame by then too.
+  // Earlier poses are in the map's frame as well.
   const Trajectory final = session.final_trajectory();
   ASSERT_EQ(final.size(), frames.size());
   EXPECT_THAT(final.front().world_from_body, PoseNear(mission.truth.front().world_from_body, 0.3, 3 * kDegree));
@@ -344,7 +344,7 @@ TEST(Mission, FindsItselfWhereItWasCarried) {
   std::vector<Frame> frames;
   Trajectory truth;
   for (std::size_t i = 0; i < 80; ++i) {
-    const std::size_t place = i < 30 ? i : i + 40;  // at once across the room
+    const std::size_t place = i < 30 ? i : i + 40;  // jump across the room
     frames.push_back(at_time_of(mission.frames[place], mission.frames[i]));
     truth.push_back(mission.truth[place]);
   }
@@ -354,7 +354,7 @@ TEST(Mission, FindsItselfWhereItWasCarried) {
   EXPECT_LT(worst_trusted(reports, truth), 0.03);
 }
 
-// Frames 30 to 39 show nothing; wheels measure all motion, and the body's pose then is that of these frames.
+// Frames 30 to 39 have no features; wheels measure all motion, and the body's pose is that of the frames around.
 struct BlindedDrive {
   std::vector<Frame> frames;
   Trajectory by_wheels;
@@ -410,7 +410,7 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }
-  for (const PointId id : map.point_ids()) {  // what stands before a part of one wall
+  for (const PointId id : map.point_ids()) {  // objects in front of a part of one wall
     MapPoint point = *map.find_point(id);
     if (point.position_in_world.x() < 4.0 || std::abs(point.position_in_world.y()) > 0.8) continue;
     point.position_in_world += Eigen::Vector3d(0.0, 0.06, 0.0);

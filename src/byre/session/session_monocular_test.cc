@@ -1,4 +1,4 @@
-// One camera: a map from its motion alone, and missions on a map that a stereo camera has made.
+// Monocular sessions: mapping by one camera, and missions on a stereo map.
 
 #include "byre/session/session_scene.h"
 #include "byre/trajectory_error.h"

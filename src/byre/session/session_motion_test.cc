@@ -1,4 +1,4 @@
-// Sessions that are told by wheels or a gyroscope how the body has moved.
+// Sessions with motion measured by wheels or a gyroscope.
 
 #include "byre/session/session_scene.h"
 #include "byre/trajectory_error.h"
@@ -10,8 +10,8 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kDark = 20;   // number of the first frame that shows nothing
-constexpr std::size_t kLight = 30;  // number of the first frame that shows something again
+constexpr std::size_t kDark = 20;   // number of the first frame without features
+constexpr std::size_t kLight = 30;  // number of the first frame with features again
 
 SimulatedMission lap() {
   SimulationOptions options;
@@ -28,7 +28,7 @@ Frame dark(const Frame& frame, const Rig& rig) {
   return result;
 }
 
-// What a session makes of the frames of a robot that is blind for an eighth of a lap.
+// Reports of a robot without features for an eighth of a lap.
 std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, bool is_told) {
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
@@ -40,10 +40,10 @@ std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, 
   return reports;
 }
 
-// Such a robot recognises no place.
+// Same drive without relocalisation.
 std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told, bool has_vocabulary) {
   SessionOptions options;
-  options.min_kept_share = 0.0;  // where the prediction leads astray, nothing else is tried
+  options.min_kept_share = 0.0;  // no fallback if the prediction is wrong
   options.relocalise.min_inliers = 1000000;
   Session session(mission.rig, options, Lanes(make_inline_executor()),
                   has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
@@ -122,7 +122,7 @@ TEST(ToldMotion, EndsABridgeWhereItIsNotTold) {
   }
 }
 
-// The way goes on elsewhere, so that nothing of the map is recognised after the dark.
+// The robot moves on, so that nothing of the map is recognised after the dark.
 TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
   const SimulatedMission mission = lap();
   constexpr std::size_t kLongDark = 30;  // frames
@@ -157,7 +157,7 @@ TEST(ToldMotion, RefusesAPlaceThatWheelsCannotHaveLedTo) {
   }
 }
 
-// How long the map's unit is by the frames so far.
+// Scale of the map by the frames so far, metres per unit.
 double metres_per_unit(const std::vector<FrameReport>& reports, const SimulatedMission& mission) {
   double seen = 0.0, true_way = 0.0;
   for (std::size_t i = 1; i < reports.size(); ++i) {
@@ -178,7 +178,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
   return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), visit);
 }
 
-// One camera that recognises nothing after the dark: what it begins there has the scale that it is told.
+// One camera that recognises nothing after the dark: the scale of its new submap is that of the measured motion.
 TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
@@ -207,7 +207,7 @@ TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
   EXPECT_LT(error->translation.rmse, 0.05);
 }
 
-// One camera begins its map after a second or so; wheels have told the way since the first frame.
+// One camera begins its map after about a second; wheels have measured its motion since the first frame.
 TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
@@ -233,7 +233,7 @@ TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
   }
 }
 
-// Once it is not told for a moment, nobody knows where the body is from where it began.
+// A gap in the measured motion makes the pose relative to the first frame unknown.
 TEST(ToldMotion, LeadsNobodyOnWhoWasNotToldOnce) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
@@ -270,7 +270,7 @@ TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
   }
 }
 
-// A measured motion that is metres off from frame 20 on, while points are visible.
+// A measured motion with an error of metres from frame 20 on, while points are visible.
 TEST(ToldMotion, DoesNotLoseATrackedPose) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {

@@ -13,22 +13,22 @@
 
 namespace byre {
 
-// Each leaf stands here once, and is handed to every function that needs it.
+// Options of all parts of a session. Each value occurs once and is passed to all functions that need it.
 struct SessionOptions {
-  int recording = 0;       // index that new keyframes get, see Keyframe::recording
-  bool is_planar = false;  // a mission holds the body to the ground that the map was driven on, see planar_prior
+  int recording = 0;       // index of new keyframes, see Keyframe::recording
+  bool is_planar = false;  // constrains a mission's body to the ground that the map was driven on, see planar_prior
   bool map_online = true;  // false: track on the offline map alone
-  int min_initial_points = MapperOptions{}.min_initial_points;  // see there
-  int local_keyframes = 15;     // keyframes of either map whose points are looked for in a frame
-  double min_kept_share = 0.5;  // share of the last inliers; with fewer the pose is sought without prediction too
-  double max_drift_to_fuse = MapperOptions{}.max_drift_to_fuse;  // see there
-  MonocularStartOptions monocular_start;                         // start with a rig that has no baseline
+  int min_initial_points = MapperOptions{}.min_initial_points;
+  int local_keyframes = 15;     // keyframes of either map whose points are matched
+  double min_kept_share = 0.5;  // share of the last inliers; fewer start a search without the prediction too
+  double max_drift_to_fuse = MapperOptions{}.max_drift_to_fuse;
+  MonocularStartOptions monocular_start;  // for a rig without baseline
   TrackOptions track;
   KeyframeOptions keyframes;
-  WindowOptions window;                                                         // window of local mapping
-  double max_relative_depth_sigma = MappingOptions{}.max_relative_depth_sigma;  // see there
-  double redundant_share = MappingOptions{}.redundant_share;                    // see there
-  LocaliseOptions relocalise;  // where the frame is looked for in the whole map, once lost
+  WindowOptions window;  // window of local mapping
+  double max_relative_depth_sigma = MappingOptions{}.max_relative_depth_sigma;
+  double redundant_share = MappingOptions{}.redundant_share;
+  LocaliseOptions relocalise;  // localisation in the whole map after a loss
   LoopOptions loops;
   MissionOptions mission;
   HealthOptions health;
@@ -38,7 +38,7 @@ struct SessionOptions {
   TrajectoryOptions trajectory;
 };
 
-// What the session's mapper goes by, its offline weight that of tracking.
+// Options of the session's mapper; its offline weight is that of tracking.
 MapperOptions mapper_options(const SessionOptions& options);
 
 }  // namespace byre

@@ -1,6 +1,6 @@
 #pragma once
 
-// What tests of the session have in common.
+// Helpers for tests of the session.
 
 #include "byre/session/session.h"
 #include "byre/slam/mission_scene.h"

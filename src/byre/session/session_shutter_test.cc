@@ -1,4 +1,4 @@
-// Sessions with a camera that reads its rows one after the other, which nobody has told them.
+// Sessions with a rolling shutter that the calibration does not model.
 
 #include "byre/alignment.h"
 #include "byre/session/session_scene.h"
@@ -32,7 +32,7 @@ struct ShutterOutcome {
   double readout_time = 0.0;
 };
 
-// On the map of a visit by another camera; or plain SLAM, laid over the truth as well as it goes.
+// A mission on the map of another visit, or SLAM aligned with the truth.
 ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
   static const std::shared_ptr<const OfflineMap> offline = offline_map_of(visit_by_rolling_shutter(1));
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary(), has_map ? offline : nullptr);

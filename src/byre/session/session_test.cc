@@ -1,4 +1,4 @@
-// The whole of tracking and mapping on simulated missions.
+// Tracking and mapping together on simulated missions.
 
 #include "byre/session/session.h"
 
@@ -21,9 +21,9 @@ using ::testing::Field;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr double kMaxError = 0.05;  // metres, root mean square over a mission of ten metres or a full turn
+constexpr double kMaxError = 0.05;  // metres, root mean square over a mission of 10 m or a full turn
 
-// What a session made of a mission.
+// Results of a mission.
 struct Outcome {
   std::vector<FrameReport> reports;
   Trajectory causal;
@@ -69,7 +69,8 @@ SimulatedMission figure_eight() {
                           figure_eight_trajectory(150, 15.0, 4.0, 1.0, robot_from_camera()), {});
 }
 
-// Both begin at the same pose; aligning positions would say nothing of the heading of a camera that turns in place.
+// Errors with the first poses aligned: alignment of positions would not measure the heading of a camera that turns in
+// place.
 AbsoluteTrajectoryError error_of(const Trajectory& estimate, const Trajectory& truth) {
   const Pose& start = truth.front().world_from_body;
   return absolute_trajectory_error(associate(estimate, truth, {}), {1.0, {start.rotation, start.translation}});
@@ -128,7 +129,7 @@ TEST(Session, ToleratesOutliers) {
   EXPECT_LT(error_of(result.causal, mission.truth).translation.rmse, kMaxError);
 }
 
-// --- the executors
+// --- executors
 
 void expect_identical(const Trajectory& first, const Trajectory& second) {
   ASSERT_EQ(first.size(), second.size());
@@ -172,7 +173,7 @@ TEST(Session, StaysNearTheTruthWhileMappingRunsBeside) {
   }
 }
 
-// Hands over what the test wants, when it wants it, in place of what mapping makes.
+// Returns the deltas of the test in place of mapping results, at the times that the test chooses.
 class ScriptedExecutor final : public Executor {
  public:
   using Mapping = std::function<MapDelta()>;
@@ -192,7 +193,7 @@ class ScriptedExecutor final : public Executor {
   bool idle_ = true;
 };
 
-// A camera that turns by 3.6 degrees from frame to frame, and a session that seldom takes a keyframe.
+// A camera that turns by 3.6 degrees per frame, in a session that seldom adds a keyframe.
 class SessionWithScriptedMapping : public ::testing::Test {
  protected:
   static SessionOptions options() {
@@ -203,7 +204,7 @@ class SessionWithScriptedMapping : public ::testing::Test {
     return options;
   }
 
-  // Frames of the mission, in any order of place, as they follow each other in time.
+  // Processes the frame of any place of the mission at the next frame time.
   FrameReport process(std::size_t place) {
     Frame frame = mission_.frames[place];
     frame.time = mission_.frames[processed_++].time;
@@ -246,7 +247,7 @@ TEST_F(SessionWithScriptedMapping, LetsAnExceptionOfMappingReachTheCaller) {
   EXPECT_THROW(process(11), std::runtime_error);
 }
 
-// As a loop closing would: everything, by far more than a frame's search would bridge.
+// The delta of a loop closing: moves the whole map by far more than a frame's search radius.
 TEST_F(SessionWithScriptedMapping, MovesAlongWithTheMap) {
   for (std::size_t place = 0; place <= 10; ++place) process(place);
   const Pose new_world_from_world{rotation_exp({0.0, 0.0, 0.3}), {1.0, 0.5, 0.0}};
@@ -272,7 +273,7 @@ TEST_F(SessionWithScriptedMapping, MovesAlongWithTheMap) {
               PoseNear(new_world_from_world * true_world_from_body(5), 0.05, kDegree));
 }
 
-// --- beginning and end of tracking
+// --- begin and end of tracking
 
 class SessionOfACircle : public ::testing::Test {
  protected:

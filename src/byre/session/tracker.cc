@@ -37,8 +37,8 @@ bool is_like_another_place(const TrackedFrame& found) {
   return static_cast<double>(found.features.size()) < kLeastShare * found.expected;
 }
 
-// Mapping may have removed a keyframe since, but never the newest. What lies in another frame, left when the pose was
-// lost, is not where the pose says.
+// Mapping may have removed the keyframe, but never the newest. A keyframe in the frame of an earlier submap, left after
+// a loss, is not usable either.
 bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const {
   return reference && mapper.online().find_keyframe(*reference) != nullptr &&
          mapper.submaps().is_in_present_frame(*reference);
@@ -64,7 +64,7 @@ const ReusedVector<PointId>& Tracker::offline_points_around(const Pose& predicte
   return offline_.points;
 }
 
-// None where offline points hold the pose and time is short.
+// Few online points if time is short; none if offline points constrain the pose.
 const ReusedVector<PointId>& Tracker::online_points(const Scene& scene) {
   if (!scene.is_pressed) return points_around_reference(scene.mapper);
   few_.clear();
@@ -110,9 +110,9 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   };
   auto best = track_around(predicted);
   if (best && scene.is_pressed) return best;
-  // A sudden loss of matches may mean that the prediction led astray: look again without it.
+  // A sudden loss of matches may be due to a wrong prediction: try others.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
-  // Faulty wheels do not lose a pose: the camera's own velocity is tried, then the last pose.
+  // Faulty wheels must not lose a pose: the camera's own velocity is tried, then the last pose.
   const auto by_velocity = motion.told() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
   for (const std::optional<Pose>& pose :
        {by_velocity, by_velocity ? std::optional(last.camera_from_world) : by_velocity}) {

@@ -13,62 +13,61 @@
 
 namespace byre {
 
-// Whether a frame was found from nothing by so few of the points that should be seen there that it is another place,
-// which looks alike, as the two ends of a barn do. For a map of the same drive, in which things look as they did: where
-// a frame belongs, a larger share is seen.
+// Whether a find has so few of the expected points as inliers that it is a look-alike place, such as the other end of a
+// barn. For maps of the same drive, in which nothing changes: the right place has a larger share.
 bool is_like_another_place(const TrackedFrame& found);
 
-// A frame found in one map alone.
+// Track of a frame on one map alone.
 HybridTrack found_in(Origin origin, TrackedFrame found);
 
-// Finds where a frame was taken from: by prediction, or from nothing. Reads the maps, and changes nothing but what it
-// keeps from frame to frame. Called from the session's thread.
+// Localises frames by prediction or by place recognition. Reads the maps; changes only its own state from frame to
+// frame. Called from the session's thread.
 class Tracker {
  public:
   explicit Tracker(const SessionOptions& options) : options_(options) {}
 
-  // What frames are tracked on.
+  // Maps and constraints for a frame.
   struct Scene {
     const Rig& rig;
     const Mapper& mapper;
-    const Mission* mission = nullptr;       // on an offline map
+    const Mission* mission = nullptr;       // nullptr without an offline map
     bool weigh_focal_lengths = false;       // see FocalCheck
-    std::optional<PoseHint> hint{};         // where alone a frame is looked for in the offline map
-    bool is_place_proven = false;           // so offline points cannot put the camera just anywhere
-    std::optional<PlaceBounds::Way> way{};  // since the robot was last trusted to be somewhere
-    const DrivenGround* ground = nullptr;   // ground that the body is held to; nullptr for none
-    bool is_pressed = false;                // few online points are looked for, see FrameCuts
-    HiddenCells hidden{};                   // where no points are asked for
+    std::optional<PoseHint> hint{};         // limits localisation in the offline map
+    bool is_place_proven = false;           // limits the pose from offline points
+    std::optional<PlaceBounds::Way> way{};  // motion since the last trusted pose
+    const DrivenGround* ground = nullptr;   // ground that constrains the body; nullptr: none
+    bool is_pressed = false;                // few online points are matched, see FrameCuts
+    HiddenCells hidden{};                   // image cells without expected points
   };
   // The last frame that had a pose.
   struct LastPose {
     Timestamp time{};
     Pose camera_from_world;
-    KeyframeId keyframe;  // it lay around
+    KeyframeId keyframe;  // keyframe that the pose is relative to
   };
 
-  // From where the motion leads. Precondition: the map has a submap.
+  // Tracks from the predicted pose. Precondition: the map has a submap.
   std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
                                    const MotionModel& motion);
   struct Find {
     // Places that show the frame, most inliers first. Online or offline by their references; several only offline.
     std::vector<HybridTrack> places;
-    Doubt refused = Doubt::none;  // why the robot cannot be where it was found in the offline map
+    Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
   };
-  // Anywhere in the maps, the offline one first.
+  // Localises in all of the maps, the offline one first.
   Find find(const Frame& frame, const Scene& scene) const;
-  // Whether a tracked pose does not bear out what was found from nothing.
+  // Whether a tracked pose does not meet the criteria of localisation.
   bool is_doubtful(const HybridTrack& track, const Scene& scene) const;
 
-  // That is where the frame was taken from, and where the next one is looked for.
+  // Makes the track the reference of the next frame.
   void note(const HybridTrack& track);
   // The frame has become a keyframe.
   void restart_from(KeyframeId newest) { reference_ = newest; }
-  // Offline points around the last prediction, suspended ones included.
+  // Offline points around the last prediction, suspended points included.
   const ReusedVector<PointId>& offline_points() const { return offline_.points; }
 
  private:
-  // Points around a keyframe, kept while that and the map stay: frames come more often than either changes.
+  // Points around a keyframe, cached until the keyframe or the map changes.
   struct PointsAround {
     std::optional<KeyframeId> keyframe;
     int revision = 0;  // revision of the map
@@ -84,12 +83,12 @@ class Tracker {
 
   SessionOptions options_;  // constant after construction
 
-  std::optional<KeyframeId> reference_;  // online, whose points are looked for
-  int last_inliers_ = 0;                 // in the last frame tracked
+  std::optional<KeyframeId> reference_;  // online keyframe whose points are matched
+  int last_inliers_ = 0;                 // inliers of the last tracked frame
   PointsAround online_;
   PointsAround offline_;
-  ReusedVector<PointId> few_;         // online points looked for where time is short
-  ReusedVector<PointId> candidates_;  // memory
+  ReusedVector<PointId> few_;         // online points matched if time is short
+  ReusedVector<PointId> candidates_;  // buffer
 };
 
 }  // namespace byre

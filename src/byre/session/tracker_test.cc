@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// A map of the first frame, which the frames after it are tracked on.
+// Tracks frames on the map of the first frame.
 class TrackerOnAMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
@@ -24,7 +24,7 @@ class TrackerOnAMap : public ::testing::Test {
   Tracker::LastPose last(std::size_t frame) const {
     return {mission_.frames[frame].time, true_pose(frame), *mapper_.newest_keyframe()};
   }
-  // The motion that led to a frame.
+  // Motion up to a frame.
   MotionModel motion_to(std::size_t frame) const {
     MotionModel motion;
     motion.reach(log_pose(true_pose(frame) * inverse(true_pose(frame - 1))) / 0.1);
