@@ -6,13 +6,13 @@
 
 namespace byre {
 
-// Gaussian knowledge of how a calibration errs, in the parameters' sigmas.
+// Gaussian estimate of the calibration error, in the parameters' sigmas.
 struct CalibrationKnowledge {
   CalibrationMatrix information = CalibrationMatrix::Zero();
   CalibrationVector expected = CalibrationVector::Zero();
 };
 
-// What measurements say by themselves, also where they leave directions open: normal equations.
+// Normal equations of measurements without a prior; they may leave directions undetermined.
 struct CalibrationEquations {
   CalibrationMatrix information = CalibrationMatrix::Zero();
   CalibrationVector right_side = CalibrationVector::Zero();

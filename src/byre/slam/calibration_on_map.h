@@ -8,22 +8,21 @@
 
 namespace byre {
 
-// What a mission tells of the calibration of its cameras: its frames see points of the offline map, which are known.
-// A frame adds its share of the normal equations with its pose eliminated, so nothing but a sum is kept. Of one rig.
+// Calibration estimate from a mission's observations of offline points, whose positions are given. A frame adds normal
+// equations with its pose eliminated, so only a sum is stored. For one rig.
 class CalibrationOnMap {
  public:
-  // given: by which the rig's images are rectified. Throws InputError when that cannot be done.
-  // prior_sigmas: how far off the calibration is taken to be at first, in sigmas of a good one.
+  // given: calibration that rectifies the rig's images. Throws InputError if it cannot. prior_sigmas: standard
+  // deviation of the given calibration, in sigmas of a good one.
   CalibrationOnMap(const Calibration& given, double prior_sigmas);
 
-  // A frame that was tracked by the calibration given, changed by what was found since (in the parameters' sigmas):
-  // features, rig and pose are as the changed one has them.
+  // Adds a frame tracked with the given calibration plus change (in the parameters' sigmas), which features, rig and
+  // pose correspond to.
   void add(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
            const CalibrationVector& change);
 
   int frames() const { return frames_; }
 
-  // What all frames so far say.
   RefinedCalibration estimate() const;
 
  private:

@@ -6,10 +6,10 @@
 
 namespace byre {
 
-// The id of a point of the online map: a type of its own, so that nothing can name an offline point to change it.
+// Id of a point of the online map. A separate type, so that no delta can change an offline point.
 struct OnlinePointId {
   std::uint32_t number = 0;
-  operator PointId() const { return {Origin::online, number}; }  // every online point is a point
+  operator PointId() const { return {Origin::online, number}; }
 };
 
 struct OnlineKeyframeId {
@@ -31,16 +31,16 @@ struct UpdatedPoint {
 struct NewObservation {
   OnlineKeyframeId keyframe;
   int feature = 0;
-  Sighting sighting;  // names the point; it may be an offline one
+  Sighting sighting;  // its point may be offline
 };
 
 struct RemovedObservation {
   OnlineKeyframeId keyframe;
   int feature = 0;
-  PointId point;  // point that the feature saw; if it sees another by now, that one stays
+  PointId point;  // point that the feature saw; ignored if it sees another one now
 };
 
-// An offline keyframe is found to see an online point: kept with the point, so that nothing offline changes.
+// View of an online point by an offline keyframe. Stored with the point, so that offline data do not change.
 struct NewForeignView {
   OnlinePointId point;
   ForeignView view;
@@ -48,13 +48,13 @@ struct NewForeignView {
 
 struct RemovedForeignView {
   OnlinePointId point;
-  Observation observation;  // view of the point that is gone; if it is of another point by now, that one keeps it
+  Observation observation;  // removed view; ignored if it is of another point now
 };
 
 struct NewPoint {
   MapPoint point;
-  std::vector<NewObservation> observations;  // sightings, whose point is set when the new point gets its id
-  std::vector<ForeignView> foreign_views;    // foreign views, whose point is set when the new point gets its id
+  std::vector<NewObservation> observations;  // sightings; their point is set once the new point has an id
+  std::vector<ForeignView> foreign_views;    // foreign views; their point is set once the new point has an id
 };
 
 // All that mapping may write. Names only online things, so an offline map cannot change.
@@ -70,15 +70,15 @@ struct MapDelta {
   std::vector<OnlineKeyframeId> removed_keyframes;
 };
 
-// A window without what its keyframes see and who observes its points: enough of it to tell later what has changed.
+// A window without features, sightings and observations: enough for difference() later.
 MapWindow outline_of(const MapWindow& window);
 
-// What mapping has changed between a window as it was cut, or its outline, and as it is now.
+// Changes from a window before mapping, or its outline, to the window after.
 MapDelta difference(const MapWindow& before, const MapWindow& after);
-// The same, where the map is as it was when the window was cut of it. Precondition: all keyframes are online ones.
+// Same for a map that has not changed since the window was cut from it. Precondition: all keyframes are online.
 MapDelta difference(const Map& before, const MapWindow& after);
 
-// Skips whatever the map no longer holds.
+// Skips items that the map no longer holds.
 void apply(const MapDelta& delta, Map& online);
 
 }  // namespace byre

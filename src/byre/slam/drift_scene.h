@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps that have drifted on the way round, as if nothing had been recognised on coming back.
+// Maps with drift after a lap, without any recognised loop.
 
 #include "byre/alignment.h"
 #include "byre/slam/place_scene.h"
@@ -18,14 +18,13 @@ inline Rig monocular_rig() {
 }
 
 struct LapOptions {
-  int frames = 72;  // all of them
-  int step = 3;     // frames from keyframe to keyframe
-  // Keyframes that see a point; those after them see another one there, as round many corners.
+  int frames = 72;  // total
+  int step = 3;     // frames between keyframes
+  // Most keyframes that see a point; later ones see a new point instead, as behind corners.
   std::size_t max_views = 1000;
 };
 
-// A lap and a fifth. The first half of it is where it should be; from there on the
-// drift grows evenly.
+// A lap and a fifth. The first half has no drift; from there on the drift grows evenly.
 class DriftedLap {
  public:
   DriftedLap(const Rig& rig, const Similarity& whole_drift, const LapOptions& options = {})
@@ -41,7 +40,7 @@ class DriftedLap {
     for (const PointId id : truth.point_ids()) add_visits(truth, id);
   }
 
-  // How far the map lies from the truth at a keyframe: point_in_map = drift * point_in_truth.
+  // Drift at a keyframe: point_in_map = drift * point_in_truth.
   Similarity drift_at(KeyframeId id) const {
     const double half = 0.5 * keyframes_;
     const double share = std::max(0.0, (id.number - half) / (keyframes_ - 1 - half));
@@ -56,7 +55,7 @@ class DriftedLap {
     return true_camera_from_world(mission, frame_at(mission, map.find_keyframe(id)->frame.time));
   }
 
-  // Largest error of a keyframe's position, metres, after the map was laid over the truth as well as it goes.
+  // Largest position error of a keyframe after alignment with the truth, metres.
   double worst_error(const Map& adjusted, Scale scale) const {
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const KeyframeId id : adjusted.keyframe_ids()) {
@@ -83,7 +82,7 @@ class DriftedLap {
     index.add(map.add_keyframe(keyframe), keyframe.words);
   }
 
-  // A landmark that comes into view again, after keyframes that did not see it, is taken for another one.
+  // A landmark that reappears after more than kLongestGap keyframes becomes a new point.
   void add_visits(const Map& truth, PointId id) {
     constexpr std::uint32_t kLongestGap = 4;  // keyframes
     std::vector<Observation> visit;

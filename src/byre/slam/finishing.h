@@ -14,13 +14,13 @@ struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
   std::vector<KeyframeMotion> motions;  // see told_motions
-  PlaceNoise noise;                     // noise put on the places that the search for loops is given
-  // Number of the first keyframe that came since the map was finished before: what lies far from all that came stays as
-  // it is, see recent_map. 0: all of the map came.
+  PlaceNoise noise;                     // noise of the place candidates of the loop search
+  // Number of the first new keyframe, added since the map was last finished. Parts far from new keyframes do not
+  // change, see recent_map. 0: the whole map is new.
   std::uint32_t first_new = 0;
 };
 
-// How sound a map is by what can be known without any truth.
+// Quality of a map, measured without ground truth.
 struct MapQuality {
   int keyframes = 0;
   int points = 0;
@@ -31,31 +31,30 @@ struct MapQuality {
 };
 
 struct FinishReport {
-  int loops = 0;                       // places found again that the map did not know of
-  std::vector<double> loop_drifts;     // pixels by which both sides of a loop had drifted apart, see apparent_drift
-  std::vector<double> loop_residuals;  // metres by which a loop still disagrees with what was seen
-  int keyframes_removed = 0;           // keyframes found redundant
-  int points_removed = 0;              // points found weak
-  LengthChanges length_changes;        // growth that what lies relative to a keyframe must follow, see apply_correction
+  int loops = 0;                       // loops found
+  std::vector<double> loop_drifts;     // pixels of drift between both sides of a loop, see apparent_drift
+  std::vector<double> loop_residuals;  // metres of disagreement between a loop and the final map
+  int keyframes_removed = 0;           // redundant keyframes
+  int points_removed = 0;              // weak points
+  LengthChanges length_changes;        // scale changes for poses relative to keyframes, see apply_correction
   MapQuality before;
   MapQuality after;
 };
 
 struct FinishHooks {
-  std::function<bool()> should_stop;                  // asked now and then; what was reached by then is kept
+  std::function<bool()> should_stop;                  // polled; true keeps the present result
   std::function<void(const char* step)> before_step;  // "looking for loops", ...
 };
 
 MapQuality quality_of(const Map& map);
 
-// Places that keyframes that came went back to without the map knowing it, each confirmed by the keyframes around. From
-// the newest keyframe backwards; those around one that has found a loop are not asked again.
+// Loops of new keyframes that the map does not contain, each confirmed by the keyframes around. Searches from the
+// newest keyframe backwards; skips keyframes around a found loop.
 std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks);
 
-// What a mapping run ends with: a last search for loops from all keyframes that came, correction and bundle adjustment
-// of what lies around these, removal of weak points and redundant keyframes there. Where a loop disagrees after that,
-// all of the map is corrected.
+// Last step of a mapping run: searches loops from all new keyframes, corrects and bundle-adjusts the map around them,
+// and removes weak points and redundant keyframes there. Corrects the whole map if a loop still disagrees.
 FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks);
 
 }  // namespace byre

@@ -7,8 +7,8 @@
 
 namespace byre {
 
-// How far points lie off where a frame sees them, on the whole, once its pose is refined with the focal length as it
-// is, and with one that is shorter and longer by kFocalStep. Square pixels; single points count up to a bound.
+// Sums of squared reprojection errors of a frame after pose refinement with the present focal length, and with one
+// shorter or longer by the share kFocalStep. Square pixels, bounded for each point.
 struct FocalEvidence {
   double shorter = 0.0;
   double as_it_is = 0.0;
@@ -18,35 +18,36 @@ struct FocalEvidence {
 
 constexpr double kFocalStep = 0.05;
 
-// The pose is refined already as it is, and the guess for the other two. Empty where one of them finds none.
+// camera_from_world: refined with the present focal length; initial value for the other two. Empty if a refinement
+// fails.
 std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
                                                  std::span<const PoseObservation> observations);
 
 struct FocalCheckOptions {
-  int asked_first = 5;   // frames, one after the other
-  int asked_every = 20;  // frames, from then on
+  int asked_first = 5;   // first frames, consecutive
+  int asked_every = 20;  // interval afterwards, frames
 };
 
-// Whether the points of a map that is right fit what a camera sees by the focal length it is said to have. A pose alone
-// makes up for a wrong one by standing nearer or farther; the depths of points then do not fit together.
+// Detects a wrong focal length of the calibration from points of a correct map. A pose alone compensates a wrong focal
+// length by its distance; points at different depths then disagree.
 class FocalCheck {
  public:
   explicit FocalCheck(const FocalCheckOptions& options = {}) : options_(options) {}
 
-  // Whether the next frame is to be asked. Call it once for each frame.
+  // Whether to weigh the next frame. Call it once for each frame.
   bool is_due();
   void note(const FocalEvidence& evidence);
 
-  // By which share the focal length is too long; 0 while nothing is known.
+  // Relative error of the focal length, positive if too long; 0 without evidence.
   double error() const;
-  // The error in its standard deviations, as one frame knows it: what a view says wrongly, the next one repeats.
+  // error() in standard deviations of a single frame: the errors of one view repeat in the next.
   double sigmas() const;
   bool is_off() const { return is_off_; }
 
  private:
   FocalCheckOptions options_;
   FocalEvidence sum_;
-  double weight_ = 0.0;  // number of frames in the sum, older ones counting less
+  double weight_ = 0.0;  // number of frames in the sum, with decay
   bool is_off_ = false;
   int frames_ = 0;
   int asked_ = 0;

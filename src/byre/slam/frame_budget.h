@@ -7,47 +7,46 @@
 
 namespace byre {
 
-// How long a stage takes, from how long it took: the mean and how far single times lie off it, both forgetting, as
-// round trips are timed in TCP (Jacobson, Congestion Avoidance and Control, 1988).
+// Expected time of a stage, from the mean and mean deviation of past times, both with exponential decay, as round trips
+// are timed in TCP (Jacobson, Congestion Avoidance and Control, 1988).
 class ExpectedTime {
  public:
   void note(double seconds);
-  // The stage was left out: little by little it is thought to be shorter, so that it is tried again.
+  // The stage was skipped: the expectation decays, so that it is tried again.
   void fade();
-  // Seldom exceeded; empty before the stage was ever done.
+  // Seldom exceeded; empty before the first measurement.
   std::optional<double> seconds() const;
   double mean() const { return mean_.value_or(0.0); }
 
  private:
   std::optional<double> mean_;
-  double deviation_ = 0.0;  // mean absolute one
+  double deviation_ = 0.0;  // mean absolute deviation
 };
 
-// Sees to it that a frame takes no longer than it may, by leaving work out where times lately say that it would. Online
-// points come first, then the right image; offline points are never left out. A frame on time costs nothing but looks
-// at the clock. Called from the session's thread.
+// Keeps frames within a deadline: skips work if recent times predict an overrun, first online points, then the right
+// image, never offline points. A frame on time costs only readings of the clock. Called from the session's thread.
 class FrameBudget {
  public:
-  using Clock = std::function<double()>;  // seconds, from any moment on
+  using Clock = std::function<double()>;  // seconds from an arbitrary origin
 
-  // deadline: wall time that a frame may take, seconds; 0: as long as it needs.
+  // deadline: wall time of a frame, seconds; 0: none.
   explicit FrameBudget(double deadline, Clock clock = wall_clock());
 
-  void begin();  // a frame has come
-  // Asked before its images are looked at.
+  void begin();  // a frame arrives
+  // Before the images are processed.
   bool has_time_for_right_image();
-  // Tracking begins: what is left out of the frame, its right image included.
+  // Begins tracking. Returns all skipped work of the frame, the right image included.
   FrameCuts begin_tracking();
-  void note_tracked();  // the frame was tracked, and not looked for from nothing
-  // Nothing is left out of the next frame: a keyframe waits for depths, or too few points were seen in this one.
+  void note_tracked();  // the frame was tracked, without a place search
+  // Skips nothing in the next frame: a keyframe waits for depths, or this frame had too few points.
   void keep_next_whole() { is_next_whole_ = true; }
-  void end();  // there is a report
+  void end();  // the report is complete
 
-  const FrameCuts& cuts() const { return cuts_; }  // what was left out of this frame
-  bool is_late() const { return is_late_; }        // it took longer than it may
+  const FrameCuts& cuts() const { return cuts_; }  // skipped work of this frame
+  bool is_late() const { return is_late_; }        // the frame exceeded the deadline
 
  private:
-  // A stage whole, and with what may be left out of it.
+  // Times of a stage, whole and with skipped work.
   struct Stage {
     ExpectedTime whole;
     ExpectedTime cut;
@@ -66,13 +65,14 @@ class FrameBudget {
 
   Stage images_;  // until tracking begins
   Stage tracking_;
-  ExpectedTime rest_;  // from tracking on: by its mean, as nothing left out spares a keyframe's frame its longer time
+  // Time after tracking; expected by its mean, since skipped work does not shorten the longer frames of keyframes.
+  ExpectedTime rest_;
   double begun_ = 0.0;
-  double tracking_begun_ = 0.0;           // seconds after begin(), as the next
-  std::optional<double> tracking_ended_;  // empty where the frame was not tracked
+  double tracking_begun_ = 0.0;           // seconds after begin()
+  std::optional<double> tracking_ended_;  // seconds after begin(); empty: not tracked
   FrameCuts cuts_;
   bool is_late_ = false;
-  bool is_whole_ = false;  // nothing is left out of this frame
+  bool is_whole_ = false;  // nothing is skipped in this frame
   bool is_next_whole_ = false;
 };
 

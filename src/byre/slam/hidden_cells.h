@@ -10,14 +10,13 @@
 
 namespace byre {
 
-// Cells of a camera's image that show nothing of the world, as dirt on the lens hides it. Points are not asked for
-// there, so none is missing.
+// Image cells that show nothing of the world, such as cells behind dirt. No points are expected there.
 class HiddenCells {
  public:
   static constexpr int kColumns = 16, kRows = 10;
   static constexpr auto kCells = static_cast<std::size_t>(kColumns * kRows);
 
-  // The cell of a pixel, row after row; outside the image the nearest one.
+  // Cell of a pixel, row by row; the nearest cell for pixels outside the image.
   static std::size_t cell_of(const Eigen::Vector2d& pixel, const Rig& rig) {
     const int column = std::clamp(static_cast<int>(kColumns * pixel.x() / rig.width), 0, kColumns - 1);
     const int row = std::clamp(static_cast<int>(kRows * pixel.y() / rig.height), 0, kRows - 1);

@@ -10,10 +10,10 @@
 namespace byre {
 
 struct HindsightOptions {
-  std::size_t frames = 2000;  // most frames that wait for the end, 10 kB each; older ones are settled earlier
+  std::size_t frames = 2000;  // most frames kept until the end, 10 kB each; older ones are settled earlier
 };
 
-// A point and where a frame saw it.
+// A point and its measurement in a frame.
 struct RememberedPoint {
   PointId point;
   Eigen::Vector3f measured;  // u, v, disparity; pixels
@@ -21,30 +21,29 @@ struct RememberedPoint {
   float disparity_sigma = -1.0f;  // negative: no disparity
 };
 
-// Measured with the rig there was; where the camera stands is told of the rig there is now.
+// A frame as it was tracked, with `rig`. Poses are of the present rig, turned by now_from_then.
 struct RememberedFrame {
-  std::size_t number = 0;  // the caller's
+  std::size_t number = 0;  // number given by the caller
   Rig rig;
   Pose now_from_then;
   std::vector<RememberedPoint> points;
 };
 
-// What frames saw, kept until mapping has settled it. A frame is tracked on points that were seen a few times only; at
-// the end they are known much better, and so is where the frame was taken from.
+// Measurements of frames, kept until mapping has settled. A frame is tracked on points with few observations; once
+// these are more precise, the pose of the frame is refined.
 class Hindsight {
  public:
   explicit Hindsight(const HindsightOptions& options) : options_(options) {}
 
-  // A frame of a higher number than any before. Not kept where mostly offline points hold it, which stay where they
-  // are.
+  // Numbers ascend. Skips frames with mostly offline inliers, since offline points do not move.
   void note(std::size_t number, const Rig& rig, const Features& features, const TrackedFrame& tracked);
-  // From here on poses are of another rig.
+  // Poses from here on are of another rig.
   void turn_rig(const Pose& after_from_before);
-  // Frames from this number on are not to be looked at again.
+  // Drops the frames from this number on.
   void forget_from(std::size_t number);
 
   std::optional<std::size_t> first() const;       // number of the oldest frame
-  std::optional<RememberedFrame> take_overdue();  // the oldest, where more wait than options say
+  std::optional<RememberedFrame> take_overdue();  // the oldest frame, if more than options.frames wait
   std::optional<RememberedFrame> take_oldest();
 
  private:
@@ -52,7 +51,7 @@ class Hindsight {
   std::deque<RememberedFrame> frames_;
 };
 
-// Where the frame was taken from, as the map has its points by now. Empty when too few are left or agree.
+// Pose of the frame by the present positions of its points. Empty if too few are left or agree.
 std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& camera_from_world, const MapView& map,
                                       const TrackOptions& tracking);
 

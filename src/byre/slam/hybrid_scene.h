@@ -1,6 +1,6 @@
 #pragma once
 
-// A mission on an offline map, as the tests of mapping need it: two visits to the same room.
+// A mission on an offline map for tests of mapping: two visits to the same room.
 
 #include "byre/map/map.h"
 #include "byre/map/map_view.h"
@@ -13,16 +13,16 @@ namespace byre {
 
 inline constexpr int kFramesPerKeyframe = 2;
 
-// Half of the landmarks are known: those with even numbers. The offline map knows no others.
+// Landmarks of the offline map: half of all, those with even numbers.
 inline bool is_known(int landmark) {
   return landmark % 2 == 0;
 }
 
 struct HybridScene {
-  SimulatedMission first;   // made the offline map
-  SimulatedMission second;  // 10 cm beside it
+  SimulatedMission first;   // visit that made the offline map
+  SimulatedMission second;  // 10 cm off the first
   Map offline{Origin::offline};
-  Map online{Origin::online};  // map of the second visit: a keyframe every second frame
+  Map online{Origin::online};  // map of the second visit; every second frame is a keyframe
   std::map<int, PointId> known_points;
 
   MapView view() const { return {&offline, online}; }
@@ -36,7 +36,7 @@ inline SimulatedMission visit(std::uint64_t noise_seed, double radius, Simulatio
   return simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, radius, 0.25), options);
 }
 
-// What the online keyframes see of these landmarks they see as points of the offline map.
+// Replaces online points of known landmarks by the offline points.
 inline void see_offline(HybridScene& scene) {
   for (const PointId id : scene.online.point_ids()) {
     const auto known = scene.known_points.find(true_landmark(scene.second, scene.online, id));
@@ -52,8 +52,8 @@ inline void see_offline(HybridScene& scene) {
   }
 }
 
-// Both maps true. The online one has points of its own for all landmarks, known or not. Offline keyframes have features
-// that see no point, as those of maps from elsewhere may.
+// Two true maps. The online map has points of its own for all landmarks. Some features of offline keyframes see no
+// point, as in imported maps.
 inline HybridScene two_true_maps(const SimulationOptions& options) {
   HybridScene scene;
   scene.first = visit(1, 2.0, options);
@@ -89,7 +89,7 @@ inline void displace(Map& online, const Pose& displaced_from_world) {
   }
 }
 
-// Maps one keyframe after the other, as a session does.
+// Maps one keyframe after another, as a session does.
 inline void map_in_order(HybridScene& scene, const MappingOptions& options) {
   for (const KeyframeId id : scene.online.keyframe_ids()) {
     const MapWindow window = cut_window(scene.view(), {id}, options.window);

@@ -11,13 +11,13 @@
 
 namespace byre {
 
-// By how much the online map may lie off the offline one, for all that is known.
+// Bound on the offset between online and offline map.
 struct DriftBound {
   double translation = 0.05;  // metres
   double rotation = 0.02;     // radians
 };
 
-// How far apart two poses camera_from_world put the camera.
+// Difference of two poses camera_from_world.
 Agreement agreement_of(const Pose& one, const Pose& other);
 
 bool is_within(const Agreement& agreement, const DriftBound& drift);
@@ -30,47 +30,46 @@ struct HybridTrack {
   int offline_expected = 0;
   int offline_matches = 0;
   int offline_inliers = 0;
-  std::optional<Pose> from_offline;                  // camera_from_world, as offline points alone have it
-  std::optional<Pose> from_online;                   // camera_from_world, as online points alone have it
+  std::optional<Pose> from_offline;                  // camera_from_world by offline points alone
+  std::optional<Pose> from_online;                   // camera_from_world by online points alone
   Matrix6 from_online_covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * from_online
-  bool maps_disagree = false;                        // both poses are farther apart than their covariances explain
-  // One rigid pose puts most offline points, all over the image, where their patches are found: it stands.
+  bool maps_disagree = false;                        // the poses differ by more than their covariances explain
+  // One rigid pose fits most offline points by their patches, all over the image: it takes precedence.
   bool offline_stands = false;
-  std::optional<FocalEvidence> focal;    // what offline points say of the focal length, where they were asked
+  std::optional<FocalEvidence> focal;    // evidence of offline points on the focal length, if weighed
   ReusedVector<PointId> offline_agreed;  // offline points that fit the pose
-  ReusedVector<PointId> offline_moved;   // offline points found in the image elsewhere than the pose has them
+  ReusedVector<PointId> offline_moved;   // offline points found away from their predictions
 
-  // The online map does not lie where it should.
+  // The online map is displaced.
   bool is_online_off() const { return maps_disagree && offline_stands; }
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
-// How far offline points may put the camera from where it is known to be, where they come first: farther off is a place
-// that looks the same.
+// Limits of a pose from offline points that takes precedence. Beyond them it is a look-alike place.
 struct HybridLimits {
-  DriftBound drift{kNoLimit, kNoLimit};  // from where online points have it
-  double stray = kNoLimit;               // metres from the prediction, where online points do not have it
-  std::optional<PosePrior> prior{};      // what is known of the pose besides; of use to points of both kinds
+  DriftBound drift{kNoLimit, kNoLimit};  // from the pose by online points
+  double stray = kNoLimit;               // metres from the prediction, without a pose by online points
+  std::optional<PosePrior> prior{};      // prior of the pose, for points of both maps
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 
-// As track(), for candidates of both maps. Each kind of points gives a pose of its own. Offline comes first: where one
-// pose fits offline points all over the image it stands, within the limits whatever the online map says, and online
-// points are used that agree with it. Offline points that fit one pose in a part of the image only may be a thing that
-// was moved: where the maps disagree the online pose stands, and offline points are used that agree with that.
-// weighs_focal_lengths: offline points are asked what they make of other ones, see FocalCheck.
+// Same as track(), for candidates of both maps. The points of each map give a pose. If one pose fits offline points all
+// over the image, it takes precedence over the online map within the limits, and online points that agree with it are
+// used. Offline points that fit one pose only in a part of the image may be on a moved object: if the maps disagree,
+// the online pose is used, with the offline points that agree with it. weighs_focal_lengths: sets `focal`, see
+// FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits = {},
                                         bool weighs_focal_lengths = false);
 
-// Which points a pose that is known has in their places, and which elsewhere.
+// Points found at their predictions from a given pose, and points found elsewhere.
 struct PlacedPoints {
   ReusedVector<PointId> agreed;
   ReusedVector<PointId> moved;
 };
 
-// Looks for points where the pose expects them, without a say in it. Those not found are in neither.
+// Matches points around their predictions without changing the pose. Points not found are in neither list.
 PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                              std::span<const PointId> points, const TrackOptions& options);
 
