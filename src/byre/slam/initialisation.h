@@ -11,37 +11,38 @@
 namespace byre {
 
 struct MonocularStartOptions {
-  double median_depth = 1.0;  // metres, about, from the first camera to the points: one camera knows no scale
+  // Metres, assumed distance from the first camera to the points; the scale is not observable.
+  double median_depth = 1.0;
 };
 
-// A first map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe.
-// The unit of length is an arbitrary one, so an arm of body_from_camera that was measured in metres means nothing in
-// it.
+// First map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe. The
+// unit of length is arbitrary, so a metric lever arm of body_from_camera does not apply.
 struct MonocularStart {
   Map map;
   KeyframeId first;
-  KeyframeId second;             // keyframe of the frame that was tried
+  KeyframeId second;             // keyframe of the tried frame
   double median_parallax = 0.0;  // radians, over the points of the map
-  double direction_sigma = 0.0;  // radians, translation between both keyframes in the direction where it is known least
+  // Radians, of the translation between both keyframes along its least certain direction.
+  double direction_sigma = 0.0;
 };
 
 struct MonocularAttempt {
-  std::optional<MonocularStart> start;  // empty when there is a failure
+  std::optional<MonocularStart> start;  // empty after a failure
   TwoViewFailure failure = TwoViewFailure::none;
-  int matches = 0;  // with the reference frame; zero when there was none yet
+  int matches = 0;  // with the reference frame; 0 without one
 };
 
-// Waits for a first map of one camera: matches frame after frame with a reference frame, until the two tell how the
-// camera moved. A frame that shares too little with the reference becomes the reference of those that follow.
+// Initialises a monocular map: matches frames with a reference frame until the two determine the camera's motion. A
+// frame with too few matches becomes the new reference.
 class MonocularInitialiser {
  public:
   // Precondition: the rig has no baseline.
   MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options, const MappingOptions& mapping = {});
 
-  // Frames in the order of time. After a start the next frame is a new reference.
+  // Frames in order of time. After a start the next frame becomes the reference.
   MonocularAttempt try_start(const Frame& frame);
 
-  // The time of the frame that those which come are matched with; empty before the first.
+  // Time of the reference frame; empty before the first.
   std::optional<Timestamp> reference_time() const {
     return reference_ ? std::optional(reference_->time) : std::nullopt;
   }
@@ -58,7 +59,8 @@ class MonocularInitialiser {
 
   // Owned by the calling thread.
   std::optional<Frame> reference_;
-  std::vector<Eigen::Vector2f> expected_;  // pixels, one per feature of the reference: where the next frame may show it
+  // Pixels, one per feature of the reference: its expected position in the next frame.
+  std::vector<Eigen::Vector2f> expected_;
 };
 
 }  // namespace byre

@@ -7,20 +7,19 @@
 
 namespace byre {
 
-// A point that was seen elsewhere in the image shortly before, looked for where it should be now.
+// A point seen in another cell shortly before, searched at its present prediction.
 struct LensTrial {
   Eigen::Vector2d pixel;
   bool is_found = false;
 };
 
-// Tells which cells of an image dirt hides, by points that other cells have shown just before. What is hidden by
-// things, dark, or not where the map has it, was not seen there either, and says nothing. For each cell two hypotheses
-// are weighed: it shows points nearly as often as the rest of the image, or hardly any. A cell is dirty once the second
-// explains what came so much better that chance does not do that, however long one looks (Page 1954), and clean again
-// once the first one explains it as well.
+// Detects image cells behind dirt by points that other cells showed just before. Points that are occluded, dark or
+// moved were not seen there either, so they are no evidence. Each cell has a sequential likelihood-ratio test (Page
+// 1954) of two hypotheses: points are found nearly as often as in the rest of the image, or hardly ever. A cell is
+// dirty once the second reaches a threshold, and clean again once the first has outweighed it.
 class LensMask {
  public:
-  // The trials of one frame. Where they are too few to compare a cell with the rest, they wait for those of the next.
+  // Adds the trials of a frame. Too few trials to compare a cell with the rest are kept for the next frame.
   void note(std::span<const LensTrial> trials, const Rig& rig);
 
   const HiddenCells& hidden() const { return hidden_; }
@@ -33,8 +32,8 @@ class LensMask {
 
   bool is_beside_dirt(std::size_t cell) const;
 
-  std::array<double, HiddenCells::kCells> evidence_{};  // logarithm of the likelihood ratio, of being dirty to clean
-  std::array<Count, HiddenCells::kCells> counts_{};     // trials that wait
+  std::array<double, HiddenCells::kCells> evidence_{};  // log-likelihood ratio of dirty to clean
+  std::array<Count, HiddenCells::kCells> counts_{};     // pending trials
   HiddenCells hidden_;
 };
 

@@ -11,25 +11,25 @@
 
 namespace byre {
 
-// Looks for dirt on the lenses while the robot moves. A few times a second the points that were seen in the last
-// seconds are looked for where they have come to another cell of the image: behind dirt too, so that it is noticed when
-// that is wiped off. It has no say in the pose.
+// Detects dirt on the lenses while the robot moves. A few times a second, points seen in the last seconds are searched
+// once they have moved to another image cell, behind dirt as well, so that cleaning is detected too. Does not affect
+// the pose.
 class LensWatch {
  public:
-  // A frame whose pose is known. Precondition: frames come in order of time.
+  // A frame with a reliable pose. Precondition: frames are in order of time.
   void note(const Frame& frame, const TrackedFrame& tracked, const Rig& rig, const MapView& map);
 
   const HiddenCells& hidden() const { return left_.hidden(); }         // in the left image
   const HiddenCells& hidden_right() const { return right_.hidden(); }  // in the right image
-  std::optional<SessionEvent> news();                                  // what is to be told now; told once
+  std::optional<SessionEvent> news();                                  // event to report; each event once
 
  private:
-  // A point that was seen shortly before.
+  // A point seen shortly before.
   struct Sight {
     PointId point;
-    Eigen::Vector2f pixel;     // where it was looked for last
-    Timestamp seen{};          // when it was seen last
-    bool is_in_right = false;  // it was found in the right image then
+    Eigen::Vector2f pixel;     // position of the last search
+    Timestamp seen{};          // time of the last sighting
+    bool is_in_right = false;  // found in the right image at that time
   };
 
   static bool has_left_cell(const Eigen::Vector2f& pixel, const Sight& since, const Rig& rig);
@@ -41,8 +41,8 @@ class LensWatch {
   std::vector<Sight> sights_;  // ascending by point
   LensMask left_;
   LensMask right_;
-  double told_share_ = 0.0;  // shares hidden in both images when that was told last
-  std::vector<Sight> now_;   // memory, as the next
+  double told_share_ = 0.0;  // sum of the hidden shares of both images at the last report
+  std::vector<Sight> now_;   // buffer
   std::vector<Sight> joined_;
   std::vector<LensTrial> trials_;
   std::vector<LensTrial> trials_right_;

@@ -6,29 +6,28 @@
 
 namespace byre {
 
-// A frame and where it was taken, as somebody else found out.
+// A frame with a given pose.
 struct PosedFrame {
   Frame frame;
   Pose camera_from_world;
-  int rig = 0;  // index of the rig that took it, among those given beside
+  int rig = 0;  // index of its rig
 };
 
 struct KnownPoseOptions {
-  int neighbours = 10;         // keyframes with overlapping views that each is matched with
-  double pose_sigma = 1.0;     // pixels by which errors of poses and calibration move a point in the image
-  float search_radius = 8.0f;  // pixels at octave 0 about the place where a point should appear
-  double assumed_depth = 4.0;  // metres, of what a camera without disparities sees; only to tell whose views overlap
+  int neighbours = 10;         // overlapping keyframes that each one is matched with
+  double pose_sigma = 1.0;     // pixels of reprojection error due to poses and calibration
+  float search_radius = 8.0f;  // pixels at octave 0 around the predicted position of a point
+  double assumed_depth = 4.0;  // metres, depth of cameras without disparities, only to find overlapping views
   MappingOptions mapping;
 };
 
-// The map of frames whose poses are given and held as they are: each becomes a keyframe, its parent the one before it.
-// Points come from disparities and from triangulation between views that overlap, however far apart in time; those
-// seen twice are fused, those whose views disagree are left out. Keyframes' covariances are zero: the poses are taken
-// for exact, their errors for those of measurements.
+// Map of frames with given, fixed poses. Each frame becomes a keyframe, its parent the one before it. Points come from
+// disparities and from triangulation between overlapping views, however far apart in time; duplicates are fused, points
+// whose views disagree are dropped. Keyframe covariances are zero: errors of poses count as errors of measurements.
 Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
                    const KnownPoseOptions& options);
 
-// Keyframes of a map whose views overlap, for each in ascending order those that overlap with it, most overlap first.
+// For each keyframe in ascending order, the keyframes with overlapping views, most overlap first.
 std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const KnownPoseOptions& options);
 
 }  // namespace byre

@@ -9,20 +9,22 @@ namespace byre {
 struct MappingOptions {
   WindowOptions window;
   int triangulation_neighbours = 6;       // online keyframes searched for new points
-  int fusion_neighbours = 10;             // online keyframes searched for points seen twice
-  float search_radius = 3.0f;             // pixels at octave 0, about where a point of another keyframe should be
-  double pose_sigma = 0.5;                // pixels that errors of the poses may add between two views
-  double max_relative_depth_sigma = 0.1;  // a new point's depth must be known to this share of itself
-  double redundant_share = 0.9;           // share of a redundant keyframe's points offline or seen by three others
-  double offline_weight = 2.0;            // weight of sightings of offline points in bundle adjustment; others have 1
-  int first_bundle_iterations = 5;        // iterations before outliers are taken out
-  int second_bundle_iterations = 8;       // iterations after outliers were taken out
-  HiddenCells hidden{};                   // cells of the newest keyframe in which points are not missed
+  int fusion_neighbours = 10;             // online keyframes searched for duplicate points
+  float search_radius = 3.0f;             // pixels at octave 0 around the projection of a point of another keyframe
+  double pose_sigma = 0.5;                // pixels of error between two views due to poses
+  double max_relative_depth_sigma = 0.1;  // largest relative depth sigma of a new point
+  // Share of a keyframe's points that are offline or seen by three others, from which it is redundant.
+  double redundant_share = 0.9;
+  // Weight of sightings of offline points in bundle adjustment; others have 1.
+  double offline_weight = 2.0;
+  int first_bundle_iterations = 5;   // iterations before outlier removal
+  int second_bundle_iterations = 8;  // iterations after outlier removal
+  HiddenCells hidden{};              // cells of the newest keyframe without expected points
 };
 
-// One mapping job: new points between the new keyframes and their neighbours, online and offline, points seen twice
-// fused, local bundle adjustment, weak points and redundant keyframes removed. What is offline is held fixed, and what
-// is online adapts to it. Pure: the window in, what is to change out.
+// One mapping job: triangulates new points between the new keyframes and their neighbours of both maps, fuses
+// duplicates, runs local bundle adjustment, removes weak points and redundant keyframes. Offline data are fixed. Pure
+// function of the window.
 MapDelta extend_map(const MapWindow& window, const MappingOptions& options);
 
 }  // namespace byre

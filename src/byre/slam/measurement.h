@@ -12,7 +12,7 @@ struct CameraView {
   Pose camera_from_world;
 };
 
-// A feature of a view and the pixel in it that stands for the point.
+// A feature of a view, with the pixel of the point.
 struct ViewedFeature {
   const CameraView& view;
   int feature = 0;
@@ -22,19 +22,19 @@ struct ViewedFeature {
 struct PixelMeasurement {
   Eigen::Vector2f pixel;  // full-resolution pixels
   float sigma = 1.0f;     // pixels, of u and of v
-  bool aligned = false;   // refined in the image, not just the corner's place
+  bool aligned = false;   // refined in the image, not only a corner
 };
 
-// Where the current view's feature shows the very point that the reference shows: the reference's patch, warped by the
-// poses (a plane that faces the reference camera), is aligned with the feature's patch. Without patches, or when they
-// cannot be aligned, the corner itself with its larger sigma.
+// Subpixel measurement by the current view's feature of the point that the reference shows: the reference's patch,
+// warped by the poses (a plane that faces the reference camera), is aligned with the feature's patch. Without patches,
+// or if the alignment fails, the corner with its larger sigma.
 PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vector3d& point_in_world,
                                const CameraView& current, int feature);
 
-// The measurement a detected corner is by itself.
+// Measurement by the detected corner alone.
 PixelMeasurement corner_measurement(const Keypoint& keypoint);
 
-// The precision of a point's own reference pixel, which defines it; a corner's where no patch was kept, pixels.
+// Sigma of a point's own reference pixel, which defines it; that of a corner without a patch. Pixels.
 float reference_sigma(const Features& features, int feature);
 
 }  // namespace byre

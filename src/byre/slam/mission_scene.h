@@ -1,6 +1,6 @@
 #pragma once
 
-// Simulated missions as the tests of tracking, mapping and the session need them.
+// Simulated missions for tests of tracking, mapping and sessions.
 
 #include "byre/simulation/simulated_mission.h"
 
@@ -20,7 +20,7 @@ inline SimulationOptions without_noise() {
   return options;
 }
 
-// A quarter of a circle of 2 m radius, 8 cm and 2 degrees from frame to frame.
+// A quarter of a circle of 2 m radius; 8 cm and 2 degrees per frame.
 inline SimulatedMission quarter_circle(const SimulationOptions& options) {
   return simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.25), options);
 }
@@ -29,7 +29,7 @@ inline Pose true_camera_from_world(const SimulatedMission& mission, std::size_t 
   return inverse(mission.truth[frame].world_from_body * mission.rig.body_from_camera);
 }
 
-// What a lens shows of the frame that hides some pixels of the rig's image.
+// Frame without the features at hidden pixels.
 template <typename IsHidden>
 Frame seen_beside(const Frame& frame, const Rig& rig, IsHidden is_hidden) {
   std::vector<Keypoint> keypoints;
@@ -43,18 +43,18 @@ Frame seen_beside(const Frame& frame, const Rig& rig, IsHidden is_hidden) {
                                                        std::move(descriptors), std::vector<Patch>{})};
 }
 
-// The frame a keyframe was made of; keyframes keep their frame's time.
+// Index of the frame with a keyframe's time.
 inline std::size_t frame_at(const SimulatedMission& mission, Timestamp time) {
   const auto found = std::ranges::find(mission.frames, time, &Frame::time);
   return static_cast<std::size_t>(found - mission.frames.begin());
 }
 
-// The landmark a keyframe's feature really shows; -1 for an outlier.
+// True landmark of a keyframe's feature; -1 for an outlier.
 inline int true_landmark(const SimulatedMission& mission, const Keyframe& keyframe, int feature) {
   return mission.landmark_of_feature[frame_at(mission, keyframe.frame.time)][static_cast<std::size_t>(feature)];
 }
 
-// The landmark that most of a point's observations really show; -1 when that is an outlier.
+// True landmark of most of a point's observations; -1 if that is an outlier.
 inline int true_landmark(const SimulatedMission& mission, const Map& map, PointId point) {
   std::vector<int> landmarks;
   for (const Observation& seen : map.observations(point)) {

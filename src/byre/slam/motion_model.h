@@ -7,35 +7,35 @@
 
 namespace byre {
 
-// How the camera is taken to move until a frame's pose is known: as the body was told to have moved since the last
-// pose, else on as it moved before, else not at all.
+// Predicts the camera's motion until a frame's pose is estimated: by the measured motion of the body since the last
+// pose, else by constant velocity, else by standstill.
 class MotionModel {
  public:
-  // A frame later; motion is that of the body since the last frame, where it is known.
+  // Begins a frame. motion: of the body since the last frame; empty: unknown.
   void tell(const std::optional<BodyMotion>& motion);
-  // The pose is known now; velocity is that of the camera, per second.
+  // Sets a pose. velocity: of the camera, per second.
   void reach(const Vector6& velocity);
-  // The pose is not known any more; what is told leads on from the last one.
+  // Loses the pose; measured motion still predicts from the last one.
   void lose() { velocity_.reset(); }
-  // The last pose was none: what is told leads on from another one, where the motion since that is known.
+  // The last poses were wrong: predicts from an earlier one by the measured motion since.
   void go_back_to(const std::optional<BodyMotion>& told) { told_ = told; }
-  // The last pose is where what was told has led.
+  // Dead reckoning: the last pose was predicted by measured motion.
   void go_on() { told_ = no_motion(); }
 
-  // From here on the camera is one that is turned against the one before.
+  // The camera is turned from here on.
   void turn_camera(const Pose& after_from_before);
-  // From here on lengths are so many times what they were.
+  // Lengths change by a factor from here on.
   void scale_lengths(double change);
 
-  // The body's motion since the last pose, where it is known without a gap.
+  // Measured motion of the body since the last pose; empty if unknown, or after a gap.
   const std::optional<BodyMotion>& told() const { return told_; }
-  // The camera's, per second: exp_pose(velocity * dt) * camera_from_world. Zero where it is not known.
+  // Velocity of the camera, per second: exp_pose(velocity * dt) * camera_from_world. Zero if unknown.
   Vector6 velocity() const { return velocity_.value_or(Vector6::Zero()); }
 
-  // camera_from_world at a time after the last pose, by measured motion. If that may be off by its whole length, or is
-  // unknown, by the velocity.
+  // Camera_from_world at a time after the last pose, by measured motion. If that is unknown, or may be off by its whole
+  // length, by the velocity.
   Pose predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const;
-  // The same by the velocity alone; empty while it is unknown.
+  // Prediction by the velocity alone; empty while it is unknown.
   std::optional<Pose> predict_by_velocity(const Pose& last_camera_from_world, double seconds) const;
 
  private:

@@ -11,24 +11,23 @@
 namespace byre {
 
 struct MovedPointsOptions {
-  int frames = 8;            // surplus of frames that find a point elsewhere over frames that find it in its place
-  int frames_to_return = 3;  // frames, one after the other, that find a suspended point in its place again
+  int frames = 8;            // frames that find a point elsewhere, minus frames that find it in place
+  int frames_to_return = 3;  // consecutive frames that find a suspended point in place
 };
 
-// Points found elsewhere that lie among others of them: a thing that was moved is a cluster in space, and a point that
-// disagrees alone, among neighbours in place, was mistaken for another. All ascending.
+// Points found elsewhere that lie among others found elsewhere: a moved object is a cluster in space, and a single
+// point among neighbours in place is a wrong match. All ascending.
 ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
                                      std::span<const PointId> moved);
 
-// Offline points that are not where the map has them: what they belong to was moved. They are left out until they are
-// found in their places again; the map itself stays as it is.
+// Offline points on objects that were moved. They are suspended until found in place again; the map does not change.
 class MovedPoints {
  public:
   explicit MovedPoints(const MovedPointsOptions& options) : options_(options) {}
 
-  // Notes one frame whose pose offline points hold: the points found in their places, and those found elsewhere.
+  // Adds a frame whose pose offline points constrain: points found in place, and points found elsewhere.
   void note(std::span<const PointId> agreed, std::span<const PointId> moved);
-  // Notes where suspended points were found when they were looked for again.
+  // Adds the result of a new search of suspended points.
   void note_again(std::span<const PointId> agreed, std::span<const PointId> moved);
 
   bool is_suspended(PointId id) const;
@@ -36,8 +35,8 @@ class MovedPoints {
 
  private:
   struct Record {
-    std::int16_t excess = 0;    // frames that found it elsewhere, less those that found it in its place; not below zero
-    std::int16_t in_place = 0;  // frames one after the other that found it in its place while suspended
+    std::int16_t excess = 0;    // frames that found it elsewhere, minus those that found it in place; at least zero
+    std::int16_t in_place = 0;  // consecutive frames that found it in place while suspended
     bool suspended = false;
   };
   Record& record_of(PointId id);

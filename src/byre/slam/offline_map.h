@@ -12,43 +12,43 @@
 
 namespace byre {
 
-// The walls of the floor plan that a map lies on.
+// Walls of the floor plan on which a map is registered.
 struct PlacedWalls {
   PlanRegistration registration;
   PlanWalls walls;
 };
 
-// Walls opened along the map's own path, which cannot lead through one. Empty where a tenth of that path would lie
-// deep inside: then the plan, or the registration, is of something else.
+// Opens walls along the map's own path, which cannot cross a wall. Empty if a tenth of that path is deep inside walls:
+// then the plan, or the registration, is wrong.
 std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls);
 
-// A kept map as missions use it. Never changed once made, so that any number of sessions and threads may share it.
+// A saved map for missions. Immutable, so any number of sessions and threads may share it.
 class OfflineMap {
  public:
-  // Preconditions: the map is an offline one and holds keyframes; those have words of the vocabulary, see add_words.
+  // Preconditions: the map is offline and has keyframes, with words of the vocabulary (see add_words).
   OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
              std::optional<PlacedWalls> walls = {}, const KnownMounting& mounting = {});
 
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
 
-  const std::vector<SourceRecording>& recordings() const { return recordings_; }  // what the map was made from
+  // Recordings that the map was made from.
+  const std::vector<SourceRecording>& recordings() const { return recordings_; }
 
-  const KnownMounting& mounting() const { return mounting_; }  // mounting of what told the motion then
+  const KnownMounting& mounting() const { return mounting_; }  // mounting of the motion sensors of these recordings
 
-  // What it was driven on; nullptr where it was not driven.
+  // Driven ground; nullptr if the map was not driven.
   const DrivenGround* ground() const { return ground_ ? &*ground_ : nullptr; }
-  // The walls around; nullptr where none are known.
+  // Walls of the floor plan; nullptr if not given.
   const PlacedWalls* walls() const { return walls_ ? &*walls_ : nullptr; }
 
-  // How exactly its frame is known where a keyframe stands: what a keyframe's pose is uncertain by relative to the
-  // others on the whole, the median of them. The same in all directions.
+  // Covariance of the map's frame at a keyframe: the median over the keyframes' covariances, isotropic.
   const Matrix6& frame_covariance() const { return frame_covariance_; }
 
-  // Keyframes near a camera that look in a similar direction, nearest first. Nearness is distance in metres, and a
-  // metre for each radian between the directions.
+  // Keyframes near a camera with a similar viewing direction, nearest first, by the distance in metres plus the angle
+  // between the directions in radians.
   ReusedVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
-  // Metres from a camera to the nearest keyframe, whatever the directions.
+  // Metres from a camera to the nearest keyframe of any direction.
   double distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const;
 
  private:

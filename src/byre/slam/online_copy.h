@@ -4,8 +4,7 @@
 
 namespace byre {
 
-// A copy of a kept map that mapping may change: ids become online ones. Features that see no point are ready to be
-// given one again.
+// Copy of a saved map with online ids, which mapping may change. Features without a point can get one again.
 Map online_copy(const Map& offline);
 
 }  // namespace byre

@@ -4,8 +4,8 @@
 
 namespace byre {
 
-// Adds points for corners that are none of the model's points, triangulated from the model's poses. Where one of them
-// turns out to be a point of the model, that one gets the views instead, as far as they show it where it is.
+// Adds points for corners that show no point of the model, triangulated from the model's poses. If such a point turns
+// out to be a point of the model, that point gets the views that measure it at its position.
 void add_own_points(const SfmModel& model, const ModelMapOptions& options, Map& map);
 
 }  // namespace byre
