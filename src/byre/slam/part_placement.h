@@ -4,11 +4,10 @@
 
 namespace byre {
 
-// Parts of the window that share no points know nothing of each other but what is told of the way between them, and
-// that may be known better by now than when they were begun. Moves each, with all it sees, to where the way from the
-// part before leads. Where it has one camera, its lengths, and those of the motions, become those of the first part.
-// What is not movable stays, and with it what shares points with that, or with the oldest keyframe that has a motion.
-// False where no motion leads from one part to another: then nothing is changed.
+// Places parts of the window that share no points by the measured motion between them, which may be more precise now
+// than at their beginning. Each part moves, with its points, to the pose predicted from the part before. Monocular
+// parts and the motions are scaled to the first part. Fixed keyframes do not move, nor parts that share points with
+// them or with the oldest keyframe that has a motion. False, and nothing changes, if no motion connects two parts.
 bool place_parts(MapWindow& window);
 
 }  // namespace byre

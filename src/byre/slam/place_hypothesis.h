@@ -19,11 +19,12 @@ inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
 // Sequential likelihood-ratio test (Wald 1945) of a pose in a map against any other place. Log-odds in nats.
 //
 // The map is divided into cells. A cell whose points should be in view agrees if some of them are seen. Each cell
-// counts once, however many frames and points show it: things are moved and covered as a whole, and a robot at
-// standstill gets no new evidence. A moved thing (a gate's leaf, the side of a wagon) agrees with the map wherever it
-// stands now. So the agreeing cells that one such thing can cover add no more than the log-odds against a moved thing.
+// counts once, however many frames and points show it: objects are moved and covered as a whole, and a robot at
+// standstill gets no new evidence. A moved object (a gate's leaf, the side of a wagon) agrees with the map at its new
+// place as well. So the agreeing cells that one such object can cover add no more than the log-odds against a moved
+// object.
 //
-// Against a place that looks alike (the next bay of a barn) only points that it does not have are evidence.
+// Against a look-alike place (the next bay of a barn) only points that it does not have are evidence.
 class PlaceHypothesis {
  public:
   // Accepted without a test: the pose is right by definition, as in the frame of a map that is being made.
@@ -34,14 +35,14 @@ class PlaceHypothesis {
       : prior_(prior), accept_(accept), frames_to_believe_(frames_to_believe), is_accepted_(false) {}
 
   // Adds a frame. is_tracked: at a pose that continues the one before; false: the first pose. log_odds_of_rivals: log
-  // of the sum of the odds of the places alike that it is tested against, see RivalPlaces.
+  // of the sum of the odds of the look-alike places that it is tested against, see RivalPlaces.
   void observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals = kNoRivals);
 
   // The pose was lost for a short time and found again within reach.
   void find_again(int frames_to_believe) { frames_to_believe_ = frames_to_believe; }
 
-  double log_odds() const { return log_odds_; }  // against all places but those that look alike
-  // Against a place alike, by points that it does not have.
+  double log_odds() const { return log_odds_; }  // against all places but look-alikes
+  // Against a look-alike place, by points that it does not have.
   double log_odds_to_rivals() const { return log_odds_to_rivals_; }
   // Enough frames were tracked for mapping to use the pose.
   bool is_believed() const { return frames_to_believe_ == 0; }
@@ -59,7 +60,7 @@ class PlaceHypothesis {
     int last_frame = 0;
     int frames = 0;  // frames in the means
     Count all{};
-    Count alone{};                                             // points that no place alike has
+    Count alone{};                                             // points that no look-alike place has
     Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
   };
   double evidence(Count Cell::*points) const;

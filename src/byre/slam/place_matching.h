@@ -9,7 +9,7 @@
 namespace byre {
 
 struct PlaceMatchOptions {
-  int levels_up = 2;        // levels of the vocabulary above words: features below the same node there are compared
+  int levels_up = 2;        // levels of the vocabulary above words; features under the same node are compared
   int max_distance = 60;    // bits between descriptors
   float max_ratio = 0.85f;  // best over second best distance
 };
@@ -27,9 +27,9 @@ struct WordedFeatures {
   std::span<const Word> words;  // one per feature
 };
 
-// Matches a frame wherever it was taken: its features with those of each keyframe that see a point, among features of
-// similar words, each the other's best. A feature keeps the most similar point of all keyframes, and a point the most
-// similar feature. Ordered by feature. Keyframes without words are passed over.
+// Matches a frame without a predicted pose: its features with those of each keyframe that see a point, among features
+// of similar words, if mutually best. A feature keeps the most similar point of all keyframes, and a point the most
+// similar feature. Ordered by feature. Skips keyframes without words.
 std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& map,
                                     std::span<const KeyframeId> keyframes, const Vocabulary& vocabulary,
                                     const PlaceMatchOptions& options);

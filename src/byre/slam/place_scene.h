@@ -1,6 +1,6 @@
 #pragma once
 
-// A simulated room that was mapped before, and its vocabulary, as the tests of place recognition need them.
+// A mapped simulated room and its vocabulary, for tests of place recognition.
 
 #include "byre/place/place_index.h"
 #include "byre/slam/mission_scene.h"
@@ -19,7 +19,7 @@ inline Vocabulary vocabulary_of(const SimulatedMission& mission) {
   return Vocabulary::train(images, {.branching = 8, .depth = 3, .rounds = 5, .seed = 1});
 }
 
-// A map of the mission with every fifth frame a keyframe, in its true place.
+// True map of a mission; every fifth frame is a keyframe.
 struct MappedPlace {
   explicit MappedPlace(const SimulatedMission& mission)
       : map(true_map(mission, 5, Origin::offline)), index(vocabulary_of(mission)) {
@@ -63,14 +63,14 @@ inline MappedPlace twin_rooms(const SimulatedMission& mission) {
   return place;
 }
 
-// Trained on a lap in a simulated room.
+// Vocabulary of a lap in a simulated room.
 inline const Vocabulary& simulated_vocabulary() {
   static const Vocabulary trained =
       vocabulary_of(simulate_mission(simulated_rig(), circling_trajectory(120, 10.0, 2.0, 1.0), {}));
   return trained;
 }
 
-// The map of a visit before, by its true poses; each fourth frame is a keyframe.
+// True map of an earlier visit; every fourth frame is a keyframe.
 inline std::shared_ptr<const OfflineMap> offline_map_of(const SimulatedMission& visit) {
   Map map = true_map(visit, 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {

@@ -17,7 +17,7 @@ struct CellInView {
   int expected = 0;
   int seen = 0;  // inliers with the same image patch, not only a similar corner
   Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
-  // Points that no place alike has, see PlaceViewQuery.
+  // Points that no look-alike place has, see PlaceViewQuery.
   int expected_alone = 0;
   int seen_alone = 0;
 };
@@ -43,7 +43,7 @@ struct PlaceViewQuery {
   std::span<const PointId> candidates;          // points around the pose, used if nearby ones are too few
   HiddenCells hidden{};                         // image cells without expected points
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
-  std::function<bool(PointId)> is_in_common{};  // points that a place alike has as well; empty: none
+  std::function<bool(PointId)> is_in_common{};  // points that a look-alike place has as well; empty: none
   double metre = 1.0;                           // one metre in lengths of the map
 };
 

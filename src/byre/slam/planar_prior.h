@@ -8,16 +8,16 @@
 
 namespace byre {
 
-// What the ground that the map was driven on says of a pose near the predicted one: how high the body stands on it, and
-// how tilted, as well as the path of the map tells. Place and heading stay open. Empty far from the path, and where the
-// prediction itself stands otherwise than that explains, as on a ramp that the map does not know.
+// Prior of a pose near the predicted one by the ground that the map was driven on: height and tilt of the body, with
+// the uncertainty of the map's path. Place and heading are free. Empty far from the path, and if the prediction differs
+// by more than the uncertainty explains, as on an unmapped ramp.
 std::optional<PosePrior> planar_prior(const DrivenGround& ground, const Rig& rig,
                                       const Pose& predicted_camera_from_world);
 
-// What accelerations say of the pose of a body that stands still: how it is tilted. Place and heading stay open.
+// Prior of a body at standstill by measured accelerations: its tilt. Place and heading are free.
 PosePrior tilt_prior(const BodyTilt& tilt, const Rig& rig, const Pose& predicted_camera_from_world);
 
-// A pose with its covariance and what else is known of it, taken together: of a prior's form.
+// Combines a pose, given as a prior with its covariance, with another prior.
 PosePrior combined(const PosePrior& one, const PosePrior& other);
 
 }  // namespace byre

@@ -4,34 +4,33 @@
 
 namespace byre {
 
-// What the points of a frame say of how much longer its rows take to be read than is thought: the normal equation of
-// that one number, with the frame's pose eliminated.
+// Evidence of a frame's points on the error of the readout time, positive if it is longer than assumed: the normal
+// equation of that one number, with the frame's pose eliminated.
 struct ReadoutEvidence {
   double information = 0.0;  // 1 / s^2
   double right_side = 0.0;   // 1 / s
-  int points = 0;            // points that were asked
+  int points = 0;            // number of points
 
   ReadoutEvidence& operator+=(const ReadoutEvidence& other);
 };
 
-// velocity: of the camera, as CameraMotion has it. The frame's corners are where the readout time that is thought has
-// them. Outliers of the pose are asked too: where that time is wrong, it is they who know. Nothing where the camera
-// hardly turns: to who drives ahead a calibration that errs looks the same in each frame, and much like a rolling
-// shutter.
+// velocity: of the camera, see CameraMotion. The frame's corners are corrected by the assumed readout time. Includes
+// outliers of the pose: a wrong readout time shows there first. Empty if the camera hardly turns: in straight motion a
+// calibration error looks the same in each frame, and much like a rolling shutter.
 ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                                  const Vector6& velocity);
 
-// Finds out how long a rolling shutter takes to read an image, from frame to frame. What errs otherwise than in
-// proportion to the camera's motion, such as a calibration, averages out as the camera turns hither and thither: how
-// sure the sum is comes from how blocks of frames differ. A map that was made by a wrong time takes up part of what it
-// does, so that the right one is come to in several changes.
+// Estimates the readout time of a rolling shutter from frame to frame. Errors that are not proportional to the camera's
+// motion, such as those of the calibration, average out over turns in both directions; the sigma is estimated from the
+// differences between blocks of frames. A map made with a wrong readout time absorbs part of its effect, so the
+// estimate converges in several changes.
 class ReadoutEstimator {
  public:
   explicit ReadoutEstimator(double readout_time) : readout_time_(readout_time) {}
 
   double readout_time() const { return readout_time_; }  // seconds
 
-  // The readout time changes where enough was noted; what led to it counts no longer then.
+  // Changes the readout time once there is enough evidence, and then discards that evidence.
   void note(const ReadoutEvidence& evidence);
 
  private:
@@ -46,13 +45,13 @@ class ReadoutEstimator {
     void add(const ReadoutEvidence& block);
     double change() const { return sum.right_side / sum.information; }  // seconds
     double sigma() const;                                               // sigma of the change, seconds
-    double effect() const;  // effect on what is measured, but for what the pose takes up; sigmas, root mean square
+    double effect() const;  // effect on measurements, without the part that the pose absorbs; sigmas, root mean square
   };
 
   bool is_sure() const;
 
   double readout_time_;
-  ReadoutEvidence block_;  // so far
+  ReadoutEvidence block_;  // present block
   int frames_in_block_ = 0;
   Blocks blocks_;
 };

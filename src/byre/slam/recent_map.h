@@ -8,17 +8,17 @@
 
 namespace byre {
 
-// A copy of that part of an online map which came last, from the keyframe of this number on, and of what lies around
-// it, to be adjusted without the rest. Movable are the keyframes that came, those that share many points with one of
-// them, and those around the ends of these loops. All others that see a point of theirs are anchors, and come first.
-// What no movable keyframe sees is left out. Where more than half of all keyframes would be in it, it is the whole map,
-// see whole_map; so it is where the number is 0.
+// Copy of the newest part of an online map, from keyframe number first_new on, and of its surroundings, to be adjusted
+// without the rest. Movable are the new keyframes, those that share many points with one of them, and those around the
+// ends of these loops. Other keyframes that see their points are anchors, and come first. Points that no movable
+// keyframe sees are left out. The result is the whole map, see whole_map, if it would have more than half of all
+// keyframes, or if first_new is 0.
 MapWindow recent_map(const MapView& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops);
 
-// Metres by which two keyframes lie otherwise to each other than a loop says; 0 where one of them has gone.
+// Distance between the relative position of two keyframes and that measured by a loop, metres; 0 if one was removed.
 double disagreement(const Map& map, const LoopEdge& loop);
 
-// A loop that disagrees by more than this once what lies around it was adjusted bends more than that. In metres.
+// Disagreement of a loop after the map around it was adjusted, above which the whole map is corrected, metres.
 inline constexpr double kMaxLoopDisagreement = 0.05;
 
 }  // namespace byre

@@ -1,6 +1,6 @@
 #pragma once
 
-// Simulated missions as a rolling shutter sees them.
+// Simulated missions with a rolling shutter.
 
 #include "byre/features/rolling_shutter.h"
 #include "byre/slam/mission_scene.h"
@@ -18,7 +18,7 @@ inline Vector6 true_velocity(const SimulatedMission& mission, std::size_t frame)
   return log_pose(motion) / to_seconds(mission.truth[after].time - mission.truth[before].time);
 }
 
-// The corner where it is when its row is read; the row is that where it is then.
+// The corner at the readout time of its row, which depends on its position.
 inline Keypoint read_late(Keypoint keypoint, const Eigen::Vector3d& point_in_camera, const Rig& rig,
                           const Vector6& velocity, double readout_time) {
   const StereoPixel at_once = rig.project(point_in_camera);
@@ -32,7 +32,7 @@ inline Keypoint read_late(Keypoint keypoint, const Eigen::Vector3d& point_in_cam
   return keypoint;
 }
 
-// The same mission by a camera that takes so many seconds to read an image.
+// The same mission with a readout time, seconds.
 inline SimulatedMission rolling(SimulatedMission mission, double readout_time) {
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const Vector6 velocity = true_velocity(mission, i);

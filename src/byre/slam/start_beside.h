@@ -7,22 +7,22 @@
 
 namespace byre {
 
-// Where the two cameras of a first map of one camera stood in a map that there is already, as wheels tell it. What is
-// told of the way between them is how the start learns its scale.
+// Poses of the two cameras of a monocular start in an existing map, measured by wheels. The distance between them gives
+// the scale of the start.
 struct StartPlaces {
   Pose first_camera_from_world;
   Pose second_camera_from_world;
 };
 
-// Adds the keyframes and points of a start to a map: the first camera where it is told to have stood, all lengths by
-// the way that is told. parent: of the first keyframe, from which the way was told. Gives the two keyframes; none, and
-// nothing is added, where the cameras turned or moved otherwise than is told.
+// Adds the keyframes and points of a start to a map: the first camera at its measured pose, all lengths scaled by the
+// measured motion. parent: of the first keyframe, from which the motion was measured. Returns the two keyframes; empty,
+// and nothing is added, if the cameras turned or moved differently than measured.
 std::vector<KeyframeId> add_beside(const MonocularStart& start, const StartPlaces& told,
                                    const std::optional<KeyframeId>& parent, int recording, Map& map);
 
-// The first map of all moved to where its second camera is told to stand, in the lengths of the way that is told. It is
-// told before it is known how wheels are mounted, so which way that went counts for nothing. Where the camera turned so
-// much that an arm by which it sits off the axle would change its way, lengths stay what they are.
+// Moves a first map so that its second camera is at its measured pose, with lengths scaled by the measured motion. The
+// mounting of the wheels is unknown at that time, so the direction of the motion is not used. Lengths are kept if the
+// camera turned so much that an unknown lever arm would change the length of its motion.
 MonocularStart placed(const MonocularStart& start, const StartPlaces& told);
 
 }  // namespace byre

@@ -9,18 +9,17 @@
 
 namespace byre {
 
-// Most features of a map are looked at seldom, and they take more memory than all else. Stowed ones lie in a file and
-// are the same wherever they are looked at.
+// Features take most of the memory of a map, and most are read seldom. Stowed features are in a file; access to them is
+// unchanged.
 
-// The same features in the file; as they are where there is nothing that the file does not have, or where it has no
-// room.
+// The same features in the file. Unchanged if the file has all of them, or no room.
 std::shared_ptr<const Features> stowed(const std::shared_ptr<const Features>& features, ScratchFile& file);
 
-// Those of all keyframes that are not in the file yet.
+// Stows the features of all keyframes that are not in the file yet.
 void stow_features(Map& map, ScratchFile& file);
 
-// The same question, for what looks at features of a whole map and asks now and then whether to stop: what it has
-// looked at in the file leaves memory each time. The file outlives the question. Empty questions are answered with no.
+// Wraps should_stop for jobs that read features of a whole map and poll it: each call also releases the memory of the
+// features read from the file. The file must outlive the result. An empty should_stop counts as false.
 std::function<bool()> forgetting_looks(const ScratchFile& file, std::function<bool()> should_stop);
 
 }  // namespace byre

@@ -6,13 +6,12 @@
 
 namespace byre {
 
-// How long ways are as they were seen, as a multiple of what is told of them: least squares, each way weighed by the
-// covariance of what is told.
+// Scale of visual motion relative to measured motion: least squares, weighted by the covariance of the measured motion.
 class LengthRatio {
  public:
   void add(const BodyMotion& told, const Pose& seen);
-  int count() const { return count_; }  // ways
-  // Empty where ways were not seen to lead to where they are told to.
+  int count() const { return count_; }  // number of motions
+  // Empty if visual and measured motions have opposite directions.
   std::optional<double> value() const;
 
  private:
@@ -21,7 +20,6 @@ class LengthRatio {
   double seen_by_told_ = 0.0;
 };
 
-// A motion with all lengths times the scale.
 BodyMotion scale_motion(const BodyMotion& motion, double scale);
 
 }  // namespace byre
