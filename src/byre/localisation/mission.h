@@ -15,7 +15,7 @@
 
 namespace byre {
 
-// Least offline inliers for which nearby online keyframes count as aligned with the offline map.
+// Offline inliers from which nearby online keyframes count as aligned with the offline map.
 inline constexpr int kOfflineThatHolds = 60;
 
 struct MissionOptions {

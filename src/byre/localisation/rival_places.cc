@@ -112,7 +112,7 @@ std::optional<Pose> RivalPlaces::camera_from_likeliest() const {
 bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint) const {
   constexpr int kFrames = 3;
   constexpr double kWay = 2.0;             // metres
-  const double of_rival = std::log(20.0);  // least log-likelihood ratio of the rival to an accepted place
+  const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to an accepted place
   return std::ranges::any_of(rivals_, [&](const Rival& rival) {
     const double log_odds = rival.test.log_odds();
     if (rival.frames < kFrames || log_odds < 0.0) return false;
