@@ -14,7 +14,7 @@ struct HealthOptions {
   double max_rotation_sigma = 0.02;   // radians
   double max_bridged_rotation = 0.1;  // radians, sigmas of the rotation of a dead-reckoned pose
   int min_points = 40;                // inliers of both maps
-  // Standard deviation of the inliers along their least direction, share of the image diagonal.
+  // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
   double min_spread = 0.04;
   double max_disagreement = 0.05;  // metres between the poses from offline and from online points
   int min_offline_points = 15;     // offline inliers, if many are expected in view

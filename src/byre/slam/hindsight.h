@@ -10,7 +10,7 @@
 namespace byre {
 
 struct HindsightOptions {
-  std::size_t frames = 2000;  // most frames kept until the end, 10 kB each; older ones are settled earlier
+  std::size_t frames = 2000;  // maximum number that wait for the end, 10 kB each; older ones are settled earlier
 };
 
 // A point and its measurement in a frame.

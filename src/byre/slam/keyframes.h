@@ -17,8 +17,8 @@ struct KeyframeOptions {
   int min_frames = 2;               // frames between keyframes, unless tracking is about to fail
 };
 
-inline constexpr int kMaxPending = 3;           // most keyframes waiting for mapping
-inline constexpr int kMaxPendingWhenWeak = 10;  // most waiting keyframes with fewer than min_tracked points
+inline constexpr int kMaxPending = 3;           // keyframes waiting for mapping
+inline constexpr int kMaxPendingWhenWeak = 10;  // waiting keyframes with fewer than min_tracked points
 inline constexpr int kMaxWaitForDepth = 8;      // frames that a keyframe waits for disparities
 inline constexpr int kEnoughOffline = 300;      // tracked offline points from which no keyframe is needed
 

@@ -34,7 +34,7 @@ inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are matc
 struct LocaliseOptions {
   std::uint64_t seed = 0;  // seed of RANSAC
   int min_inliers = 40;    // final inliers
-  // Standard deviation of the inliers along their least direction, share of the image diagonal.
+  // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
   double min_spread = 0.05;
   double max_position_sigma = 0.02;  // sigma of the position over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
@@ -68,7 +68,7 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
                          const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
                          const LocaliseOptions& options, const PlaceFilter& filter = {});
 
-// Standard deviation of the pixels along their least direction, share of the image diagonal.
+// Standard deviation of the pixels in their narrowest direction, share of the image diagonal.
 double spread_of(std::span<const TrackedFeature> features, const Rig& rig);
 
 // Reason why a pose, however estimated, is unreliable; none if it is reliable.

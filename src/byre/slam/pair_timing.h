@@ -22,7 +22,7 @@ class SlopeSum {
     double value = 0.0;
     double sigma = 0.0;
   };
-  // Empty if the others explain too much of the motion. least_motion: least root mean square of the remaining motion.
+  // Empty if the others explain too much of the motion. least_motion: minimum root mean square of the remaining motion.
   std::optional<Slope> slope(double least_motion) const;
 
  private:

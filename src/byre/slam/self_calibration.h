@@ -9,7 +9,7 @@
 namespace byre {
 
 struct SelfCalibrationOptions {
-  int max_keyframes = 250;    // most keyframes used; the time grows with their cube
+  int max_keyframes = 250;    // keyframes used; the time grows with their cube
   double prior_sigmas = 2.0;  // standard deviation of a calibration before refinement, in sigmas of a good one
 };
 
