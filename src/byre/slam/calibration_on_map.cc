@@ -11,19 +11,19 @@
 namespace byre {
 namespace {
 
-constexpr int kMinOfflinePoints = 40;  // offline points in a frame that counts
-constexpr int kMaxRows = 60;           // stereo matches of a frame whose rows are looked at
-// Weight of a frame: points and their places err together from frame to frame.
+constexpr int kMinOfflinePoints = 40;  // offline points in a frame
+constexpr int kMaxRows = 60;           // stereo matches of a frame whose rows are used
+// Weight of a frame: errors of points and of their positions are correlated between frames.
 constexpr double kIndependence = 0.1;
 
 constexpr double kCalibrationHuberWidth = 2.0;  // sigmas
 constexpr double kSystematicSigma = 0.2;        // pixels, errors that neither noise nor the calibration explains
-constexpr int kMaxPoints = 120;                 // most points of a frame that are asked
+constexpr int kMaxPoints = 120;                 // most points of a frame that are used
 
 using ByPose = Eigen::Matrix<double, 3, 6>;
 using ByCalibration = Eigen::Matrix<double, 3, kCalibrationParameters>;
 
-// One offline point in a frame: what was measured less what pose and point say, and how both answer; in sigmas.
+// Linearised measurement of one offline point: residual and Jacobians, in sigmas.
 struct CalibrationRow {
   Eigen::Vector3d residual;
   ByPose by_pose;

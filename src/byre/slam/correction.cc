@@ -12,11 +12,11 @@
 namespace byre {
 namespace {
 
-// A map as it was when the copy was made that was corrected.
+// State of a map when the corrected copy was made.
 class Earlier {
  public:
   virtual ~Earlier() = default;
-  virtual std::vector<KeyframeId> keyframes() const = 0;  // ascending or not
+  virtual std::vector<KeyframeId> keyframes() const = 0;  // in any order
   virtual const Keyframe& keyframe(KeyframeId id) const = 0;
   virtual std::vector<PointId> points_of(KeyframeId id) const = 0;
   virtual const MapPoint* find_point(PointId id) const = 0;
@@ -52,7 +52,7 @@ class EarlierWindow : public Earlier {
   std::map<KeyframeId, const WindowKeyframe*> keyframes_;
 };
 
-// Nothing has happened since to the map that these keyframes were copied from.
+// State of a map that has not changed since these keyframes were copied.
 class EarlierMap : public Earlier {
  public:
   EarlierMap(const Map& map, const MapWindow& copy) : map_(map) {
@@ -75,7 +75,7 @@ class EarlierMap : public Earlier {
   std::vector<KeyframeId> keyframes_;
 };
 
-// What the correction has for a point; nullptr where it leaves it as it is. A difference names points in their order.
+// The corrected point; nullptr if it is unchanged. A difference lists points in ascending order.
 const MapPoint* corrected_point(const MapDelta& correction, PointId id) {
   const auto number_of = [](const UpdatedPoint& updated) { return updated.id.number; };
   const auto found = std::ranges::lower_bound(correction.updated_points, id.number, {}, number_of);
@@ -87,7 +87,7 @@ bool is_removed(const MapDelta& correction, PointId id) {
          std::ranges::binary_search(correction.removed_points, id.number, {}, &OnlinePointId::number);
 }
 
-// By what the depths that a keyframe sees have grown; empty where too few points tell.
+// Growth of the depths that a keyframe sees; empty with too few points.
 std::optional<double> growth_of_depths(const MapDelta& correction, const Earlier& before, KeyframeId id,
                                        const Pose& after) {
   constexpr std::size_t kMinPoints = 10;
@@ -104,8 +104,8 @@ std::optional<double> growth_of_depths(const MapDelta& correction, const Earlier
   return median(std::move(ratios));
 }
 
-// How the world around each keyframe moves, world_after_from_world_before, for those of the copy that was corrected:
-// the keyframe's own motion, and as much longer as what it sees became farther away.
+// Motion of the world around each keyframe of the corrected copy, world_after_from_world_before: the keyframe's motion,
+// scaled by the growth of the depths that it sees.
 class WorldMotion {
  public:
   WorldMotion(const MapDelta& correction, const Earlier& before, bool may_grow, const Map& map) : map_(map) {
@@ -123,10 +123,10 @@ class WorldMotion {
     }
   }
 
-  // A keyframe that was there when the copy was made and is not in it stays where it is.
+  // An earlier keyframe that is not in the copy does not move.
   bool is_left_out(KeyframeId id) const { return id.number <= newest_ && !motions_.contains(id); }
 
-  // Motion about a keyframe; for one that came later, that of its nearest ancestor. Parents are older, so this ends.
+  // Motion around a keyframe; for a later one, that of its nearest ancestor. Parents are older, so the loop ends.
   Similarity of(std::optional<KeyframeId> id) const {
     while (id) {
       const auto known = motions_.find(*id);
@@ -160,7 +160,7 @@ MapPoint carried_along(const Similarity& world_motion, const MapPoint& point) {
   return carried;
 }
 
-// Points that the correction does not place itself, as they lie after it: those made or moved since the copy was taken.
+// Points that the correction does not place, at their positions after it: added or moved since the copy.
 std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlier& before, const WorldMotion& motion,
                                         const Map& map) {
   std::vector<PlacedPoint> carried;
@@ -175,7 +175,7 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlie
   return carried;
 }
 
-// Where lengths may grow, those that the correction moved have the covariance that it found.
+// If lengths may grow, keyframes that the correction moved have its covariance.
 std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool may_grow, const WorldMotion& motion,
                                              const Map& map) {
   std::map<KeyframeId, const Matrix6*> found;
@@ -196,7 +196,7 @@ std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool ma
   return carried;
 }
 
-// Changes of length at all keyframes the map ever had.
+// Scale changes at all keyframes that the map ever had.
 LengthChanges length_changes(const WorldMotion& motion, const Map& map) {
   LengthChanges changes;
   for (KeyframeId id{map.origin(), 0};; ++id.number) {
@@ -218,7 +218,7 @@ LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_g
     MapPoint point = placed.point;
     const MapPoint* const now = online.find_point(placed.id);
     if (now == nullptr) continue;
-    point.reference = now->reference;  // it may have lost its own
+    point.reference = now->reference;  // the reference may have changed since
     online.update_point(placed.id, point);
   }
   return changes;

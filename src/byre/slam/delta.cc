@@ -20,7 +20,6 @@ bool same(const MapPoint& a, const MapPoint& b) {
          a.reference == b.reference;
 }
 
-// A window as it was cut.
 class WindowBefore {
  public:
   explicit WindowBefore(const MapWindow& window) : window_(window) {}
@@ -38,7 +37,7 @@ class WindowBefore {
   const MapWindow& window_;
 };
 
-// The same, told by the map that it was cut of.
+// State of the window by the map that it was cut from.
 class MapBefore {
  public:
   MapBefore(const Map& map, const MapWindow& after) : map_(map), after_(after) {
@@ -71,8 +70,8 @@ class MapBefore {
 
   const Map& map_;
   const MapWindow& after_;
-  std::size_t point_count_ = 0;               // points that are no new ones
-  std::array<std::vector<int>, 2> index_of_;  // by origin and number: the place in the window
+  std::size_t point_count_ = 0;               // points without the new ones
+  std::array<std::vector<int>, 2> index_of_;  // index in the window, by origin and number
 };
 
 template <typename Before>
@@ -88,15 +87,14 @@ void append_point_changes(const Before& before, const MapWindow& after, MapDelta
   }
 }
 
-// A feature that sees another point than before, or another one now. Indices into the points of the window, or
-// negative.
+// A feature whose point has changed. Indices into the points of the window, or negative.
 struct ChangedFeature {
   int feature = 0;
   int then = kNoPoint;
   int now = kNoPoint;
 };
 
-// But for what becomes of points that are removed, or were made in the window: those are named as a whole.
+// Without removed and new points, which the delta lists as a whole.
 template <typename Before>
 std::vector<ChangedFeature> changed_features(const Before& before, const MapWindow& after, std::size_t keyframe) {
   const std::vector<int>& then = before.point_of_feature(keyframe);
@@ -133,7 +131,7 @@ void append_observation_changes(const Before& before, const MapWindow& after, st
   }
 }
 
-// Changes about an offline keyframe: only what the online map keeps of its views can change.
+// Changes at an offline keyframe: only its foreign views in the online map can change.
 template <typename Before>
 void append_foreign_view_changes(const Before& before, const MapWindow& after, std::size_t keyframe, MapDelta& delta) {
   const WindowKeyframe& now = after.keyframes[keyframe];
@@ -182,14 +180,14 @@ void add_new_point(const NewPoint& made, Map& online) {
     view.sighting.point = id;
     added += online.add_foreign_view(view) ? 1 : 0;
   }
-  // Its keyframes may have been given other points, or have gone, while the job ran.
+  // Its keyframes may have got other points, or been removed, while the job ran.
   const Keyframe* const reference = online.find_keyframe(made.point.reference.keyframe);
   const bool reference_sees_it =
       reference != nullptr && reference->sightings[static_cast<std::size_t>(made.point.reference.feature)].point == id;
   if (added < 2 || !reference_sees_it) online.remove_point(id);
 }
 
-// Losses before gains: no point depends on its foreign views.
+// Removals before additions: no point depends on its foreign views.
 void change_foreign_views(const MapDelta& delta, Map& online) {
   for (const RemovedForeignView& removed : delta.removed_foreign_views) {
     if (online.point_of_foreign_view(removed.observation) == PointId(removed.point)) {
@@ -203,7 +201,7 @@ void change_foreign_views(const MapDelta& delta, Map& online) {
   }
 }
 
-// What is there already stays as it is.
+// Existing observations stay.
 void add_observations(const MapDelta& delta, Map& online) {
   for (const NewObservation& added : delta.new_observations) {
     online.add_observation({added.keyframe, added.feature}, added.sighting);
@@ -285,8 +283,8 @@ void apply(const MapDelta& delta, Map& online) {
     online.move_keyframe(moved.id, moved.camera_from_world, moved.covariance);
   }
   for (const OnlinePointId id : delta.removed_points) online.remove_point(id);
-  // Gains before losses, so that no point is left without observations in between; then those gains that had to wait
-  // for a feature to lose its point.
+  // Additions before removals, so that no point is without observations in between; then the additions that had to wait
+  // for a free feature.
   add_observations(delta, online);
   remove_observations(delta, online);
   add_observations(delta, online);

@@ -8,13 +8,13 @@ namespace byre {
 
 RefinedCalibration determined_calibration(const Calibration& given, const CalibrationMatrix& information,
                                           const CalibrationVector& expected, double prior_sigmas) {
-  constexpr double kMinGain = 2.0;  // least factor by which images tell a direction better than was known before
+  constexpr double kMinGain = 2.0;  // factor by which images reduce the sigma of the prior
   const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> directions(information);
   const double prior_information = 1.0 / (prior_sigmas * prior_sigmas);
   CalibrationVector along = directions.eigenvectors().transpose() * expected;
   CalibrationVector variances = directions.eigenvalues().cwiseInverse();
   int determined = 0;
-  double squared_sigmas = 0.0;  // squared distance of the change from none, in sigmas, over all determined directions
+  double squared_sigmas = 0.0;  // squared size of the change in sigmas, over all determined directions
   for (int i = 0; i < kCalibrationParameters; ++i) {
     if (directions.eigenvalues()[i] >= kMinGain * kMinGain * prior_information) {
       ++determined;
@@ -24,7 +24,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
       variances[i] = 1.0 / prior_information;
     }
   }
-  constexpr double kSignificant = 2.0;  // sigmas, root mean square; noise alone makes one
+  constexpr double kSignificant = 2.0;  // sigmas, root mean square; noise alone gives one
   if (squared_sigmas < kSignificant * kSignificant * determined) along.setZero();
   RefinedCalibration result;
   result.change = directions.eigenvectors() * along;

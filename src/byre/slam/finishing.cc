@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-// Keyframes nearest to one that found an old place, of which enough must find it too.
+// Neighbours of a keyframe that must confirm its loop.
 constexpr int kConfirmingKeyframes = 6;
 
 bool stopped(const FinishHooks& hooks) {
@@ -24,11 +24,11 @@ void announce(const FinishHooks& hooks, const char* step) {
   if (hooks.before_step) hooks.before_step(step);
 }
 
-// The keyframes around one that found an old place say whether they find it too.
+// Tests a loop at the neighbours of its keyframe; empty if they do not confirm it.
 std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis) {
   for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {
     const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
-    // The drift stays the keyframe's own.
+    // The drift stays that of the keyframe.
     hypothesis.test =
         check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map).test;
   }
@@ -43,8 +43,8 @@ LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint
   return adjust_at_once(std::move(recent), edges, options.global, online, hooks.should_stop);
 }
 
-// Corrects what lies around the keyframes that came, and then, where a loop still disagrees, the whole map. Returns
-// from which keyframe on the map was corrected.
+// Corrects the map around new keyframes, then the whole map if a loop still disagrees. Returns the number of the first
+// keyframe that counted as new in the last correction.
 std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
                              const FinishHooks& hooks, FinishReport& report) {
   report.length_changes = correct(online, edges, options.first_new, options, hooks);

@@ -6,18 +6,18 @@
 namespace byre {
 namespace {
 
-// Largest error that is sound, as a share of the focal length. A worn calibration is off by 0.003; frames of sound
-// cameras say up to 0.007 in a building and, hand-held with a rolling shutter, 0.015, but then with less than two
-// sigmas. Of an error of 0.05 they say 0.013 at least, and four sigmas: points that would tell of more are not found
-// where they are expected.
+// Largest acceptable error, share of the focal length. A worn calibration is off by 0.003. Frames of sound cameras
+// measure up to 0.007 in a building and 0.015 hand-held with a rolling shutter, but the latter below two sigmas. With
+// an error of 0.05 they measure at least 0.013, at four sigmas: points that would show more are not found at their
+// predictions.
 constexpr double kMaxError = 0.01;
-constexpr double kMinSigmas = 3.0;     // sigmas by which an error differs from none
-constexpr double kRelease = 0.5;       // share of both bounds below which a focal length is right again
-constexpr int kMinFramePoints = 60;    // points of a frame that counts
-constexpr double kFocalMemory = 0.85;  // share of what earlier frames told that is kept from frame to frame
+constexpr double kMinSigmas = 3.0;     // sigmas of a significant error
+constexpr double kRelease = 0.5;       // share of both bounds below which a focal length is accepted again
+constexpr int kMinFramePoints = 60;    // points in a frame
+constexpr double kFocalMemory = 0.85;  // share of earlier evidence kept from frame to frame
 
 double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations) {
-  constexpr double kMaxSquaredError = 16.0;  // pixels: what is farther off is something else
+  constexpr double kMaxSquaredError = 16.0;  // square pixels; larger errors are wrong matches
   double sum = 0.0;
   for (const PoseObservation& observation : observations) {
     const Eigen::Vector3d point_in_camera = camera_from_world * observation.point_in_world;
@@ -29,8 +29,8 @@ double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const Po
   return sum;
 }
 
-// The parabola through the three costs, by steps of the focal length. A cost that is bounded bends down where much does
-// not fit; it is taken to bend up by a tenth of itself at least, lest hardly bent ones say anything at all.
+// Parabola through the three costs, in steps of the focal length. A bounded cost has negative curvature if many points
+// do not fit. The curvature is at least a tenth of the cost, so that nearly flat parabolas are no evidence.
 struct Parabola {
   double slope = 0.0;
   double curvature = 0.0;

@@ -7,7 +7,8 @@
 namespace byre {
 namespace {
 
-constexpr double kShareOfCut = 0.6;  // what a stage takes with work left out, of all of it, before that was ever seen
+// Share of the time of a stage with skipped work, before the first measurement.
+constexpr double kShareOfCut = 0.6;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ void ExpectedTime::note(double seconds) {
   *mean_ += kGain * (seconds - *mean_);
 }
 
-// By half within 280 frames, which is 14 s at 20 Hz.
+// Halves the expectation within 280 frames, 14 s at 20 Hz.
 void ExpectedTime::fade() {
   constexpr double kKept = 0.9975;
   if (mean_) *mean_ *= kKept;

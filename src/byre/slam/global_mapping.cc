@@ -15,12 +15,12 @@
 namespace byre {
 namespace {
 
-constexpr int kMinSharedPoints = 50;        // points of two keyframes that are joined in the pose graph
+constexpr int kMinSharedPoints = 50;        // points shared by keyframes that the pose graph joins
 constexpr int kMaxNeighbours = 10;          // neighbours of a keyframe in the pose graph
 constexpr int kFusionNeighbours = 10;       // keyframes on each side of a loop whose points are fused
-constexpr int kSecondBundleIterations = 6;  // iterations after outliers were taken out
+constexpr int kSecondBundleIterations = 6;  // iterations after outlier removal
 
-constexpr int kMinOfflineSightings = 30;  // offline points seen that tell where a keyframe, or a whole map, lies
+constexpr int kMinOfflineSightings = 30;  // offline points that constrain a keyframe, or a whole map
 
 using IndexOfKeyframe = std::map<KeyframeId, int>;
 
@@ -62,7 +62,7 @@ std::vector<std::pair<int, int>> nearest_keyframes(const MapWindow& window, int 
   return ranked;
 }
 
-// What stands for a metre in a map without stereo, whose unit of length may be any: a share of the depth.
+// Equivalent of a metre in a map without stereo, whose unit of length is arbitrary: a share of the depth.
 double length_of_a_metre(const MapWindow& window) {
   constexpr double kUsualDepth = 3.0;  // metres
   if (!scale_may_drift(window)) return 1.0;
@@ -77,13 +77,11 @@ double length_of_a_metre(const MapWindow& window) {
   return depths.empty() ? 1.0 : median(std::move(depths)) / kUsualDepth;
 }
 
-// How well two covisible keyframes that share a hundred points know where they lie to each other. Only the proportions
-// matter.
+// Relative precision of two covisible keyframes that share 100 points. Only the proportions matter.
 constexpr double kPositionSigma = 0.003;  // metres
 constexpr double kRotationSigma = 0.001;  // radians
 constexpr double kScaleSigma = 0.003;     // natural logarithm of the scale
 
-// The better the more points they share.
 Matrix6 covisible_information(int shared_points, double metre) {
   const double position_sigma = kPositionSigma * metre;
   Vector6 weights;
@@ -92,8 +90,8 @@ Matrix6 covisible_information(int shared_points, double metre) {
   return Matrix6((weights * (shared_points / 100.0)).asDiagonal());
 }
 
-// The edge of a loop: uncertain by what its matches leave open, and by as much again as neighbours leave open, for
-// points may err together. It has the say of so many links.
+// Edge of a loop, weighted like `links` edges. Its covariance is that of its matches plus that of neighbours, since
+// errors of points are correlated.
 PoseGraphEdge graph_edge(const LoopEdge& loop, int place, int keyframe, double metre, double links) {
   return {.first = place,
           .second = keyframe,
@@ -111,7 +109,7 @@ PoseGraphEdge edge_between(const MapWindow& window, int first, int second, int s
           .scale_sigma = kScaleSigma * std::sqrt(100.0 / shared_points)};
 }
 
-// A loop is to bend what was mapped out of sight of the offline map, and to leave alone what lies in it.
+// Loops bend the map out of view of the offline map; keyframes in view of it are fixed.
 bool is_held(const MapWindow& window, const WindowKeyframe& keyframe) {
   return !keyframe.movable || count_offline_sightings(window, keyframe) >= kMinOfflineSightings;
 }
@@ -138,7 +136,8 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
                           const std::vector<LoopEdge>& loops) {
   PoseGraph graph;
   const double metre = length_of_a_metre(window);
-  // A drift of scale opens gaps wider than fusion searches. So a loop stands for links between all that is fused at it.
+  // A drift of scale opens gaps wider than the search radius of fusion, so a loop counts as links between all keyframes
+  // whose points are fused.
   const double links = scale_may_drift(window) ? std::pow(kFusionNeighbours, 2) : 1.0;
   std::set<std::pair<int, int>> joined;
   const auto join = [&](int first, int second, int shared) {
@@ -159,7 +158,7 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
     const auto parent = keyframe.keyframe.parent ? index_of.find(*keyframe.keyframe.parent) : index_of.end();
     if (parent != index_of.end()) join(parent->second, i, kMinSharedPoints);
   }
-  // What lies around new keyframes has the lengths of the map, and keeps them; a whole map's first keyframe has none.
+  // Fixed keyframes around new ones have the scale of the map, and keep it; the first keyframe of a whole map has none.
   if (std::ranges::count(graph.nodes, true, &PoseGraphNode::fixed) > 1) {
     for (PoseGraphNode& node : graph.nodes) node.scale_is_known = node.scale_is_known || node.fixed;
   }
@@ -171,7 +170,7 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
   return graph;
 }
 
-// Moves a point along its ray, so that it lies so many times as far from the camera.
+// Scales the distance of a point from the camera.
 void grow(MapPoint& point, double growth, const Pose& camera_from_world) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   point.position_in_world = camera_in_world + growth * (point.position_in_world - camera_in_world);
@@ -179,7 +178,7 @@ void grow(MapPoint& point, double growth, const Pose& camera_from_world) {
   point.max_distance *= static_cast<float>(growth);
 }
 
-// Moves the keyframes, and each point with the keyframe that defines it, in the lengths that hold there.
+// Moves the keyframes, and each point with its reference keyframe, in the scale of that keyframe.
 void take_over(MapWindow& window, const IndexOfKeyframe& index_of, const PoseGraphResult& bent) {
   for (WindowPoint& point : window.points) {
     const auto reference = index_of.find(point.point.reference.keyframe);
@@ -213,7 +212,7 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
   const IndexOfKeyframe index_of = index_keyframes(window);
   PoseGraphOptions graph_options;
   graph_options.scale_is_free = scale_may_drift(window);
-  if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are what is expected
+  if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are expected
   const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops), graph_options);
   if (bent.usable) take_over(window, index_of, bent);
   for (const LoopEdge& loop : loops) {
@@ -223,8 +222,8 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
   }
 }
 
-// Parts lie by all that is told of the ways between them, as where a loop joins the last to the first, and scale drifts
-// no further than is told. Bundle adjustment would get there, but slowly: next to nothing that is seen tells of it.
+// Places parts by all measured motions between them, such as a loop from the last to the first, and limits the drift of
+// scale by these motions. Bundle adjustment would converge slowly, since the images hardly constrain either.
 void settle_by_motions(MapWindow& window) {
   const IndexOfKeyframe index_of = index_keyframes(window);
   PoseGraphOptions options;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinDepth = 0.05;  // metres
 
-// A descriptor holds a little beyond the distances of its octaves, and up to 60 degrees from its mean direction.
+// A descriptor is valid slightly beyond the distances of its octaves, and up to 60 degrees from its mean direction.
 constexpr float kDistanceSlack = 1.25f;
 constexpr float kMinViewingCosine = 0.5f;
 

@@ -6,9 +6,9 @@
 namespace byre {
 namespace {
 
-constexpr int kManyOfflinePoints = 80;     // offline points in view, from which some must be found
-constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; what is left may be one thing that has moved
-constexpr double kMinOfflineShare = 0.04;  // share of those; fewer agree by chance where a building repeats itself
+constexpr int kManyOfflinePoints = 80;     // expected offline points, from which some must be found
+constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; one moved object may fill the rest
+constexpr double kMinOfflineShare = 0.04;  // share of expected points; fewer agree by chance in repetitive buildings
 
 double drift_of(const Health& health, const HealthOptions& options) {
   return options.drift_share * health.distance_since_offline;
@@ -18,7 +18,7 @@ double uncertainty_of(const Health& health, const HealthOptions& options) {
   return options.sigmas * health.position_sigma;
 }
 
-// What is wrong with the input, which may be why nothing is found; none when nothing is known to be.
+// Fault of the input that may explain a lost pose; none without one.
 Doubt fault_of_input(const HealthEvidence& evidence) {
   if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
   if (evidence.input.is_repeated || evidence.input.is_frozen) return Doubt::frozen;
@@ -27,14 +27,14 @@ Doubt fault_of_input(const HealthEvidence& evidence) {
   return evidence.input.cameras_disagree ? Doubt::cameras_disagree : Doubt::none;
 }
 
-// Why a pose is of no use that goes on by what is told of the motion; none while it cannot have gone far wrong.
+// Reason against a dead-reckoned pose; none while its error is bounded.
 Doubt reason_against_bridge(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
   const bool is_open = options.sigmas * health.position_sigma > options.trusted_error ||
                        options.sigmas * health.rotation_sigma > options.max_bridged_rotation;
   return is_open || *evidence.bridged_from == Verdict::untrusted ? Doubt::bridged : Doubt::none;
 }
 
-// Why the pose is of no use; none when it is.
+// Reason why the pose is untrusted; none otherwise.
 Doubt reason_against(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
   if (evidence.bridged_from) return reason_against_bridge(health, evidence, options);
   if (!evidence.pose_found || !evidence.registered) {
@@ -61,7 +61,7 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
   return held_by_chance || not_held;
 }
 
-// What asks for care; none when nothing does.
+// Reason why the pose is degraded; none otherwise.
 Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
   if (evidence.bridged_from) return Doubt::bridged;
   const Doubt input = fault_of_input(evidence);

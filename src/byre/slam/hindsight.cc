@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-constexpr double kMinShareAgreeing = 0.7;  // share of the points still in the map that agree on the pose
+constexpr double kMinShareAgreeing = 0.7;  // share of the points still in the map that must agree on the pose
 
 RememberedPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
   return {seen.point,
@@ -74,7 +74,7 @@ std::optional<Pose> pose_in_hindsight(const RememberedFrame& frame, const Pose& 
   }
   const double needed = kMinShareAgreeing * static_cast<double>(observations.size());
   PoseRefinementOptions refinement;
-  refinement.rounds = 2;  // from where it is nearly right
+  refinement.rounds = 2;  // the initial pose is nearly right
   const auto refined =
       refine_pose(inverse(frame.now_from_then) * camera_from_world, frame.rig, observations, refinement);
   if (!refined || refined->inlier_count < std::max(needed, static_cast<double>(tracking.min_inliers)))

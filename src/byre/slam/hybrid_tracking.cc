@@ -12,9 +12,9 @@
 namespace byre {
 namespace {
 
-// Two poses disagree when they see the same points farther apart than this, and than their uncertainty explains.
-constexpr double kMaxApparentShift = 2.0;      // pixels
-constexpr double kMaxSquaredDeviation = 30.0;  // squared sigmas, of six degrees of freedom
+// Two poses disagree if their difference exceeds both bounds.
+constexpr double kMaxApparentShift = 2.0;      // pixels, between the images of the same points
+constexpr double kMaxSquaredDeviation = 30.0;  // squared sigmas, six degrees of freedom
 
 // One value for the points of each map.
 template <typename Value>
@@ -23,13 +23,13 @@ struct ByMap {
   Value online;
 };
 
-// What was looked for around the guesses, and found.
+// Points expected and matched around the first poses.
 struct Found {
   ByMap<std::vector<ExpectedPoint>> expected;
   ByMap<MeasuredPoints> measured;
 };
 
-// Memory of a thread, which each frame uses again.
+// Buffers of a thread, reused in each frame.
 struct Memory {
   ByMap<std::vector<PointId>> points;
   ByMap<std::vector<ExpectedPoint>> at_prediction;
@@ -47,7 +47,6 @@ Memory& memory_of_thread() {
   return memory;
 }
 
-// What is needed at every step.
 struct Query {
   const Frame& frame;
   const Rig& rig;
@@ -72,7 +71,7 @@ double median_depth(const Query& query, const std::vector<ExpectedPoint>& points
   return depths.empty() ? 1.0 : std::max(1e-3, median_of(std::span(depths)));
 }
 
-// Pixels by which two poses see a point at this depth apart.
+// Distance in pixels between two images of a point at this depth, seen from both poses.
 double apparent_shift(const Pose& one, const Pose& other, double depth, const Rig& rig) {
   const Pose motion = one * inverse(other);
   return rig.focal * (rotation_log(motion.rotation).norm() + motion.translation.norm() / depth);
@@ -85,7 +84,7 @@ bool disagree(const PoseRefinement& one, const PoseRefinement& other, double dep
   return deviation.dot(covariance.ldlt().solve(deviation)) > kMaxSquaredDeviation;
 }
 
-// Looked for nearby, and farther where that finds nothing.
+// First pose by the search radius, otherwise by the wide one.
 std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points) {
   if (points.empty()) return std::nullopt;
   for (const float radius : {query.options.search_radius, query.options.wide_radius}) {
@@ -102,14 +101,14 @@ void project(const Query& query, const ByMap<Pose>& camera_from_world, ByMap<std
   project_visible(query.map, points.online, camera_from_world.online, query.rig, hidden, expected.online);
 }
 
-// Rows of columns and fences look the same a bay farther on, where offline points fit a pose as well.
+// Rows of columns and fences repeat, so offline points also fit a pose one bay off.
 bool is_another_place(const Pose& offline, const std::optional<Pose>& online, const Pose& predicted,
                       const HybridLimits& limits) {
   if (online) return !is_within(agreement_of(offline, *online), limits.drift);
   return agreement_of(offline, predicted).translation > limits.stray;
 }
 
-// A first pose for each kind of points: the same one, unless they contradict each other within the limits.
+// First poses by the points of each map: equal, unless they contradict each other within the limits.
 std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted) {
   ByMap<std::vector<ExpectedPoint>>& expected = query.memory.at_prediction;
   project(query, {predicted, predicted}, expected);
@@ -149,7 +148,7 @@ const Found& look_for(const Query& query, const ByMap<Pose>& guesses) {
   return found;
 }
 
-// A feature that shows a point of each map is left to the offline one.
+// A feature that matches points of both maps is left to the offline one.
 void join(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight, MeasuredPoints& both) {
   make_room(both.observations, offline.observations.size() + online.observations.size());
   make_room(both.features, offline.features.size() + online.features.size());
@@ -163,7 +162,7 @@ void join(const MeasuredPoints& offline, const MeasuredPoints& online, double of
   }
 }
 
-// The pose of one kind of points alone; empty when it is not sound.
+// Pose by the points of one map alone; empty if it is not sound.
 std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camera_from_world,
                                            const MeasuredPoints& measured) {
   auto refined = refine_pose(camera_from_world, query.rig, measured.observations, {}, query.limits.prior);
@@ -171,7 +170,7 @@ std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camer
   return refined;
 }
 
-// How many parts of the image an offline pose holds: a part has matches that tell, and most of them fit.
+// Regions of the image with evidence on an offline pose, and those where most matches fit it.
 struct Support {
   int telling = 0;
   int fitting = 0;
@@ -199,23 +198,23 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
   return support;
 }
 
-// A thing that was moved fits a pose of its own too, but does not fill the image. Precondition: the pose is sound.
+// A moved object fits a pose of its own as well, but does not fill the image. Precondition: the pose is sound.
 bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
-  constexpr int kMinParts = 4;       // image regions where the points must fit, a third of all
-  constexpr double kMinShare = 0.6;  // share of the regions that tell anything where they must fit
+  constexpr int kMinParts = 4;       // image regions with fitting points, a third of all
+  constexpr double kMinShare = 0.6;  // share of the regions with evidence that must fit
   const Support support = support_of(query, offline, measured);
   return support.fitting >= kMinParts && support.fitting >= kMinShare * support.telling;
 }
 
-// How many of the matches fit a pose by noise and systematic errors alone.
+// Number of matches that fit a pose within noise and systematic errors.
 std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
   PartedPoints& parted = query.memory.parted;
   part_by_agreement(camera_from_world, query.rig, measured, 1.0, parted);
   return parted.agreeing.features.size();
 }
 
-// The pose that is believed, the points it was refined on, and matches that were left out of that. Points are borrowed
-// from the memory of the query.
+// The final pose, the points that it was refined on, and the matches left out. Points are borrowed from the memory of
+// the query.
 struct Solution {
   PoseRefinement refined;
   const MeasuredPoints* measured = nullptr;
@@ -231,7 +230,7 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
   return Solution{*std::move(refined), &both, {}};
 }
 
-// The pose of one map's points, refined on those and what agrees of the other's.
+// Pose by the points of one map, refined on those and on the points of the other map that agree with it.
 Solution solve_led(const Query& query, const PoseRefinement& leader, Origin leading,
                    const ByMap<MeasuredPoints>& measured) {
   const bool offline_leads = leading == Origin::offline;
@@ -246,7 +245,7 @@ Solution solve_led(const Query& query, const PoseRefinement& leader, Origin lead
   return *std::move(solution);
 }
 
-// What each map says by itself, and of the other.
+// Poses by each map alone, and their agreement.
 struct Opinions {
   std::optional<PoseRefinement> offline;
   std::optional<PoseRefinement> online;
@@ -262,10 +261,10 @@ Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& f
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
   opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
-  // A compromise between what stayed and what moved fits fewer offline points than the online pose does. Against an
-  // online map it takes more of them than agree by chance, where walls hide what should be in view.
+  // A compromise between static and moved points fits fewer offline points than the online pose does. Against an online
+  // map the inliers must also exceed chance agreement, which is frequent if walls hide expected points.
   if (opinions.maps_disagree && opinions.offline_stands) {
-    constexpr double kMinShare = 0.04;  // least share of the offline points in the frustum
+    constexpr double kMinShare = 0.04;  // share of the offline points in the frustum
     const MeasuredPoints& points = found.measured.offline;
     const auto inliers = static_cast<double>(std::ranges::count(opinions.offline->inliers, true));
     if (inliers < kMinShare * static_cast<double>(found.expected.offline.size())) {
@@ -290,8 +289,8 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
   return std::nullopt;
 }
 
-// What the solution says of each offline match. Elsewhere is a point only when its very patch was found there, not just
-// a corner that resembles it.
+// Splits the offline matches by the solution. A point has moved only if its own patch was found elsewhere, not just a
+// similar corner.
 void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
   ReusedVector<PointId>& inliers = result.offline_agreed;
   inliers.reserve(result.tracked.features.size());

@@ -18,8 +18,8 @@ namespace byre {
 namespace {
 
 constexpr SearchOptions kSearch{.radius = 50.0f, .max_distance = 50, .max_ratio = 0.85f};
-constexpr int kMinPoints = 80;                // points of the first map, with a known depth
-constexpr int kMaxPointsPerCell = 16;         // most points that count in one of 4x4 cells of the image
+constexpr int kMinPoints = 80;                // points of the first map with a known depth
+constexpr int kMaxPointsPerCell = 16;         // most points that count in one of 4x4 image cells
 constexpr double kMaxDirectionSigma = 0.015;  // radians, of the translation between the two keyframes
 
 std::vector<TwoViewMatch> rays_of(const std::vector<Match>& matches, const Features& first, const Features& second,
@@ -35,7 +35,7 @@ std::vector<TwoViewMatch> rays_of(const std::vector<Match>& matches, const Featu
   return rays;
 }
 
-// The factor by which the motion's unit of length is stretched.
+// Scale factor that gives the motion this median depth.
 double scale_for(const TwoViewMotion& motion, double median_depth) {
   std::vector<double> depths;
   for (const auto& point : motion.points_in_first) {
@@ -53,7 +53,7 @@ KeyframeId add_keyframe(Map& map, const Frame& frame, const Rig& rig, const Pose
   return map.add_keyframe(std::move(keyframe));
 }
 
-// Seen by a feature of the first keyframe, which defines it, and by one of the second, measured in the image.
+// Adds a point defined by a feature of the first keyframe and measured in the second.
 void add_seen_point(Map& map, const Eigen::Vector3d& point_in_world, const Observation& in_first,
                     const Observation& in_second) {
   const Keyframe& first = *map.find_keyframe(in_first.keyframe);
@@ -71,7 +71,7 @@ void add_seen_point(Map& map, const Eigen::Vector3d& point_in_world, const Obser
   map.add_observation(in_second, {point, measured.pixel, measured.sigma});
 }
 
-// The second keyframe and the points move; what disagrees goes. The scale, which nothing determines, hardly changes.
+// Adjusts the second keyframe and the points, and removes outliers. The scale, which is free, hardly changes.
 void adjust(MonocularStart& start, const MappingOptions& options) {
   const MapWindow window = window_of(start.map, {start.first, start.second});
   MapWindow adjusted = window;
@@ -103,7 +103,7 @@ double median_parallax(const MonocularStart& start) {
   return median_or(std::move(parallaxes), 0.0);
 }
 
-// The sightings of the points as they were measured.
+// Measured rays of the points in both keyframes.
 std::vector<TwoViewMatch> measured_rays(const MonocularStart& start, const Rig& rig) {
   const Keyframe& first = *start.map.find_keyframe(start.first);
   const Keyframe& second = *start.map.find_keyframe(start.second);
@@ -125,9 +125,9 @@ double direction_sigma(const MonocularStart& start, const Rig& rig) {
   return byre::direction_sigma(second_from_first, measured_rays(start, rig));
 }
 
-// Points that crowd in a cell of the image count as the most that count there.
+// Number of points; each image cell counts at most max_per_cell.
 int count_spread_points(const Keyframe& keyframe, const Rig& rig, int max_per_cell) {
-  constexpr int kCells = 4;  // in a row, and in a column
+  constexpr int kCells = 4;  // cells in each direction
   std::array<int, kCells * kCells> counts{};
   const auto cell = [](float pixel, int size) {
     return std::clamp(static_cast<int>(pixel * kCells / static_cast<float>(size)), 0, kCells - 1);
@@ -150,7 +150,7 @@ TwoViewFailure reason_to_doubt(const MonocularStart& start, const Rig& rig) {
   return is_open ? TwoViewFailure::uncertain : TwoViewFailure::none;
 }
 
-// The keyframes and points that a motion between two frames tells, in a bundle adjusted to what the image shows.
+// First map by the motion between two frames, with a bundle adjustment.
 MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>& matches, const Frame& first,
                           const Frame& second, const Rig& rig, double median_depth, const MappingOptions& mapping) {
   const double scale = scale_for(motion, median_depth);
@@ -188,7 +188,7 @@ void MonocularInitialiser::begin_with(const Frame& frame) {
   for (const Keypoint& keypoint : frame.features->keypoints()) expected_.push_back(keypoint.pixel);
 }
 
-// One match at most for each feature of either frame: the more similar one keeps it.
+// At most one match for each feature of either frame; the more similar one wins.
 std::vector<Match> MonocularInitialiser::match_with_reference(const Features& features) const {
   const Features& reference = *reference_->features;
   std::vector<Match> claims(static_cast<std::size_t>(features.size()), {-1, -1, std::numeric_limits<int>::max()});
@@ -204,7 +204,7 @@ std::vector<Match> MonocularInitialiser::match_with_reference(const Features& fe
   return claims;
 }
 
-// What was not found is expected to have moved like most of the others.
+// Features that were not found are predicted by the median shift of the others.
 void MonocularInitialiser::follow(const std::vector<Match>& matches, const Features& features) {
   std::vector<float> right, down;
   for (const Match& match : matches) {

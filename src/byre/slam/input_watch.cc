@@ -11,8 +11,8 @@
 namespace byre {
 namespace {
 
-constexpr int kMinFeaturesJudged = 100;  // corners of a frame whose pair is judged
-constexpr double kMemory = 0.7;          // share of earlier measures that is kept from frame to frame
+constexpr int kMinFeaturesJudged = 100;  // corners needed to judge a pair
+constexpr double kMemory = 0.7;          // share of earlier measures kept from frame to frame
 
 double blend(std::optional<double> before, double now) {
   return before ? kMemory * *before + (1.0 - kMemory) * now : now;
@@ -30,7 +30,7 @@ InputEvidence InputWatch::look_at(const Frame& frame, const Rig& rig, const Know
   return evidence;
 }
 
-// A sensor's noise makes no two images alike, however still it stands.
+// Sensor noise makes consecutive images differ, even at standstill.
 void InputWatch::note_repetition(const Frame& frame, InputEvidence& evidence) {
   evidence.is_repeated = frame.content != 0 && frame.content == last_content_;
   if (!evidence.is_repeated) first_shown_ = frame.time;

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// Disparities known worse than to this share of themselves make no point by themselves: depth would be a guess.
+// Largest relative sigma of a disparity that gives a point by itself.
 constexpr float kMaxRelativeDisparitySigma = 0.2f;
 
 bool has_trustworthy_disparity(const Keypoint& keypoint) {
@@ -41,7 +41,7 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
 }
 
 double median_depth(const TrackedFrame& tracked, const MapView& map) {
-  thread_local std::vector<double> depths;  // memory
+  thread_local std::vector<double> depths;  // buffer
   depths.clear();
   for (const TrackedFeature& feature : tracked.features) {
     const MapPoint* const point = map.find_point(feature.point);
