@@ -5,7 +5,7 @@
 namespace byre {
 
 void LastingDoubt::note(Timestamp time, Sign sign) {
-  constexpr double kLongestStep = 0.5;  // seconds, largest time that one frame counts for, also after a gap
+  constexpr double kLongestStep = 0.5;  // seconds, maximum that one frame counts for, also after a gap
   const double seconds = last_ ? std::clamp(to_seconds(time - *last_), 0.0, kLongestStep) : 0.0;
   last_ = time;
   if (sign == Sign::present) {

@@ -6,16 +6,16 @@
 namespace byre {
 namespace {
 
-constexpr int kMinTrials = 30;        // in the rest of the image, with which a cell is compared
-constexpr double kCleanShare = 0.6;   // share of what the rest shows: the least that a clean cell does
-constexpr double kDirtyShare = 0.1;   // share that is found behind dirt, mostly by chance
-const double kProof = std::log(1e6);  // likelihood ratio that tells dirt
-// Dirt is more than one cell large, so a cell beside a dirty one is likely to be dirty before anything is seen of it.
+constexpr int kMinTrials = 30;        // trials in the rest of the image
+constexpr double kCleanShare = 0.6;   // minimum share of found points in a clean cell, relative to the rest
+constexpr double kDirtyShare = 0.1;   // share of points found behind dirt, mostly by chance
+const double kProof = std::log(1e6);  // log-likelihood ratio of a dirty cell
+// Dirt is larger than a cell, so less evidence is needed next to a dirty cell.
 const double kProofBesideDirt = std::log(1e2);
-const double kSuspicious = std::log(10.0);  // cells that do not stand for the rest of the image
+const double kSuspicious = std::log(10.0);  // cells that do not count as the rest of the image
 
-// What trials in a cell at one time add to its evidence, found being the share of them. They are often of one thing, so
-// that together they count for less than apart.
+// Evidence of simultaneous trials in a cell; found: share of points found. Such trials often show one object, so their
+// weight is the square root of their number.
 double evidence_of(double found, int trials, double rest) {
   const double clean = kCleanShare * rest;
   const double dirty = kDirtyShare * rest;

@@ -7,10 +7,10 @@
 namespace byre {
 namespace {
 
-constexpr double kEvery = 0.19;       // seconds between frames that are looked at
+constexpr double kEvery = 0.19;       // seconds between the frames used
 constexpr double kRemembered = 3.0;   // seconds since a point was seen
-constexpr int kMinSeen = 30;          // points of a frame that tells
-constexpr float kFreeBorder = 19.0f;  // octave pixels along the image's rim in which there are no corners
+constexpr int kMinSeen = 30;          // tracked points in a frame
+constexpr float kFreeBorder = 19.0f;  // octave pixels along the image border without corners
 constexpr SearchOptions kBehindDirt{4.0f, 80, 0.9f};
 
 float cell_size(const Rig& rig) {
@@ -23,7 +23,7 @@ bool is_inside(const Eigen::Vector2d& pixel, double border, const Rig& rig) {
          std::min(pixel.y(), rig.height - 1 - pixel.y()) > border;
 }
 
-// Pixels along the rim that are free of corners of that octave, or of one beside it.
+// Border without corners of the point's octave and the next one, pixels.
 double border_of(const Projection& projection) {
   const int octave = std::min(projection.octave + 1, kOctaves - 1);
   return kFreeBorder * kScaleOfOctave[static_cast<std::size_t>(octave)];
@@ -35,14 +35,14 @@ bool LensWatch::has_left_cell(const Eigen::Vector2f& pixel, const Sight& since, 
   return (pixel - since.pixel).norm() > cell_size(rig);
 }
 
-// Each point is looked for once for each cell that it passes, found or not.
+// Searches each point once for each cell that it passes, found or not.
 void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   trials_.clear();
   trials_right_.clear();
   make_room(trials_, sights_.size());
   make_room(trials_right_, sights_.size());
-  auto seen = now_.begin();  // both are in the order of points
+  auto seen = now_.begin();  // both in the order of points
   const auto is_over = [&](Sight& sight) {
     while (seen != now_.end() && seen->point < sight.point) ++seen;
     const bool is_seen = seen != now_.end() && seen->point == sight.point;
@@ -69,7 +69,8 @@ void LensWatch::try_sights(const Frame& frame, const Pose& camera_from_world, co
   sights_.erase(kept, sights_.end());
 }
 
-// The right image is asked for what the left one shows, but not along its rim, where rectifying may have left nothing.
+// The right image is tested by points that the left one shows, except along its border, which rectification may leave
+// empty.
 void LensWatch::try_sight(const Frame& frame, bool was_in_right, const Sight* now, const Projection& projection,
                           const Rig& rig, const Descriptor& descriptor) {
   const double border = border_of(projection);
@@ -83,7 +84,7 @@ void LensWatch::try_sight(const Frame& frame, bool was_in_right, const Sight* no
 }
 
 std::optional<SessionEvent> LensWatch::news() {
-  constexpr double kMuchMore = 1.5;  // times what was told
+  constexpr double kMuchMore = 1.5;  // factor on the share last reported
   const double share = hidden().share() + hidden_right().share();
   if (share == 0.0 && told_share_ == 0.0) return std::nullopt;
   if (share > 0.0 && told_share_ > 0.0 && share < kMuchMore * told_share_) return std::nullopt;

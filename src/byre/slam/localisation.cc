@@ -15,13 +15,13 @@ namespace byre {
 namespace {
 
 constexpr PlaceQueryOptions kPlaces{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
-constexpr int kMinFeatures = 50;        // corners of a frame that can be found
-constexpr int kMinMatches = 10;         // matches by words from which a pose is looked for
-constexpr int kMinPoseInliers = 8;      // matches that agree with a first pose
-constexpr int kMaxDraws = 2000;         // draws of three points
-constexpr double kMaxMatchError = 6.0;  // pixels, largest error of such a match
-constexpr double kRivalShare = 0.7;     // share of the best place's inliers with which a second place is a rival
-// The search around a first pose, which is a guess of another kind than one from motion.
+constexpr int kMinFeatures = 50;        // corners in a frame
+constexpr int kMinMatches = 10;         // matches by words
+constexpr int kMinPoseInliers = 8;      // inliers of a first pose
+constexpr int kMaxDraws = 2000;         // RANSAC iterations
+constexpr double kMaxMatchError = 6.0;  // pixels, largest error of an inlier of a first pose
+constexpr double kRivalShare = 0.7;     // share of the best place's inliers from which a second place is a rival
+// Search around a first pose: default options, since it is no motion prediction.
 TrackOptions around_first_pose(const LocaliseOptions& options) {
   TrackOptions around;
   around.hidden = options.hidden;
@@ -30,7 +30,7 @@ TrackOptions around_first_pose(const LocaliseOptions& options) {
 
 using Failure = LocalisationFailure;
 
-// What is needed wherever the frame is looked for.
+// Inputs common to all places.
 struct FrameQuery {
   const Frame& frame;
   const Rig& rig;
@@ -61,7 +61,7 @@ std::optional<AbsolutePose> pose_from_matches(const FrameQuery& query, const std
   return estimate_absolute_pose(sightings, query.rig, ransac);
 }
 
-// Looks for the points around a first pose, then for those around the keyframe that shares most of them.
+// Matches points around a first pose, then points around the keyframe that shares most of these.
 std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_from_world, KeyframeId place) {
   const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
     return track(query.frame, predicted, query.rig, query.map, local_points(query.map, reference, kKeyframesOfPlace),
@@ -95,7 +95,7 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
 }
 
-// Whether two poses cannot both be right about where the camera is.
+// Whether at most one of two poses can be right.
 bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapView& map) {
   constexpr double kMaxShift = 0.05;  // share of the median depth
   constexpr double kMaxTurn = 0.05;   // radians
@@ -104,12 +104,12 @@ bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapVie
          rotation_log(motion.rotation).norm() > kMaxTurn;
 }
 
-// Attempts with a pose, by inliers, come after those without one, by how far they came.
+// Attempts with a pose rank above those without, by inliers; the others by progress.
 std::pair<bool, int> rank_of(const Localisation& attempt) {
   return {attempt.tracked.has_value(), attempt.tracked ? attempt.inliers : static_cast<int>(attempt.failure)};
 }
 
-// Places that show a frame, most inliers first; one of those that do not contradict each other.
+// Places that contradict each other, most inliers first; the first one of places that agree.
 std::vector<TrackedFrame> distinct_places(std::vector<TrackedFrame> found, const MapView& map) {
   std::ranges::stable_sort(found, std::greater{}, [](const TrackedFrame& place) { return place.features.size(); });
   std::vector<TrackedFrame> places;

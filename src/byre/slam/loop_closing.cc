@@ -14,11 +14,11 @@ namespace byre {
 namespace {
 
 constexpr PlaceQueryOptions kLoopPlaces{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
-// As strict as finding a frame from nothing, however that is set: a wrong loop spoils the map.
+// Independent of the options for relocalisation: a wrong loop spoils the map.
 constexpr LocaliseOptions kStrictness{};
-constexpr float kMinScoreShare = 0.5f;   // share of a covisible neighbour's similarity, below which a place is another
+constexpr float kMinScoreShare = 0.5f;   // similarity of a place, share of that of a covisible neighbour
 constexpr double kMaxDriftTurn = 0.2;    // radians of drift
-constexpr double kMaxDriftDepths = 0.1;  // median depths of drift without stereo, in place of max_drift
+constexpr double kMaxDriftDepths = 0.1;  // median depths of drift; replaces max_drift without stereo
 
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
 std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
@@ -32,7 +32,7 @@ std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
   return surroundings;
 }
 
-// How alike two views of one place are hereabouts.
+// Similarity of neighbouring views around a keyframe.
 float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, const BagOfWords& bag) {
   constexpr int kNeighbours = 5;
   float best = 0.0f;
@@ -70,7 +70,7 @@ std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceInde
   return places;
 }
 
-// Metres that the camera travelled from one keyframe to another.
+// Path of the camera between two keyframes, metres.
 double path_between(const Map& map, KeyframeId from, KeyframeId to) {
   double length = 0.0;
   std::optional<Eigen::Vector3d> last;
@@ -84,7 +84,7 @@ double path_between(const Map& map, KeyframeId from, KeyframeId to) {
   return length;
 }
 
-// What the drift moves the camera by: metres and radians.
+// Motion of the camera by the drift, metres and radians.
 struct CameraShift {
   double distance = 0.0;
   double turn = 0.0;
@@ -114,13 +114,13 @@ bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from
          rotation_log(motion.rotation).norm() <= kMaxDisagreement;
 }
 
-// The drift that takes a camera from where the newer part has it to where the older one does.
+// Drift between the poses of a camera in the newer and in the older part.
 Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, double scale) {
   return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
 }
 
-// The view of the older part from a pose there. One camera has no metres, so its lengths are scaled to a median depth
-// of 5 m. So are those of nearer stereo views, which would have too few cells.
+// View of the older part from a pose there. Monocular lengths are not metric, so they are scaled to a median depth of 5
+// m. Stereo lengths are scaled likewise if the depth is less, since there would be too few cells.
 PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
                              const Rig& rig, const Map& map) {
   constexpr int kKeyframesNearby = 3;
@@ -132,8 +132,8 @@ PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& fram
   return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, metre});
 }
 
-// A rig with stereo measures lengths itself. Else points in both parts tell, no better than the camera's own place in
-// the older one is known.
+// Stereo measures the scale. Otherwise points in both parts determine it, at best as precisely as the camera's position
+// in the older part is known.
 std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part,
                                            double depth, const LoopOptions& options) {
   if (rig_of(map, keyframe).is_stereo()) return ScaleDrift{};

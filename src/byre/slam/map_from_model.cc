@@ -13,13 +13,12 @@
 namespace byre {
 namespace {
 
-// What a feature has measured of a point.
 struct Measured {
   ModelView view;
   PixelMeasurement measurement;
 };
 
-// The model's own views of a point, taken as exact poses, each with a pixel of this sigma; square units of the model.
+// Covariance by the model's own views, with exact poses and this sigma of pixels; square units of the model.
 std::optional<Eigen::Matrix3d> position_covariance(const SfmModel& model, const ModelPoint& point, double sigma) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const int image : point.images) {
@@ -36,14 +35,13 @@ std::optional<Eigen::Matrix3d> position_covariance(const SfmModel& model, const 
   return 0.5 * (covariance + covariance.transpose());
 }
 
-// The patch of the reference defines the point in the image: at the pixel where the point projects, which is not quite
-// where the corner is.
+// The reference's patch defines the point at the projection, which is not exactly at the corner.
 PixelMeasurement measure_reference(const CameraView& view, int feature, const Eigen::Vector3d& point_in_world) {
   if (view.features.find_patch(feature) == nullptr) return corner_measurement(view.features.keypoint(feature));
   return {project(view, point_in_world)->cast<float>(), reference_sigma(view.features, feature), true};
 }
 
-// The views of a point that agree with its reference in the image, which comes first.
+// Views of a point that agree with its reference in the image; the reference is the first.
 std::vector<Measured> measure_views(const SfmModel& model, const ModelSightings& sightings,
                                     const ModelMapOptions& options) {
   const Eigen::Vector3d& point_in_world = model.points[static_cast<std::size_t>(sightings.point)].position_in_world;
@@ -91,7 +89,7 @@ void add_images(const SfmModel& model, Map& map) {
   }
 }
 
-// Precondition: keyframes are the images of the same number.
+// Precondition: keyframe n is image n.
 void add_model_point(const SfmModel& model, int index, const std::vector<Measured>& views,
                      const Eigen::Matrix3d& covariance, Map& map) {
   const ModelPoint& point = model.points[static_cast<std::size_t>(index)];

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// A few points in front of a keyframe's camera that stand for all it sees.
+// Sample of the scene points in view of a keyframe.
 struct SeenPart {
   KeyframeId id;
   Pose camera_from_world;
@@ -18,7 +18,7 @@ struct SeenPart {
   std::vector<Eigen::Vector3d> points_in_world;
 };
 
-// Depths of the features by their disparities; the assumed depth where there are none.
+// Samples features at their stereo depths, or at the assumed depth without stereo.
 SeenPart seen_part(const Map& map, KeyframeId id, double assumed_depth) {
   constexpr int kSamples = 60;
   const Keyframe& keyframe = *map.find_keyframe(id);
@@ -37,7 +37,7 @@ SeenPart seen_part(const Map& map, KeyframeId id, double assumed_depth) {
   return part;
 }
 
-// A point that one camera sees can be recognised by another that has it in view, from about the same side and distance.
+// Whether another camera has a point in view from a similar side and distance.
 bool is_recognisable(const Eigen::Vector3d& point_in_world, const SeenPart& from, const SeenPart& in, const Rig& rig) {
   constexpr double kMinViewingCosine = 0.7;
   constexpr double kMaxDistanceRatio = 2.5;
@@ -50,7 +50,7 @@ bool is_recognisable(const Eigen::Vector3d& point_in_world, const SeenPart& from
          ratio < kMaxDistanceRatio && ratio > 1.0 / kMaxDistanceRatio;
 }
 
-// The share of one part that the other sees, and the other way round: the smaller one.
+// Share of each part that the other camera sees; the smaller one.
 double overlap(const SeenPart& first, const SeenPart& second, const Rig& first_rig, const Rig& second_rig) {
   const auto share = [](const SeenPart& part, const SeenPart& viewer, const Rig& rig) {
     const auto seen = std::ranges::count_if(
@@ -74,7 +74,7 @@ void add_frames(Map& map, const std::vector<Rig>& rigs, const std::vector<PosedF
   }
 }
 
-// Points the keyframe shares with its neighbours.
+// Adds points that the keyframe shares with its neighbours.
 void connect(Map& map, KeyframeId id, const std::vector<KeyframeId>& neighbours, const KnownPoseOptions& options) {
   MappingOptions mapping = options.mapping;
   mapping.triangulation_neighbours = mapping.fusion_neighbours = options.neighbours;
@@ -89,7 +89,7 @@ void connect(Map& map, KeyframeId id, const std::vector<KeyframeId>& neighbours,
   apply(difference(window, connected), map);
 }
 
-// A measurement is as good as the pose of the camera that made it.
+// Adds the errors of poses to the sigmas of measurements.
 void add_pose_errors(MapWindow& window, double pose_sigma) {
   for (WindowKeyframe& keyframe : window.keyframes) {
     for (Sighting& sighting : keyframe.keyframe.sightings) {
@@ -98,14 +98,15 @@ void add_pose_errors(MapWindow& window, double pose_sigma) {
   }
 }
 
-// All points at once: with the poses fixed they do not depend on each other.
+// Refines all points together: with fixed poses they are independent.
 void settle_points(Map& map, const KnownPoseOptions& options) {
   if (map.keyframe_count() == 0) return;
   const MapWindow window = window_of(map, map.keyframe_ids());
   MapWindow settled = window;
   add_pose_errors(settled, options.pose_sigma);
   adjust_points(settled, options.mapping);
-  remove_weak_points(settled, settled.keyframes.front().id);  // the oldest: only those of one view without a depth
+  // The oldest keyframe as reference: removes only points of one view without a depth.
+  remove_weak_points(settled, settled.keyframes.front().id);
   refresh_points(settled);
   apply(difference(window, settled), map);
 }

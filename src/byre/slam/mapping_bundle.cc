@@ -11,8 +11,8 @@
 namespace byre {
 namespace {
 
-// A bundle problem, and by which feature of its keyframe each observation is. Poses are those of the window's
-// keyframes, points its points.
+// Bundle problem of a window, with the feature of each observation. Its poses are the window's keyframes, its points
+// the window's points.
 struct WindowBundle {
   BundleProblem problem;
   std::vector<int> features;
@@ -22,7 +22,7 @@ struct WindowBundle {
   }
 };
 
-// A point that is held fixed is not known exactly for that: its covariance, as the camera sees it, adds to the sigmas.
+// Adds the covariance of a fixed point to the sigmas of an observation: fixed points are not exact.
 void widen(BundleObservation& observation, const MapPoint& point, const Pose& camera_from_world, const Rig& rig) {
   const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
   if (point_in_camera.z() <= 0.0) return;
@@ -55,7 +55,7 @@ BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
           move_covariance(told.motion.covariance, camera_from_body).inverse()};
 }
 
-// Lists that double as they grow would take twice the memory, which counts where a map has millions of observations.
+// Reserves memory: growing lists would take twice as much in maps with millions of observations.
 void make_room(const MapWindow& window, WindowBundle& bundle) {
   std::size_t observations = 0;
   for (const WindowPoint& point : window.points) observations += point.observations.size();
@@ -65,7 +65,7 @@ void make_room(const MapWindow& window, WindowBundle& bundle) {
   bundle.features.reserve(observations);
 }
 
-// An anchor that sees an offline point has nothing to tell.
+// Anchors' observations of offline points are left out, since both are fixed.
 WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
   make_room(window, bundle);
@@ -90,8 +90,8 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   return bundle;
 }
 
-// By how many times the squared error of a sighting of an offline point may exceed that of an online one. Online points
-// adapt to what their views have in common, offline ones do not.
+// Factor on the gate of squared errors for offline points. Online points adapt to common errors of their views, offline
+// points do not.
 double tolerance_of(const BundleObservation& observation) {
   const double systematic_sigma = PoseRefinementOptions{}.systematic_sigma;
   const double sigma = std::max(observation.pixel_sigma, observation.disparity_sigma);
@@ -112,8 +112,8 @@ void take_over(MapWindow& window, const BundleResult& result) {
   }
 }
 
-// What is to become of an online point that has lost a view: one whose reference has gone is given the first of its
-// online views that are left, and one without any goes. Those outside the window are left to the map.
+// Repairs an online point that lost a view: a removed reference is replaced by the first online view; a point without
+// one is removed. Points that are also seen outside the window are left to the map.
 void repair(MapWindow& window, int index) {
   WindowPoint& point = window.points[static_cast<std::size_t>(index)];
   if (is_offline(point) || point.observations_elsewhere > 0) return;
@@ -134,15 +134,15 @@ void remove_outliers(MapWindow& window, const WindowBundle& bundle, const Bundle
     const WindowObservation seen = bundle.seen(i);
     if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
             .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
-      continue;  // went with its point
+      continue;  // removed with its point
     }
     remove_observation(window, seen);
     repair(window, observation.point);
   }
 }
 
-// The uncertainty of the anchors as a whole, with which the window moves: that of their middle one. Their own shares of
-// it average out, so the worst would be too much; what they have in common does not, so the best would be too little.
+// Covariance of the anchors as a whole, which the window shares: the median one. Individual errors of anchors average
+// out, so the largest is too large; common errors do not, so the smallest is too small.
 Matrix6 anchor_covariance(const MapWindow& window) {
   const Pose& centre_from_world = window.keyframes.front().keyframe.camera_from_world;
   std::vector<Matrix6> covariances;

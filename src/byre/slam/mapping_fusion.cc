@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-// A point found at a feature of a keyframe.
+// A point matched with a feature of a keyframe.
 struct Meeting {
   int point = 0;
   WindowObservation seen;
@@ -55,7 +55,7 @@ bool is_offline(const MapWindow& window, const WindowObservation& seen) {
   return is_offline(window.keyframes[static_cast<std::size_t>(seen.keyframe)]);
 }
 
-// Which of two points that are one is kept: an offline one, else the one seen more often, else the older.
+// The point to keep of two duplicates: an offline one, else the one with more observations, else the older.
 int better_point(const MapWindow& window, int a, int b) {
   const WindowPoint& first = window.points[static_cast<std::size_t>(a)];
   const WindowPoint& second = window.points[static_cast<std::size_t>(b)];
@@ -67,8 +67,8 @@ int better_point(const MapWindow& window, int a, int b) {
   return std::min(a, b);
 }
 
-// The views of the point that goes are measured anew against the reference of the one that stays: two corners of one
-// place may lie a pixel apart. An offline keyframe is not given another offline point.
+// Measures the observations of the removed point relative to the reference of the kept one: two corners of one spot may
+// be a pixel apart. An offline keyframe never gets another offline point.
 void fuse(MapWindow& window, int removed, int kept) {
   const std::vector<WindowObservation> observations = window.points[static_cast<std::size_t>(removed)].observations;
   const bool kept_is_offline = is_offline(window.points[static_cast<std::size_t>(kept)]);

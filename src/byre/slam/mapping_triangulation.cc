@@ -10,14 +10,14 @@ namespace byre {
 namespace {
 
 constexpr int kMaxDistance = 50;   // bits
-constexpr float kMaxRatio = 0.8f;  // best over second best along the epipolar line
+constexpr float kMaxRatio = 0.8f;  // best over second-best distance along the epipolar line
 constexpr float kEpipolarSigmas = 2.5f;
-constexpr double kMinAngle = 0.005;  // radians between the rays; the covariance decides beyond that
+constexpr double kMinAngle = 0.005;  // radians between the rays; beyond that the covariance decides
 
 struct FreeFeature {
   int index = 0;
   int octave = 0;
-  float max_pixels_off = 0.0f;  // pixels from the epipolar line
+  float max_pixels_off = 0.0f;  // largest distance from the epipolar line, pixels
   Eigen::Vector3d ray;          // z = 1
 };
 
@@ -34,7 +34,7 @@ std::vector<FreeFeature> free_features(const MapWindow& window, int keyframe) {
   return free;
 }
 
-// The other view's feature that lies on the epipolar line of this one and looks like it.
+// The other view's feature that is on the epipolar line and looks similar.
 std::optional<int> match_along_epipolar_line(const CameraView& first, const FreeFeature& feature,
                                              const CameraView& second, const std::vector<FreeFeature>& candidates,
                                              const Eigen::Matrix3d& essential) {
@@ -70,7 +70,7 @@ std::optional<Eigen::Vector3d> triangulate_pixels(const CameraView& first, const
   return inverse(first.camera_from_world) * *point_in_first;
 }
 
-// Information (inverse covariance) a pixel gives of a point in world.
+// Information (inverse covariance) of a pixel about a point in world.
 Eigen::Matrix3d pixel_information(const CameraView& view, const Eigen::Vector3d& point_in_world, double sigma) {
   const Eigen::Vector3d point_in_camera = view.camera_from_world * point_in_world;
   const Eigen::Matrix<double, 2, 3> jacobian =

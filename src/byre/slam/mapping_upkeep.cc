@@ -15,16 +15,16 @@ const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservati
   return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
 }
 
-// Online keyframes that see an online point.
+// Number of online keyframes that see an online point.
 int times_seen_online(const MapWindow& window, const WindowPoint& point) {
   const auto inside = std::ranges::count_if(
       point.observations, [&](const WindowObservation& seen) { return !is_offline(keyframe_of(window, seen)); });
   return static_cast<int>(inside) + point.observations_elsewhere;
 }
 
-// From all views in the window, their poses taken as exact.
+// Covariance by all views in the window, with exact poses.
 Eigen::Matrix3d position_covariance(const MapWindow& window, const WindowPoint& point) {
-  constexpr double kPriorSigma = 10.0;  // metres: keeps directions that no view determines finite
+  constexpr double kPriorSigma = 10.0;  // metres, keeps undetermined directions finite
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kPriorSigma * kPriorSigma);
   for (const WindowObservation& seen : point.observations) {
     const WindowKeyframe& keyframe = keyframe_of(window, seen);
@@ -44,7 +44,7 @@ Eigen::Matrix3d position_covariance(const MapWindow& window, const WindowPoint& 
   return 0.5 * (covariance + covariance.transpose());
 }
 
-// A single view without a disparity tells a direction, not a place.
+// A single view without a disparity determines only a direction.
 bool is_undetermined(const MapWindow& window, const WindowPoint& point) {
   if (times_seen(point) != 1 || point.observations.empty()) return false;
   const WindowObservation& seen = point.observations.front();
@@ -88,8 +88,8 @@ void refresh_view(const MapWindow& window, WindowPoint& point) {
   if (sum.norm() > 1e-3f) point.point.mean_viewing_direction = sum.normalized();
 }
 
-// Share of the points a keyframe sees that are there without it: those that three others at least see too, and offline
-// ones. Online points are reached through online keyframes, so that an offline keyframe is no substitute.
+// Share of a keyframe's points that are offline, or seen by at least three other online keyframes. Offline keyframes do
+// not count, since online points are reached through online ones.
 double redundant_share(const MapWindow& window, const WindowKeyframe& keyframe) {
   constexpr int kOthers = 3;
   int seen = 0;
@@ -141,7 +141,7 @@ void remove_weak_points(MapWindow& window, KeyframeId newest, const HiddenCells&
     const WindowPoint& point = window.points[static_cast<std::size_t>(i)];
     if (point.removed || is_offline(point)) continue;
     const bool had_its_chance = newest.number >= point.point.reference.keyframe.number + kKeyframesToConfirm;
-    const bool alone = !point.id && times_seen(point) < 2;  // one made here, and refuted at once
+    const bool alone = !point.id && times_seen(point) < 2;  // made in this window and rejected at once
     const bool unconfirmed = had_its_chance && times_seen(point) < 2 && !is_behind_dirt(window, point, hidden);
     if (alone || unconfirmed || is_undetermined(window, point)) remove_point(window, i);
   }

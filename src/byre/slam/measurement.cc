@@ -7,8 +7,8 @@
 namespace byre {
 namespace {
 
-// Octave pixels. A FAST corner moves by about a pixel from view to view; an aligned patch still errs by what the
-// plane that faces the camera, and the interpolation, leave unmodelled.
+// Octave pixels. A FAST corner moves by about a pixel from view to view. An aligned patch has unmodelled errors: the
+// plane that faces the camera, and interpolation.
 constexpr float kCornerSigma = 0.8f;
 constexpr float kModelSigma = 0.15f;
 

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-constexpr int kUnlike = 80;  // bits: a descriptor this far off is no worse than a missing one
+constexpr int kUnlike = 80;  // bits; a descriptor at this distance counts like a missing one
 
 const PosedFrame& image_of(const SfmModel& model, int image) {
   return model.images[static_cast<std::size_t>(image)];
@@ -41,7 +41,7 @@ std::vector<ModelView> find_candidates(const SfmModel& model, const ModelPoint& 
   return candidates;
 }
 
-// The candidate most like the descriptor in each image.
+// The most similar candidate of each image.
 std::vector<ModelView> most_alike(const SfmModel& model, const std::vector<ModelView>& candidates,
                                   const Descriptor& descriptor, int max_distance) {
   std::vector<ModelView> chosen;
@@ -58,7 +58,7 @@ std::vector<ModelView> most_alike(const SfmModel& model, const std::vector<Model
   return chosen;
 }
 
-// How far the images' best candidates are from this descriptor, all together, bits.
+// Sum over the images of the distance of the best candidate to the descriptor, bits.
 int unlikeness(const SfmModel& model, const std::vector<ModelView>& candidates, const Descriptor& descriptor) {
   int sum = 0;
   for (std::size_t i = 0; i < candidates.size();) {
@@ -72,7 +72,7 @@ int unlikeness(const SfmModel& model, const std::vector<ModelView>& candidates, 
   return sum;
 }
 
-// A feature shows one point only: the one that projects nearest to it.
+// Leaves each feature to one point: the one that projects nearest to it.
 void settle_claims(std::vector<ModelSightings>& sightings) {
   std::map<std::pair<int, int>, std::pair<float, int>> owners;  // by image and feature
   for (const ModelSightings& point : sightings) {

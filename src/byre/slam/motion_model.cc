@@ -9,7 +9,8 @@
 namespace byre {
 namespace {
 
-// Whether the translation may be off by its whole length, for example where wheels spin or their pose jumps.
+// Whether the translation may be off by its whole length, for example with spinning wheels or after a jump of their
+// pose.
 bool is_way_open(const BodyMotion& motion) {
   constexpr double kShare = 0.9;  // share of the length
   constexpr double kLeast = 0.1;  // metres

@@ -6,8 +6,8 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kNeighbours = 6;  // nearest judged points, which tell whether a point moved with others
-constexpr double kMinShareMoved = 0.5;  // share of those that have moved too
+constexpr std::size_t kNeighbours = 6;  // nearest judged points to compare with
+constexpr double kMinShareMoved = 0.5;  // share of moved ones among these
 
 struct JudgedPoint {
   Eigen::Vector3d position_in_world;
@@ -23,9 +23,9 @@ ReusedVector<JudgedPoint> judged_points(const Map& offline, std::span<const Poin
   return judged;
 }
 
-// Share of the nearest judged points about one of them that has moved.
+// Share of moved points among the nearest judged ones.
 double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
-  thread_local std::vector<std::pair<double, bool>> others;  // squared metres, moved; memory
+  thread_local std::vector<std::pair<double, bool>> others;  // squared metres, moved; buffer
   others.clear();
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (i == point) continue;
@@ -43,7 +43,7 @@ double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
 
 ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
                                      std::span<const PointId> moved) {
-  if (moved.empty()) return {};  // as in most frames
+  if (moved.empty()) return {};  // in most frames
   const ReusedVector<JudgedPoint> judged = judged_points(offline, agreed, moved);
   ReusedVector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
