@@ -27,7 +27,7 @@ Matrix6 median_covariance(const Map& map) {
 }  // namespace
 
 std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls) {
-  constexpr double kMostApart = 2.0;    // metres between keyframes of one way
+  constexpr double kMostApart = 2.0;    // metres between keyframes of one path
   constexpr double kDeep = 0.5;         // metres inside a wall
   constexpr double kMostInWalls = 0.1;  // share of the path
   std::vector<std::vector<Eigen::Vector2d>> ways;
@@ -61,7 +61,7 @@ OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<Source
 
 ReusedVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
                                                     int max_count) const {
-  constexpr double kMaxAngle = 1.0;  // radians: beyond it hardly a point is in both views
+  constexpr double kMaxAngle = 1.0;  // radians; views farther apart share hardly any points
   const Pose world_from_camera = inverse(camera_from_world);
   const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();
   ReusedVector<std::pair<double, KeyframeId>> near;

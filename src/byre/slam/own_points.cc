@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// Median depth of the points as their reference views see them.
+// Median depth of the points in their reference views.
 double median_depth(const Map& map) {
   std::vector<double> depths;
   for (const PointId id : map.point_ids()) {
@@ -25,7 +25,7 @@ std::optional<PointId> point_at(const Map& map, const Observation& seen) {
   return map.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)].point;
 }
 
-// The point of the map that most of these features show already.
+// The point of the map that most of these features show.
 std::optional<PointId> known_point(const Map& map, const std::vector<Observation>& observations) {
   std::map<PointId, int> counts;
   for (const Observation& seen : observations) {

@@ -42,7 +42,7 @@ void SlopeSum::add(double motion, const Others& others, double value) {
 std::optional<SlopeSum::Slope> SlopeSum::slope(double least_motion) const {
   constexpr double kEnough = 50.0;       // weight of all values
   constexpr double kShared = 3.0;        // factor of sigmas, as errors of neighbouring points are correlated
-  constexpr double kLeastSquare = 0.01;  // pixels squared, least variance of a value
+  constexpr double kLeastSquare = 0.01;  // pixels squared, minimum variance of a value
   if (count_ < kEnough) return std::nullopt;
   // Damping of 1e-3 keeps the equations solvable.
   const Eigen::Matrix<double, kSize, kSize> information =

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// The window's keyframes by the part that they belong to, named by one of its keyframes.
+// The parts of the window's keyframes, each named by one of its keyframes.
 class Parts {
  public:
   explicit Parts(const MapWindow& window) : parent_(window.keyframes.size()) {
@@ -44,8 +44,7 @@ Pose world_from_body(const MapWindow& window, int keyframe) {
   return body_pose(window.rig_of(entry), entry.keyframe.camera_from_world);
 }
 
-// How long ways are in each part, as a multiple of what is told; missing where too few are told, or the part knows
-// metres by itself.
+// Scale of each monocular part relative to measured motion; missing with too few motions.
 std::map<int, double> lengths_of_parts(const MapWindow& window, const Parts& parts) {
   constexpr int kFew = 3;
   std::map<int, LengthRatio> ratios;
@@ -79,7 +78,7 @@ void move_part(MapWindow& window, const Parts& parts, int part, const Similarity
   }
 }
 
-// The part of the later keyframe goes to where the motion leads from the earlier one, with lengths so much longer.
+// Moves the part of the later keyframe to the pose predicted from the earlier one, with lengths scaled by growth.
 Similarity placement(const MapWindow& window, const WindowMotion& motion, double growth) {
   const Pose before = world_from_body(window, motion.later);
   return {growth, world_from_body(window, motion.earlier) * motion.motion.last_from_body *

@@ -27,7 +27,7 @@ constexpr double kMinExpected = 6.0;  // expected points from which a cell count
 constexpr double kLeastSeen = 0.5;      // least seen points of an agreeing cell, mean of its frames
 constexpr double kMinShare = 0.02;    // least share of seen points of an agreeing cell; chance gives a seventh of it
 
-// Prior: one find in ten is of a moved thing.
+// Prior: one find in ten is of a moved object.
 const double kOfMovedThing = std::log(10.0);
 
 constexpr double kReject = -4.0;  // log-odds at which an accepted place is rejected
@@ -108,8 +108,8 @@ double PlaceHypothesis::evidence(Count Cell::*points) const {
 void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals) {
   if (is_tracked) frames_to_believe_ = std::max(0, frames_to_believe_ - 1);
   ++frame_;
-  // Where no keyframe saw the map from nearby, walls may hide expected points. Missing points then count against a
-  // place that is not accepted, but not against an accepted one.
+  // If no keyframe saw the map from nearby, walls may hide expected points. Missing points then count against a place
+  // that is not accepted, but not against an accepted one.
   if (is_accepted_ && !view.is_near_keyframe) return;
   for (const CellInView& seen : view.cells) {
     auto cell = std::ranges::lower_bound(cells_, seen.cell, {}, &Cell::index);
@@ -128,7 +128,7 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log
   log_odds_to_rivals_ = prior_ + evidence(&Cell::alone);
   if (is_believed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
     is_accepted_ = true;
-    prior_ = std::max(prior_, 0.0);  // outweighed by cells that may be forgotten before it is
+    prior_ = std::max(prior_, 0.0);  // the cells that outweighed it may be forgotten earlier
   }
   if (is_rejected()) is_accepted_ = false;
 }

@@ -27,7 +27,7 @@ NodeFeatures features_by_node(std::span<const Word> words, const Vocabulary& voc
   return result;
 }
 
-// Calls visit(range of first, range of second) for each node that both have features of.
+// Calls visit(range of first, range of second) for each node with features of both.
 template <typename Visitor>
 void visit_shared_nodes(const NodeFeatures& first, const NodeFeatures& second, Visitor visit) {
   const auto end_of_node = [](auto begin, auto end) {
@@ -67,12 +67,12 @@ bool is_distinct(const Nearest& nearest, const PlaceMatchOptions& options) {
          static_cast<float>(nearest.distance) < options.max_ratio * static_cast<float>(nearest.second_distance);
 }
 
-// Not one of an offline map that the view leaves out.
+// False for a point of an offline map that is not in the view.
 bool shows_known_point(const MapView& map, const Sighting& sighting) {
   return sighting.point && map.find_point(*sighting.point) != nullptr;
 }
 
-// One match at most for each feature and each point: the most similar.
+// At most one match for each feature and each point: the most similar.
 std::vector<PointMatch> most_similar(std::vector<PointMatch> matches) {
   const auto by_similarity = [](const PointMatch& a, const PointMatch& b) {
     return std::tie(a.distance, a.feature, a.point) < std::tie(b.distance, b.feature, b.point);

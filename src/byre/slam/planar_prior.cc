@@ -10,11 +10,11 @@
 namespace byre {
 namespace {
 
-constexpr double kOpenMetres = 10.0;      // sigma of a place on the ground
-constexpr double kOpenRadians = 3.0;      // sigma of a heading on the ground
+constexpr double kOpenMetres = 10.0;      // metres, sigma of a free position
+constexpr double kOpenRadians = 3.0;      // radians, sigma of a free heading
 constexpr double kLeastVariance = 1e-12;  // square metres and square radians
 
-// One sigma along a direction, another across it.
+// Covariance with one sigma along a direction and another across it.
 Eigen::Matrix3d covariance_about(const Eigen::Vector3d& direction, double along, double across) {
   const Eigen::Matrix3d projector = direction * direction.transpose();
   return along * along * projector + across * across * (Eigen::Matrix3d::Identity() - projector);

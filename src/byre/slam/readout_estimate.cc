@@ -10,23 +10,23 @@
 namespace byre {
 namespace {
 
-constexpr int kFramesOfBlock = 8;  // frames that err alike
-constexpr int kMinBlocks = 4;      // blocks that are asked at least
-// Seconds and, of what is measured, sigmas of the first change. What a calibration that errs looks like, to a robot
-// that only drives ahead or in the first seconds, is less.
+constexpr int kFramesOfBlock = 8;  // frames with correlated errors
+constexpr int kMinBlocks = 4;      // blocks needed
+// Least first change: seconds, and sigmas of its effect on measurements. A calibration error looks like a smaller
+// change in straight motion and in the first seconds.
 constexpr double kMinFirst = 0.006;
 constexpr double kMinEffect = 0.2;
-constexpr double kMinFurther = 0.001;      // seconds of a change after the first
+constexpr double kMinFurther = 0.001;      // seconds, change after the first
 constexpr double kMinReadoutSigmas = 5.0;  // sigmas of a change
-constexpr double kLeastReadout = 0.002;    // seconds of the shortest time that is seen
-constexpr double kMaxReadout = 0.1;        // seconds of the longest time
+constexpr double kLeastReadout = 0.002;    // seconds; shorter times count as zero
+constexpr double kMaxReadout = 0.1;        // seconds, longest readout time
 
 constexpr double kReadoutHuberWidth = 2.0;  // sigmas
-constexpr double kUnexplainedSigma = 0.2;   // pixels, of what neither noise nor the shutter explains
+constexpr double kUnexplainedSigma = 0.2;   // pixels, errors that neither noise nor the shutter explains
 
 using ReadoutRow = Eigen::Matrix<double, 2, 3>;
 
-// One point in a frame, pixels: what was measured less what pose and point say, and how both answer.
+// Linearised measurement of one point, pixels: residual and Jacobians.
 struct Answer {
   Eigen::Vector2d residual;
   Eigen::Matrix<double, 2, 6> by_pose;
@@ -34,7 +34,7 @@ struct Answer {
   Eigen::Matrix2d weight;
 };
 
-// Precondition: the point lies before the camera.
+// Precondition: the point is in front of the camera.
 Answer answer_of(const TrackedFeature& feature, double row_time, const MapPoint& point, const Pose& camera_from_world,
                  const Rig& rig, const Vector6& velocity) {
   const Eigen::Vector3d point_in_camera = camera_from_world * point.position_in_world;
@@ -63,7 +63,7 @@ class FrameEquations {
     ++readout_.points;
   }
 
-  // Nothing where the points do not determine the pose.
+  // Empty if the points do not determine the pose.
   ReadoutEvidence without_pose() const {
     const Eigen::LDLT<Matrix6> factor(pose_pose_);
     if (factor.info() != Eigen::Success || !factor.isPositive()) return {};
@@ -91,7 +91,7 @@ ReadoutEvidence& ReadoutEvidence::operator+=(const ReadoutEvidence& other) {
 
 ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map,
                                  const Vector6& velocity) {
-  constexpr double kMinTurn = 0.3;  // radians a second: what errs looks the same in each frame to who drives ahead
+  constexpr double kMinTurn = 0.3;  // radians per second; in straight motion errors look the same in each frame
   if (velocity.tail<3>().norm() < kMinTurn) return {};
   FrameEquations equations;
   for (const ReusedVector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
@@ -113,7 +113,7 @@ void ReadoutEstimator::Blocks::add(const ReadoutEvidence& block) {
   product += block.right_side * block.information;
 }
 
-// What noise would make of it at least.
+// At least the sigma by noise alone.
 double ReadoutEstimator::Blocks::sigma() const {
   const double scatter = right_side_squared - 2.0 * change() * product + change() * change() * information_squared;
   return std::sqrt(std::max(scatter, sum.information)) / sum.information;

@@ -6,8 +6,8 @@ namespace byre {
 namespace {
 
 constexpr int kAll = 1 << 20;
-constexpr int kMinSharedWithNew = 30;  // shared by a keyframe that is moved along with one that came
-constexpr int kAroundLoopEnd = 15;     // keyframes moved along with the end of a loop
+constexpr int kMinSharedWithNew = 30;  // points shared with a new keyframe by a keyframe that moves as well
+constexpr int kAroundLoopEnd = 15;     // keyframes around the end of a loop that move as well
 
 using Keyframes = std::set<KeyframeId>;
 

@@ -26,7 +26,7 @@ std::vector<PathKeyframe> measured_path(const Map& online, const std::vector<Key
   return path;
 }
 
-// A share of a motion of the world that turns about a pivot: all of it moves the pivot as the whole motion does.
+// Share of a rigid motion that rotates about a pivot; the pivot moves by that share of its motion.
 Pose share_of(const Pose& motion, double share, const Eigen::Vector3d& pivot) {
   const Eigen::Vector3d shift = share * (motion * pivot - pivot);
   const Eigen::Quaterniond turn = rotation_exp(share * rotation_log(motion.rotation));

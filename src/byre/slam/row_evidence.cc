@@ -15,19 +15,19 @@ constexpr int kPartColumns = 8;
 constexpr int kPartRows = 6;
 constexpr double kRowHuberWidth = 2.0;  // sigmas
 
-// The mean over the rows of one part of the image.
+// Mean over the rows of one part of the image.
 struct PartMean {
   double offset = 0.0;    // pixels
-  double variance = 0.0;  // squared pixels, by the rows' sigmas alone
+  double variance = 0.0;  // squared pixels, by the sigmas of the rows alone
   CalibrationVector by_calibration = CalibrationVector::Zero();
 };
 
 struct WeighedRows {
-  CalibrationEquations equations;  // as though all rows erred by themselves
-  std::vector<PartMean> means;     // one for each part that shows any
+  CalibrationEquations equations;  // with independent errors of all rows
+  std::vector<PartMean> means;     // one for each part with rows
 };
 
-// Each row weighed by what is left of it after the change.
+// Weighs each row by its residual after the change.
 WeighedRows weighed(const std::vector<RowMeasurement>& rows, const CalibrationVector& change) {
   std::vector<double> residuals, deviations;
   residuals.reserve(rows.size());
@@ -59,7 +59,7 @@ WeighedRows weighed(const std::vector<RowMeasurement>& rows, const CalibrationVe
   return result;
 }
 
-// What the means say, if each has an error of its own of such a variance.
+// Normal equations of the means, with an additional variance of each.
 CalibrationEquations equations_of(const std::vector<PartMean>& means, double own_variance) {
   CalibrationEquations equations;
   for (const PartMean& mean : means) {
@@ -70,7 +70,7 @@ CalibrationEquations equations_of(const std::vector<PartMean>& means, double own
   return equations;
 }
 
-// Squared residuals of the means, in their sigmas, against the degrees of freedom that are left.
+// Squared residuals of the means, in sigmas, and their degrees of freedom.
 struct Misfit {
   double squares = 0.0;
   double freedom = 1.0;
@@ -88,7 +88,7 @@ Misfit misfit_of(const std::vector<PartMean>& means, double own_variance, const 
   return misfit;
 }
 
-// The variance of the parts' own errors by which their means differ as much as they do; none where noise does it.
+// Additional variance of the means that explains their differences; 0 if noise explains them.
 double own_variance_of(const std::vector<PartMean>& means, const CalibrationKnowledge& prior) {
   constexpr double kLeast = 1e-6, kMost = 1.0;  // squared pixels
   constexpr int kHalvings = 12;

@@ -13,7 +13,7 @@ struct LogRatio {
   double sigma = 0.0;
 };
 
-// Variance of the depth as a share of the depth.
+// Relative variance of the depth.
 double relative_depth_variance(const MapPoint& point, const Pose& camera_from_world, double depth) {
   const Eigen::RowVector3d forward_in_world = camera_from_world.rotation.toRotationMatrix().row(2);
   return forward_in_world.dot(point.covariance * forward_in_world.transpose()) / (depth * depth);
@@ -25,7 +25,7 @@ std::vector<LogRatio> log_ratios(std::span<const DepthPair> pairs) {
   return ratios;
 }
 
-// How far ratios lie from a centre, in their own sigmas: the spread of most of them, and never less than one.
+// Robust spread of the ratios around a centre, in their own sigmas; at least 1.
 double spread_about(double centre, const std::vector<LogRatio>& ratios) {
   std::vector<double> errors;
   for (const LogRatio& ratio : ratios) errors.push_back(std::abs(ratio.value - centre) / ratio.sigma);
@@ -35,7 +35,7 @@ double spread_about(double centre, const std::vector<LogRatio>& ratios) {
 }  // namespace
 
 std::vector<DepthPair> depth_pairs(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part) {
-  constexpr double kMinVariance = 0.005 * 0.005;  // no depth is known better, whatever its covariance says
+  constexpr double kMinVariance = 0.005 * 0.005;  // lower bound, whatever the covariance
   std::vector<DepthPair> pairs;
   for (const TrackedFeature& feature : in_older_part.features) {
     const auto& own = keyframe.sightings[static_cast<std::size_t>(feature.feature)].point;

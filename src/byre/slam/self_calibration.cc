@@ -16,20 +16,20 @@
 namespace byre {
 namespace {
 
-constexpr int kMinKeyframes = 6;  // keyframes that tell anything
+constexpr int kMinKeyframes = 6;  // keyframes needed
 constexpr int kIterations = 12;   // iterations of bundle adjustment
-// Common error of measurements in real images, which looks like a wrong focal length, whatever their number. In sigmas
-// of a good calibration.
+// Common error of measurements in real images, which looks like a focal length error for any number of measurements. In
+// sigmas of a good calibration.
 constexpr double kFocalSigmas = 0.25;
 
 constexpr double kHuberWidth = 2.0;  // sigmas
-// The disparities of one corner in many keyframes, and those of its neighbours, are measured on the same surface and
-// err alike: together they tell less than their sigmas say.
+// Disparities of one corner in several keyframes, and those of its neighbours, are measured on the same surface, so
+// their errors are correlated.
 constexpr double kSharedDisparityError = 3.0;  // factor on the sigma of each disparity
 constexpr double kMedianOfChiSquare2 = 1.386;
 constexpr double kMedianOfChiSquare3 = 2.366;
 
-// Keyframes of the rig, all or blocks of neighbours spread over the run.
+// All keyframes of the rig, or blocks of neighbours spread over the run.
 std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
   std::vector<int> all;
   for (int i = 0; i < static_cast<int>(whole.keyframes.size()); ++i) {
@@ -48,7 +48,7 @@ std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
   return chosen;
 }
 
-// What is measured of the points that at least two of the keyframes see.
+// Measurements of the points that at least two of the keyframes see.
 BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframes) {
   BundleProblem problem;
   problem.rigs = whole.rigs;
@@ -98,7 +98,7 @@ std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vect
   return rows;
 }
 
-// How many times as large as their sigmas the residuals are, squared; at least 1.
+// Squared ratio of residuals to their sigmas; at least 1.
 double variance_factor(const BundleProblem& problem, const std::vector<double>& squared_errors) {
   std::vector<double> ratios;
   ratios.reserve(squared_errors.size());
@@ -109,7 +109,7 @@ double variance_factor(const BundleProblem& problem, const std::vector<double>& 
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
-// As the calibration found would have measured it.
+// The problem with measurements, poses and points at the solution.
 BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
   BundleProblem moved = with_change(problem, solved.calibration_change);
   moved.calibration = problem.calibration;
@@ -118,8 +118,8 @@ BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solv
   return moved;
 }
 
-// All measurements share an error that looks like a change of the calibration along this vector, one sigma long
-// (Sherman and Morrison's formula).
+// Equations with an error common to all measurements that looks like a calibration change along this vector, one sigma
+// long (Sherman and Morrison's formula).
 CalibrationEquations with_shared_error(const CalibrationEquations& learned, const CalibrationVector& error) {
   const CalibrationVector told = learned.information * error;
   const double scale = 1.0 / (1.0 + error.dot(told));
@@ -127,15 +127,15 @@ CalibrationEquations with_shared_error(const CalibrationEquations& learned, cons
           learned.right_side - scale * told * error.dot(learned.right_side)};
 }
 
-// An error of both focal lengths alike.
+// Equal error of both focal lengths.
 CalibrationVector focal_error(double sigmas) {
   CalibrationVector error = CalibrationVector::Zero();
   error[kLeftCamera] = error[kRightCamera] = sigmas;
   return error;
 }
 
-// Root mean square by which the change moves what is seen, but for what a turn of the camera would do as well: the mean
-// of u and of v.
+// Root mean square of the image motion by the change, without the part that a camera rotation explains: the mean of u
+// and of v.
 double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
                    const CalibrationVector& change) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

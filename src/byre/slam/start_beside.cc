@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// From the start's world, in its lengths, to that of the map.
+// Similarity from the start's world to the map's.
 struct Placement {
   Pose world_from_start;
   double scale = 1.0;
@@ -18,10 +18,10 @@ struct Placement {
   }
 };
 
-// Empty where the two cameras did not move as is told.
+// Empty if the cameras moved differently than measured.
 std::optional<Placement> placement_of(const MonocularStart& start, const StartPlaces& told) {
-  constexpr double kMaxTurn = 0.1;        // radians between the turn seen and the one told
-  constexpr double kMaxDirection = 0.35;  // radians between the ways
+  constexpr double kMaxTurn = 0.1;        // radians between visual and measured turn
+  constexpr double kMaxDirection = 0.35;  // radians between the directions of motion
   const Pose first_from_start = start.map.camera_from_world(start.first);
   const Pose seen = first_from_start * inverse(start.map.camera_from_world(start.second));
   const Pose way = told.first_camera_from_world * inverse(told.second_camera_from_world);
@@ -37,7 +37,7 @@ double way_of(const Pose& first_from_world, const Pose& second_from_world) {
   return (first_from_world * inverse(second_from_world)).translation.norm();
 }
 
-// By how much the start is to be stretched; empty where what is told leaves it open.
+// Scale of the start by the measured motion; empty if that does not determine it.
 std::optional<double> told_scale(const MonocularStart& start, const StartPlaces& told) {
   constexpr double kLeastWay = 0.05;   // metres
   constexpr double kUsualArm = 0.3;    // metres
@@ -74,7 +74,7 @@ MapPoint moved(const MapPoint& point, const Placement& placement) {
   return result;
 }
 
-// The two keyframes.
+// Returns the two keyframes.
 std::vector<KeyframeId> add_start(const MonocularStart& start, const Placement& placement,
                                   const std::optional<KeyframeId>& parent, int recording, Map& map) {
   const KeyframeId first = add_keyframe(start, start.first, placement, parent, recording, map);

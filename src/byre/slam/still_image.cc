@@ -14,7 +14,7 @@ constexpr int kFewestSamples = 30;   // corners that a decision needs
 constexpr int kCoarsestOctave = 3;   // corners of coarser octaves are too inexact
 constexpr float kStays = 1.5f;       // pixels of the octave, largest shift of a corner by noise
 constexpr int kAlike = 64;           // bits, largest distance of descriptors of one corner under noise
-constexpr double kStillShare = 0.4;  // least share of corners that stay at a standstill
+constexpr double kStillShare = 0.4;  // minimum share of corners that stay at a standstill
 
 bool stays_at(const Features& features, const Keypoint& keypoint, const Descriptor& descriptor) {
   int least = std::numeric_limits<int>::max();
@@ -27,7 +27,7 @@ bool stays_at(const Features& features, const Keypoint& keypoint, const Descript
 // Shift of a corner by the motion, pixels. then: its position in the camera before the motion.
 Eigen::Vector2d shift_by(const Eigen::Vector2d& pixel, const Eigen::Vector3d& then, const Pose& now_from_then,
                          const Rig& rig) {
-  constexpr double kNearest = 0.05;  // least depth, map units
+  constexpr double kNearest = 0.05;  // minimum depth, map units
   Eigen::Vector3d in_camera = now_from_then * then;
   in_camera.z() = std::max(kNearest, in_camera.z());
   return rig.project(in_camera).head<2>() - pixel;
@@ -86,8 +86,8 @@ void StillImage::compare(const Features& features, const Rig& rig, double depth)
 bool StillImage::is_contradicted_by(const Pose& now_from_then, const Rig& rig) const {
   constexpr double kLeastShift = 4.0;           // pixels
   constexpr double kLeastShiftOfWidth = 0.008;  // share of the image width
-  constexpr double kLeastMoved = 0.15;          // least share of corners that should have moved
-  constexpr double kStaying = 0.4;              // least share of these that stay
+  constexpr double kLeastMoved = 0.15;          // minimum share of corners that should have moved
+  constexpr double kStaying = 0.4;              // minimum share of these that stay
   const double least = std::max(kLeastShift, kLeastShiftOfWidth * rig.width);
   int moved = 0, staying = 0;
   for (const Corner& corner : corners_) {
