@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// All in one piece, which is given back to the disk at once.
+// The lists are one block in the file, which is freed as a whole.
 std::shared_ptr<const Features> stowed(const std::shared_ptr<const Features>& features, ScratchFile& file) {
   constexpr std::size_t kAlignment = 64;  // bytes, of each list
   if (!features) return features;

@@ -15,7 +15,7 @@ namespace {
 constexpr Timestamp kLongest = std::chrono::seconds(10);
 constexpr Timestamp kLongestUnseen = std::chrono::minutes(2);
 
-// Sigmas of what is told and a share of the motion for what keyframes that are not adjusted yet err by.
+// Gate: sigmas of the measured motion, plus a share of the motion for errors of keyframes that are not adjusted yet.
 bool contradicts(const BodyMotion& told, const Pose& seen) {
   constexpr double kSigmas = 5.0;
   constexpr double kShare = 0.1;
@@ -34,9 +34,9 @@ int shared_points(const Map& online, KeyframeId one, KeyframeId other) {
   return 0;
 }
 
-// Whether what is seen tells nothing of the way between them. A few points tell nothing, nor do many where the later
-// one was tracked from a keyframe that shares hardly any with the earlier one: where a frame is found again in an old
-// place, and that place lies elsewhere than drift has led, these are what was triangulated across the gap.
+// Whether the images do not relate two keyframes: they share few points, or the later one was tracked from a keyframe
+// that shares few points with the earlier one. In the second case a frame was relocalised at an old place displaced by
+// drift, and the shared points were triangulated across the gap.
 bool is_unseen(const Map& online, KeyframeId earlier, KeyframeId later) {
   constexpr int kFew = 30;
   if (shared_points(online, earlier, later) < kFew) return true;

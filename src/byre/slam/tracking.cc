@@ -14,8 +14,8 @@
 namespace byre {
 namespace {
 
-// Appends the points of one map, each once, ascending. A bit is marked for each, and bits are read in order: points of
-// a neighbourhood have numbers near each other, so that this takes a tenth of sorting them.
+// Appends the distinct points of one map, ascending, by a bit for each point: numbers of neighbouring points are close,
+// so this takes a tenth of the time of sorting.
 void append_distinct(Origin origin, std::span<const PointId> points, ReusedVector<PointId>& distinct) {
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
   for (const PointId id : points) {
@@ -42,7 +42,7 @@ void append_distinct(Origin origin, std::span<const PointId> points, ReusedVecto
   }
 }
 
-// Each once, ascending.
+// Distinct points, ascending.
 ReusedVector<PointId> distinct(std::span<const PointId> points) {
   ReusedVector<PointId> once;
   once.reserve(points.size());
@@ -54,7 +54,7 @@ ReusedVector<PointId> distinct(std::span<const PointId> points) {
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
                                               const MapView& map, const std::vector<GuidedMatch>& matches,
                                               const TrackOptions& options) {
-  thread_local MeasuredPoints measured;  // memory, as the next
+  thread_local MeasuredPoints measured;  // buffer
   thread_local SharedPoints shared;
   measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
@@ -86,7 +86,7 @@ void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& see
 }
 
 ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
-  thread_local std::vector<PointId> points;  // memory
+  thread_local std::vector<PointId> points;  // buffer
   points.clear();
   const auto append = [&](KeyframeId id) {
     const Keyframe* const keyframe = map.find_keyframe(id);
@@ -103,7 +103,7 @@ ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                   const MapView& map, std::span<const PointId> candidates,
                                   const TrackOptions& options) {
-  thread_local std::vector<ExpectedPoint> expected;  // memory, as the next
+  thread_local std::vector<ExpectedPoint> expected;  // buffer
   thread_local std::vector<GuidedMatch> matches;
   project_visible(map, candidates, predicted_camera_from_world, rig, options.hidden, expected);
   std::optional<Pose> first;

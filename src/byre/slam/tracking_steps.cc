@@ -6,14 +6,14 @@
 namespace byre {
 namespace {
 
-constexpr double kMinInlierShare = 0.5;  // share of the matches; with fewer the prediction led astray
+constexpr double kMinInlierShare = 0.5;  // share of the matches; with fewer the prediction was wrong
 
 PoseObservation observation_of(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
   const StereoPixel measured(pixel.pixel.x(), pixel.pixel.y(), keypoint.disparity);
   return pose_observation(point, measured, pixel.sigma, keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0);
 }
 
-// The pixel of the point in the frame.
+// Measures the pixel of the point in the frame.
 PixelMeasurement measure(const MapView& map, const MapPoint& point, const CameraView& frame, int feature) {
   const Keyframe* const keyframe = map.find_keyframe(point.reference.keyframe);
   if (keyframe == nullptr) return corner_measurement(frame.features.keypoint(feature));
@@ -95,7 +95,7 @@ bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOpt
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
                                const TrackOptions& options) {
-  thread_local std::vector<GuidedMatch> matches;  // memory, as the next
+  thread_local std::vector<GuidedMatch> matches;  // buffer
   thread_local std::vector<PoseObservation> observations;
   match_expected(*frame.features, map, expected, {radius}, matches);
   observations.clear();

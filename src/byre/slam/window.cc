@@ -26,7 +26,7 @@ std::vector<KeyframeId> choose_movable(const Map& map, const std::vector<Keyfram
   return chosen;
 }
 
-// Mapping asks for no words, and there are windows of whole maps.
+// Mapping needs no words, and a window may contain a whole map.
 Keyframe without_words(const Keyframe& keyframe) {
   return {keyframe.frame,      keyframe.rig,       keyframe.recording, keyframe.camera_from_world,
           keyframe.covariance, keyframe.sightings, keyframe.parent,    {}};
@@ -54,7 +54,7 @@ std::vector<Rig> rigs_of(const MapView& map) {
   return rigs;
 }
 
-// Ascending: the points that these keyframes see, but for those that they see through foreign views.
+// Points that these keyframes see without foreign views, ascending.
 std::vector<PointId> points_seen(std::span<const WindowKeyframe> keyframes, const MapView& map) {
   std::vector<PointId> ids;
   for (const WindowKeyframe& keyframe : keyframes) {
@@ -116,7 +116,7 @@ int sightings_of_offline(const MapWindow& window) {
   return count;
 }
 
-// Those of one map that are not in the window yet, until it holds so many anchors of that map.
+// Appends keyframes of one map that are not in the window yet, up to `limit` anchors of that map.
 void append_anchors(MapWindow& window, const MapView& map, const std::vector<KeyframeId>& ranked, Origin origin,
                     int limit) {
   const auto is_anchor = [&](const WindowKeyframe& keyframe) {
@@ -133,8 +133,8 @@ void append_anchors(MapWindow& window, const MapView& map, const std::vector<Key
   }
 }
 
-// First those that share most points with the new keyframes, which stand at the window's beginning. Returns the points
-// that they see.
+// Appends the offline keyframes that share most points with the new keyframes, which are first in the window, then
+// others. Returns the points that they see.
 std::vector<PointId> append_offline_anchors(MapWindow& window, const MapView& map,
                                             const std::vector<KeyframeId>& ranked, int limit) {
   if (map.offline() == nullptr) return {};
@@ -174,7 +174,7 @@ void link_observations(MapWindow& window, const MapView& map) {
   }
 }
 
-// The window's copy of an offline keyframe is told what the online map knows of its features.
+// Copies the online map's foreign views into the window's offline keyframes.
 void link_foreign_views(MapWindow& window, const MapView& map) {
   const NumberOfKeyframe index = index_keyframes(window);
   for (int p = 0; p < static_cast<int>(window.points.size()); ++p) {
