@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kSigma = 0.1f;  // pixels
 
-// A robot that looks about before a wall of known points, with cameras that differ from their calibration.
+// A robot that turns in front of a wall of mapped points, with a calibration error.
 class LookingAbout {
  public:
   LookingAbout(const Calibration& given, const CalibrationVector& error)
@@ -82,7 +82,7 @@ class LookingAbout {
   std::normal_distribution<double> noise_;
 };
 
-// Root mean square by which disparities of 20 px are off, pixels.
+// Root mean square error of disparities of 20 px, pixels.
 double disparity_error(const Calibration& calibration, const Calibration& truth) {
   const RectifiedChange change(calibration, truth);
   double sum = 0.0;

@@ -15,7 +15,7 @@ using ::testing::IsEmpty;
 constexpr WindowOptions kWindow{.movable = 6, .anchors = 4};
 constexpr KeyframeId kNewestKeyframe{Origin::online, 19};
 
-// Outliers leave features that see no point.
+// Outliers give features without a point.
 Map make_map() {
   SimulationOptions options;
   options.outlier_ratio = 0.2;
@@ -27,7 +27,7 @@ const Sighting& sighting_at(const MapWindow& window, const WindowObservation& se
       .keyframe.sightings[static_cast<std::size_t>(seen.feature)];
 }
 
-// Does to a window what mapping does, at random.
+// Changes a window at random, like mapping.
 class RandomMapping {
  public:
   RandomMapping(MapWindow& window, std::uint64_t seed) : window_(window), random_(seed) {}
@@ -86,7 +86,8 @@ class RandomMapping {
     drop(index, point.observations[static_cast<std::size_t>(below(point.observations.size()))]);
   }
 
-  // Leaves no point without observations, no new one with fewer than two or without its reference.
+  // Removes an observation, and the point if it has none left, or is new with fewer than two; keeps the reference
+  // valid.
   void drop(int index, const WindowObservation& seen) {
     remove_observation(window_, seen);
     WindowPoint& point = point_at(index);
@@ -139,7 +140,7 @@ class RandomMapping {
   std::mt19937_64 random_;
 };
 
-// A point made by the window has no id there; what sees it must see a point at its place.
+// Points made in the window have no id there: only their positions are compared.
 void expect_same_point(const Map& map, const WindowPoint& point, const std::optional<PointId>& seen) {
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen, point.id.value_or(*seen));
@@ -195,7 +196,7 @@ class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
     return window;
   }
 
-  // What the frame thread and other deltas may do while a job runs.
+  // Changes by the frame thread and by other deltas while a job runs.
   static void change_meanwhile(Map& map, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const std::vector<PointId> points = map.point_ids();
@@ -267,7 +268,7 @@ TEST_P(RandomDelta, LeavesAnEmptyMapEmpty) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomDelta, ::testing::Range(std::uint64_t{1}, std::uint64_t{21}));
 
-// A window over a map of which some points are seen once only.
+// The point has a single observation, which moves to another keyframe.
 TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
   Map map = make_map();
   const PointId id = *map.find_keyframe(kNewestKeyframe)->sightings.front().point;
@@ -291,7 +292,7 @@ TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
-// The newest online keyframe (0), an offline one (1), and two online points that the first sees.
+// The newest online keyframe (0), an offline one (1), and two online points seen by the first.
 class DeltaOfForeignViews : public ::testing::Test {
  protected:
   DeltaOfForeignViews() {
@@ -306,7 +307,7 @@ class DeltaOfForeignViews : public ::testing::Test {
 
   static constexpr KeyframeId kOffline{Origin::offline, 19};
 
-  // By the n-th feature of the offline keyframe that sees no point.
+  // The n-th feature of the offline keyframe without a point.
   int free_feature(int n) const {
     const std::vector<Sighting>& sightings = scene_.offline.find_keyframe(kOffline)->sightings;
     for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {

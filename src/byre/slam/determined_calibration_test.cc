@@ -8,8 +8,8 @@ namespace byre {
 namespace {
 
 constexpr double kPriorSigmas = 2.0;
-constexpr int kKnown = kRightRotation;      // parameter that images tell
-constexpr int kHardlyKnown = kRightCamera;  // parameter of which they tell hardly more than was known before
+constexpr int kKnown = kRightRotation;      // parameter that images determine
+constexpr int kHardlyKnown = kRightCamera;  // parameter that images hardly determine
 
 RefinedCalibration plausible_part(const CalibrationVector& expected) {
   CalibrationMatrix information = CalibrationMatrix::Identity() / (kPriorSigmas * kPriorSigmas);
@@ -35,7 +35,7 @@ TEST(DeterminedCalibration, IsRefusedWhereItIsLargerThanCalibrationsErr) {
   EXPECT_TRUE(plausible_part(expected).change.isZero(0.0));
 }
 
-// As on KITTI's pairs, which are rectified by another model than that of what is found.
+// Occurs with KITTI's pairs, which are rectified by another model than the estimated one.
 TEST(DeterminedCalibration, IsRefusedWhereTheRestOfItIsLargerThanCalibrationsErr) {
   CalibrationVector expected = CalibrationVector::Zero();
   expected[kKnown] = 4.0;

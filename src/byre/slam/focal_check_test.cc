@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// Points between 2 and 8 m as a camera sees them whose focal length is so many times as long as it is said to be.
+// Points at 2 to 8 m, seen with the rig's focal length times this factor.
 std::vector<PoseObservation> seen_with(double focal_factor, double noise_pixels, unsigned seed) {
   Rig camera = simulated_rig();
   camera.focal *= focal_factor;
@@ -73,13 +73,13 @@ TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
 
 TEST(FocalCheck, HoldsAnErrorThatIsLargeForOneThatCouldBeChance) {
   FocalCheck check;
-  check.note({950.0, 900.0, 1050.0, 100.0});  // 9 square pixels a point: the frame is blurred
+  check.note({950.0, 900.0, 1050.0, 100.0});  // 9 square pixels per point: a blurred frame
   EXPECT_GT(std::abs(check.error()), 0.01);
   EXPECT_LT(std::abs(check.sigmas()), 3.0);
   EXPECT_FALSE(check.is_off());
 }
 
-// A parabola about 0.008, with four sigmas: below the bound, above half of it.
+// Error of 0.008 at four sigmas: below the bound, above half of it.
 TEST(FocalCheck, WhatIsOffStaysSoUntilItIsClearlyNot) {
   const FocalEvidence off{500.0, 100.0, 100.0, 100.0}, doubtful{364.0, 100.0, 236.0, 100.0};
   const FocalEvidence clear{300.0, 100.0, 299.0, 100.0};

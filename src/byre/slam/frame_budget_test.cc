@@ -7,12 +7,12 @@
 namespace byre {
 namespace {
 
-// Frames that take what the machine is said to take, by a clock that is set by hand.
+// Frames with given times of their stages, by a simulated clock.
 class FrameBudgetTest : public testing::Test {
  protected:
   static constexpr double kDeadline = 0.020;
 
-  // Seconds that stages take, with all that belongs to them.
+  // Seconds of the stages without cuts.
   struct Times {
     double images = 0.005;
     double tracking = 0.003;

@@ -15,11 +15,11 @@ constexpr std::uint32_t kFirstNew = 10;  // number of the newer half's first key
 
 SimulatedMission lap() {
   SimulationOptions options = without_noise();
-  options.disparity_sigma = 0.02;  // without any, a disparity would count for none
+  options.disparity_sigma = 0.02;  // zero would count as no disparity
   return simulate_mission(simulated_rig(), circling_trajectory(60, 10.0, 2.0, 1.0), options);
 }
 
-// The drift grows along the way; a whole lap turns and shifts the map by it.
+// Drift after this share of the lap.
 Pose drifted_from_true(double share) {
   return {rotation_exp(share * Eigen::Vector3d(0.01, 0.02, 0.0)), share * Eigen::Vector3d(0.15, -0.1, 0.05)};
 }
@@ -81,7 +81,7 @@ TEST(AdjustMap, BringsADriftedMapWhereItSeesToBe) {
   EXPECT_THAT(find_faults(map), testing::IsEmpty());
 }
 
-// One camera's scale, by what wheels tell from keyframe to keyframe.
+// Monocular scale drift, constrained by wheels between successive keyframes.
 TEST(AdjustMap, HoldsScaleToWhatIsTold) {
   const auto error_with = [](bool is_told) {
     DriftedLap lap(monocular_rig(), {1.2, {}});

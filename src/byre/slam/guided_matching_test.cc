@@ -17,7 +17,7 @@ using ::testing::SizeIs;
 
 constexpr Descriptor kDescriptor{0x0123456789abcdef, 0xfedcba9876543210, 0x5555aaaa5555aaaa, 0x0f0f0f0f0f0f0f0f};
 
-// Differs from the descriptor in its lowest bits.
+// The descriptor with its lowest bits inverted.
 Descriptor differing(int bits) {
   Descriptor descriptor = kDescriptor;
   for (int bit = 0; bit < bits; ++bit) descriptor[static_cast<std::size_t>(bit / 64)] ^= std::uint64_t{1} << (bit % 64);
@@ -193,7 +193,7 @@ TEST(MatchExpected, PassesOverPointsThatAreGone) {
   EXPECT_THAT(matches_of(features, MapView(nullptr, map), {{gone, kAt100}}, kTenPixels), IsEmpty());
 }
 
-// A frame of a mission against the true map, from its true pose.
+// A frame of a mission, at its true pose on the true map.
 class MatchingASimulatedFrame : public ::testing::Test {
  protected:
   static constexpr std::size_t kFrame = 15;
@@ -216,7 +216,7 @@ TEST_F(MatchingASimulatedFrame, FindsNearlyAllAndNearlyAllOfThemRight) {
     return shown >= 0 && shown == true_landmark(mission_, map_, match.point);
   });
   EXPECT_GT(static_cast<double>(right), 0.99 * static_cast<double>(matches.size()));
-  // A tenth of what is in view is not detected.
+  // A tenth of the points in view is not detected.
   EXPECT_GT(static_cast<double>(matches.size()), 0.8 * static_cast<double>(mission_.frames[kFrame].features->size()));
 }
 

@@ -15,7 +15,7 @@ void PrintTo(Doubt doubt, std::ostream* out) {
 
 namespace {
 
-// A frame in a known place, as it should be.
+// A frame without any problem in a mapped place.
 Health good() {
   Health health;
   health.offline_expected = 400;

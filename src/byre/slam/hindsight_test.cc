@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// An online map, the first frame of its mission, and what that saw of the map.
+// An online map and the first frame of its mission, with its sightings of the map.
 class SeenInHindsight : public testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle(without_noise());
@@ -38,7 +38,7 @@ class SeenInHindsight : public testing::Test {
   }
   std::optional<Pose> pose_of(const RememberedFrame& frame) const {
     Vector6 off;
-    off << 0.02, -0.01, 0.015, 0.002, 0.001, -0.002;  // as tracked on points that were not known well yet
+    off << 0.02, -0.01, 0.015, 0.002, 0.001, -0.002;  // error of tracking on imprecise points
     return pose_in_hindsight(frame, exp_pose(off) * true_pose_, MapView(nullptr, map_), {});
   }
 };
@@ -67,7 +67,7 @@ TEST_F(SeenInHindsight, SaysNothingWhereTooFewAreLeftOrAgree) {
   EXPECT_FALSE(pose_of(frame));
 }
 
-// It was measured with the rig there was; its pose is wanted of the one there is.
+// The frame was measured with the former rig; the pose is that of the present rig.
 TEST_F(SeenInHindsight, AFrameOfARigThatWasRecalibratedIsLookedAtWithThatRig) {
   Vector6 turn;
   turn << 0.0, 0.0, 0.0, 0.01, -0.02, 0.005;
@@ -94,7 +94,7 @@ TEST_F(SeenInHindsight, NoMoreFramesWaitThanAskedFor) {
   EXPECT_FALSE(hindsight.take_oldest());
 }
 
-// Offline points lie where they lay: there is nothing to be learnt.
+// Offline points do not move, so the pose would not change.
 TEST_F(SeenInHindsight, AFrameThatOfflinePointsHoldIsNotKept) {
   TrackedFrame held = tracked();
   for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;

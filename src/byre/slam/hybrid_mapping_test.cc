@@ -1,4 +1,4 @@
-// Mapping beside a fixed map: what is online adapts, and what is offline stays as it is.
+// Mapping next to a fixed map: online data adapt, offline data do not change.
 
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -23,7 +23,7 @@ struct MeanError {
   double rotation = 0.0;  // radians
 };
 
-// Errors of the online keyframes in the frame of the offline map, without any alignment.
+// Errors of the online keyframes in the frame of the offline map, without alignment.
 MeanError mean_error(const HybridScene& scene) {
   MeanError mean;
   for (const KeyframeId id : scene.online.keyframe_ids()) {
@@ -34,7 +34,6 @@ MeanError mean_error(const HybridScene& scene) {
   return mean;
 }
 
-// The distance of online points from their landmarks.
 double median_point_error(const HybridScene& scene) {
   std::vector<double> errors;
   for (const PointId id : scene.online.point_ids()) {
@@ -48,7 +47,7 @@ double median_point_error(const HybridScene& scene) {
   return *middle;
 }
 
-// As it would be kept, without gaps in its ids.
+// The map file of a copy without gaps in ids.
 std::vector<std::byte> bytes_of(const Map& offline) {
   StoredMap stored;
   stored.map = offline_copy(offline);
@@ -56,7 +55,7 @@ std::vector<std::byte> bytes_of(const Map& offline) {
   return write_map(stored);
 }
 
-// The world as an online map has it that is off by 5 cm and 1 degree.
+// Displacement of an online map: 5 cm and 1 degree.
 const Pose kDisplacement{rotation_exp(kDegree * Eigen::Vector3d(0.6, 0.0, 0.8)), {0.03, -0.04, 0.0}};
 
 TEST(HybridMapping, PullsAnOnlineMapThatIsOffIntoTheOfflineFrame) {
@@ -114,7 +113,7 @@ TEST(HybridMapping, PullsTheWholeMapIntoTheOfflineFrameAtOnce) {
   EXPECT_THAT(mean_error(scene).position, Lt(0.004));
 }
 
-// The newest keyframe alone, and of what it sees only the offline points.
+// The newest keyframe alone, with its sightings of offline points.
 HybridScene scene_of_one_keyframe() {
   HybridScene scene = true_hybrid_scene(without_noise());
   for (const PointId id : scene.online.point_ids()) scene.online.remove_point(id);
@@ -148,7 +147,7 @@ TEST(HybridMapping, TriangulatesBetweenANewAndAnOfflineKeyframe) {
   EXPECT_EQ(bytes_of(scene.offline), before);
 }
 
-// Online points for landmarks that the offline map knows.
+// Number of online points of landmarks that the offline map has.
 int count_known_online(const HybridScene& scene) {
   const std::vector<PointId> ids = scene.online.point_ids();
   return static_cast<int>(std::ranges::count_if(
@@ -165,7 +164,7 @@ int count_sightings_of_offline_points(const Map& online) {
   return count;
 }
 
-// As after localising anew: only the newest keyframe sees offline points.
+// State after relocalisation: only the newest keyframe sees offline points.
 HybridScene scene_with_duplicates() {
   HybridScene scene = two_true_maps({});
   const std::vector<Sighting> sightings = scene.online.find_keyframe(kLastKeyframe)->sightings;
@@ -197,7 +196,7 @@ TEST(HybridMapping, FusesOnlinePointsIntoTheOfflinePointsTheyAre) {
   EXPECT_THAT(find_faults(scene.online), IsEmpty());
 }
 
-// An online point seen in a feature of an offline keyframe that sees the offline point it is.
+// Online points that match features of offline keyframes with an offline point of the same landmark.
 TEST(HybridMapping, FusesWhatAnOfflineKeyframeSeesAsAnOfflinePoint) {
   HybridScene scene = scene_with_duplicates();
   const MapWindow window = cut_window(scene.view(), {kLastKeyframe}, {});
@@ -226,7 +225,7 @@ TEST(HybridMapping, RemovesKeyframesThatSeeNextToNothingButOfflinePoints) {
   EXPECT_THAT(removed(window), Lt(removed(known)));
 }
 
-// How far the newest keyframe lies from the truth when the other online keyframes are held where they are wrong.
+// Position error of the newest keyframe with wrong online anchors, metres.
 double error_beside_wrong_anchors(double offline_weight, double offline_sigma) {
   HybridScene scene = true_hybrid_scene({});
   displace(scene.online, kDisplacement);

@@ -20,7 +20,7 @@ Pose shift_by(double metres) {
   return {Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
 }
 
-// The same map elsewhere in the world.
+// Moves a whole map in the world.
 void move(Map& map, const Pose& world_motion) {
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
@@ -33,7 +33,7 @@ void move(Map& map, const Pose& world_motion) {
   }
 }
 
-// A room mapped at one visit, and again at another.
+// A room mapped in two visits.
 class TrackHybrid : public ::testing::Test {
  protected:
   explicit TrackHybrid(int landmarks = SimulationOptions{}.landmarks) : landmarks_(landmarks) {}
@@ -60,7 +60,7 @@ class TrackHybrid : public ::testing::Test {
                         limits);
   }
 
-  // What the offline map has in this share of the image's width, from the left.
+  // Moves the offline points in this share of the image width, from the left.
   void move_left_part(double share_of_width, const Eigen::Vector3d& motion) {
     for (const PointId id : offline_.point_ids()) {
       MapPoint point = *offline_.find_point(id);
@@ -72,7 +72,7 @@ class TrackHybrid : public ::testing::Test {
     }
   }
 
-  // All offline points but each so-manieth: walls hide them, or they look otherwise by now.
+  // Changes the descriptors of all offline points but every count-th, as if they were occluded or looked different.
   void hide_but_each(std::uint32_t count) {
     std::mt19937_64 random(1);
     for (const PointId id : offline_.point_ids()) {
@@ -118,7 +118,7 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapHoweverFarTheOnlineMapIsOff) {
   for (const double metres : {0.06, 0.2}) {
     Map online = online_;
     move(online_, shift_by(metres));
-    const Pose predicted = truth_ * inverse(shift_by(metres));  // by the online map
+    const Pose predicted = truth_ * inverse(shift_by(metres));  // predicted by the online map
     const auto track = track_frame(predicted, OfflinePolicy::first);
     ASSERT_TRUE(track) << metres;
     EXPECT_TRUE(track->maps_disagree) << metres;
@@ -178,7 +178,7 @@ TEST_F(TrackHybrid, IsHardlyPulledByALargeThingThatWasMovedByAHandsBreadth) {
   EXPECT_GT(track->offline_moved.size(), 10U);
 }
 
-// In one look at corners, two fifths of the image and the rest fit a pose between them within a pixel.
+// The corners of both parts of the image fit a pose between them within a pixel.
 TEST_F(TrackHybrid, IsPulledByLessThanHalfAndDoubtsItWhereTwoFifthsWereMoved) {
   move_left_part(0.4, {0.09, 0.0, 0.06});
   const auto track = track_frame();
@@ -187,7 +187,7 @@ TEST_F(TrackHybrid, IsPulledByLessThanHalfAndDoubtsItWhereTwoFifthsWereMoved) {
   EXPECT_TRUE(track->maps_disagree);
 }
 
-// A pixel or two is what a bad calibration does as well: then both parts have a say.
+// A calibration error also causes a pixel or two, so points of both parts are used.
 TEST_F(TrackHybrid, IsPulledByLessThanHalfOfWhatALargeThingWasMovedByALittle) {
   for (const double share_of_width : {0.25, 0.4, 0.5}) {
     const Map unchanged = offline_;
@@ -258,8 +258,8 @@ TEST_F(TrackHybrid, TracksOnOfflinePointsAloneBeforeThereIsAnOnlineMap) {
 }
 
 TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
-  move(online_, shift_by(0.005));  // less than is told apart
-  // Half of the offline points: a feature that shows a point of each map is left to the offline one.
+  move(online_, shift_by(0.005));  // too little to be detected as a disagreement
+  // Half of the offline points, since features that match points of both maps are left to the offline one.
   std::vector<PointId> candidates = offline_.point_ids();
   std::erase_if(candidates, [](PointId id) { return id.number % 2 == 0; });
   std::ranges::copy(online_.point_ids(), std::back_inserter(candidates));

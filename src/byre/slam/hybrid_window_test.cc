@@ -1,4 +1,4 @@
-// Windows of an online map beside an offline one.
+// Windows of an online map next to an offline one.
 
 #include "byre/slam/hybrid_scene.h"
 
@@ -35,7 +35,7 @@ class HybridWindow : public ::testing::Test {
     return cut_window(scene_.view(), {newest}, options);
   }
 
-  // That an online keyframe sees.
+  // First point of a map that an online keyframe sees.
   PointId first_point(KeyframeId id, Origin origin) const {
     const std::vector<Sighting>& sightings = scene_.online.find_keyframe(id)->sightings;
     return *std::ranges::find_if(sightings, [&](const Sighting& sighting) {
@@ -43,7 +43,7 @@ class HybridWindow : public ::testing::Test {
             })->point;
   }
 
-  // The first feature of an offline keyframe that sees no point.
+  // First feature of an offline keyframe without a point.
   int free_feature(KeyframeId id) const {
     const std::vector<Sighting>& sightings = scene_.offline.find_keyframe(id)->sightings;
     const auto sees_none = [](const Sighting& sighting) { return !sighting.point; };
@@ -185,7 +185,7 @@ TEST_F(HybridWindow, HoldsItsOldestKeyframeWhenNothingElseDoes) {
 
 TEST_F(HybridWindow, IsThatOfTheOnlineMapWhereTheOfflineOneIsFar) {
   for (const PointId id : scene_.offline.point_ids()) scene_.offline.remove_point(id);
-  for (const KeyframeId id : scene_.online.keyframe_ids()) {  // nothing offline is seen
+  for (const KeyframeId id : scene_.online.keyframe_ids()) {  // no sightings of offline points
     const std::vector<Sighting> sightings = scene_.online.find_keyframe(id)->sightings;
     for (int feature = 0; feature < static_cast<int>(sightings.size()); ++feature) {
       const auto& point = sightings[static_cast<std::size_t>(feature)].point;

@@ -31,7 +31,7 @@ SimulationOptions noisy(std::uint64_t noise_seed, double outlier_ratio = 0.0) {
   return options;
 }
 
-// The camera looks in one direction, radians to the left of the world's x axis, and moves so many metres a frame.
+// Straight path of a camera with constant heading, radians to the left of the world's x axis. step: metres per frame.
 Trajectory straight_trajectory(int frames, double heading, const Eigen::Vector3d& step_in_camera) {
   const Pose ahead = turning_in_place_trajectory(1, 20.0, 0.0).front().world_from_body;
   const Eigen::Quaterniond world_from_camera = rotation_exp({0.0, 0.0, heading}) * ahead.rotation;
@@ -42,7 +42,7 @@ Trajectory straight_trajectory(int frames, double heading, const Eigen::Vector3d
   return trajectory;
 }
 
-// Sideways, with a corner of the room in view.
+// Sideways motion with a corner of the room in view.
 const Trajectory kSidesteps = straight_trajectory(40, 0.7, {0.03, 0.002, 0.005});
 
 SimulatedMission sidestepping(const SimulationOptions& options) {
@@ -53,14 +53,14 @@ SimulatedMission turning(const SimulationOptions& options) {
   return simulate_mission(one_camera(), turning_in_place_trajectory(100, 20.0, 0.5), options);
 }
 
-// Towards a wall, on a slant; the camera sees nothing else.
+// Oblique motion towards a wall that fills the image.
 SimulatedMission approaching_a_wall(SimulationOptions options) {
   options.landmarks = 12000;
   options.room_size = {6.0, 12.0, 12.0};
   return simulate_mission(one_camera(), straight_trajectory(30, 0.0, {0.03, 0.0, 0.03}), options);
 }
 
-// What comes of the frames one after the other, up to the start.
+// Attempts frame by frame up to the start.
 struct Started {
   std::vector<MonocularAttempt> attempts;
   const MonocularStart* start() const { return attempts.back().start ? &*attempts.back().start : nullptr; }
@@ -95,7 +95,7 @@ double angle_between_translations(const Pose& first, const Pose& second) {
   return std::acos(std::min(1.0, first.translation.normalized().dot(second.translation.normalized())));
 }
 
-// Depths in the first camera over the true ones, ascending.
+// Ratios of depths in the first camera to true depths, ascending.
 std::vector<double> depth_ratios(const SimulatedMission& mission, const MonocularStart& start) {
   const Keyframe& first = *start.map.find_keyframe(start.first);
   const Pose true_from_world = true_camera_from_world(mission, frame_at(mission, first.frame.time));
@@ -111,7 +111,7 @@ std::vector<double> depth_ratios(const SimulatedMission& mission, const Monocula
   return ratios;
 }
 
-// Nine points in ten are within so much of the scale they share.
+// Bound on the relative depth error of nine points in ten, at their common scale.
 double depth_error(const std::vector<double>& ratios) {
   const double scale = ratios[ratios.size() / 2];
   return std::max(1.0 - ratios[ratios.size() / 20] / scale, ratios[ratios.size() * 19 / 20] / scale - 1.0);

@@ -15,7 +15,7 @@ const Rig kRig = [] {
 constexpr ImageCondition kGoodImage{100.0f, 20.0f, 0.0f, 0.8f};
 constexpr ImageCondition kBlackImage{1.0f, 0.2f, 1.0f, 0.0f};
 
-// A pair of which so many of 200 features were found in the right image, so many rows off.
+// A pair with `matched` of 200 features matched in the right image, at this row offset.
 Frame pair_with(int matched, float row_offset) {
   std::vector<Keypoint> keypoints(200);
   for (int i = 0; i < matched; ++i) {
@@ -79,7 +79,7 @@ TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
   std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     keypoints[i].pixel = {static_cast<float>(i % 20) * 32.0f, static_cast<float>(i / 20) * 48.0f};
-    if (keypoints[i].pixel.x() > 32.0f) continue;  // one side of the image is clean
+    if (keypoints[i].pixel.x() > 32.0f) continue;  // dirt hides the rest
     keypoints[i].disparity = 10.0f;
     keypoints[i].disparity_sigma = 0.2f;
     keypoints[i].row_offset = 0.2f;

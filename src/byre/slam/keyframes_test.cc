@@ -27,7 +27,7 @@ TrackedFrame tracked_on(int points) {
 
 const KeyframeOptions kOptions;
 
-// A frame like the one after the last keyframe, and long after it: no reason for another.
+// A frame long after the last keyframe, with the same view: no reason for another keyframe.
 const KeyframeEvidence kCalm{.fresh_inliers = 400, .frames_since_last = 10};
 
 struct Decision {
@@ -166,7 +166,7 @@ TEST(AddStereoPoints, LeavesFeaturesAloneThatSeeAPoint) {
   EXPECT_EQ(map->point_count(), points);
 }
 
-// Many measurements of one place by a camera that looks askew, as features of one keyframe.
+// Many measurements of one point by an oblique camera, as features of one keyframe.
 class ManyMeasurementsOfOnePoint : public ::testing::Test {
  protected:
   static constexpr int kMeasurements = 4000;
@@ -214,7 +214,7 @@ TEST_F(ManyMeasurementsOfOnePoint, ScatterAsTheirCovarianceSays) {
   }
   EXPECT_THAT(mean, PointNear(point_in_world_, 0.01));
   EXPECT_LT((scatter - predicted).norm(), 0.1 * scatter.norm());
-  EXPECT_NEAR(scatter.determinant() / predicted.determinant(), 1.0, 0.2);  // the precise directions too
+  EXPECT_NEAR(scatter.determinant() / predicted.determinant(), 1.0, 0.2);  // checks the precise directions as well
 }
 
 TEST_F(ManyMeasurementsOfOnePoint, HoldOverDistancesWhereTheirOctaveIsInThePyramid) {
