@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// What a frame's trials come to: so many in each cell, of which such a share is found.
+// Trials of frames: equally many in each cell, with a given share of found points.
 class TriedLens {
  public:
   explicit TriedLens(double found) : found_(found) {}
@@ -125,7 +125,7 @@ TEST(LensMask, FindsHalfOfTheImageDirty) {
 
 TEST(LensMask, LetsTrialsOfOneFrameCountForLessThanThoseOfMany) {
   const TriedLens camera(0.5);
-  std::vector<LensTrial> trials;  // a thing that hides a cell for a moment, from many points at once
+  std::vector<LensTrial> trials;  // an object that briefly hides a cell with many points
   for (int i = 0; i < 100; ++i) trials.push_back({camera.middle_of(kCell), false});
   for (int i = 0; i < 200; ++i) trials.push_back({camera.middle_of(kCell + 2), i % 2 == 0});
   LensMask mask;

@@ -11,7 +11,7 @@ bool is_behind(const Eigen::Vector2f& pixel) {
   return pixel.x() > 300.0f && pixel.x() < 420.0f && pixel.y() > 150.0f && pixel.y() < 260.0f;
 }
 
-// A drive round a room, its points known, their places told by the truth; a blot on the lens from some frame on.
+// Drive round a room on a true map with true predictions, optionally with dirt on the lens.
 class Drive {
  public:
   explicit Drive(double laps)
@@ -21,7 +21,7 @@ class Drive {
 
   int frames() const { return static_cast<int>(mission_.frames.size()); }
 
-  // late: by how much the frames come later.
+  // late: delay of the frames.
   void go(LensWatch& watch, int first, int last, bool is_dirty, Timestamp late = {}) {
     const MapView view(nullptr, map_);
     for (int i = first; i < last; ++i) {

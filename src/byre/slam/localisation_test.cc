@@ -22,7 +22,7 @@ SimulatedMission lap(const SimulationOptions& options, double radius_m = 2.0, co
   return simulate_mission(rig, circling_trajectory(60, 10.0, radius_m, 1.0), options);
 }
 
-// Made once: the tests only read it.
+// Made once, for all tests to read.
 const MappedPlace& mapped() {
   static const MappedPlace place(lap(visit(1)));
   return place;
@@ -32,7 +32,7 @@ Localisation localise_in(const MappedPlace& place, const Frame& frame, const Rig
   return localise(frame, rig, place.view(), place.index, {});
 }
 
-// The features for which choose(index) holds.
+// Frame with the features for which choose(index) is true.
 Frame chosen(const Frame& frame, const Rig& rig, const std::function<bool(int)>& choose) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;

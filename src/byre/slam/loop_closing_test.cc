@@ -11,8 +11,8 @@
 namespace byre {
 namespace {
 
-// A lap and a bit, mapped with its second half in a place of its own: as if nothing had been recognised, and displaced
-// by a drift.
+// A lap and a fifth whose second half has points of its own and is displaced by a drift, as without any recognised
+// loop.
 class LoopInAMap : public testing::Test {
  protected:
   static constexpr int kFrames = 72;
@@ -40,7 +40,7 @@ class LoopInAMap : public testing::Test {
     }
   }
 
-  // What the older or the newer keyframes see of a point, as a point of their own.
+  // Adds a point with the observations of the older or of the newer keyframes.
   void add_point(const Map& truth, PointId id, bool newer) {
     std::vector<Observation> seen;
     for (const Observation& observation : truth.observations(id)) {
@@ -60,7 +60,7 @@ class LoopInAMap : public testing::Test {
 
   KeyframeId newest() const { return map_.keyframe_ids().back(); }
 
-  // The loop after frames at their poses in the newer half.
+  // The loop after checks with frames at their poses in the newer half.
   LoopHypothesis checked(LoopHypothesis loop, const std::vector<std::size_t>& frames) const {
     for (const std::size_t frame : frames) {
       const Pose camera_from_world = true_camera_from_world(mission_, frame) * inverse(new_from_old_);
@@ -141,7 +141,7 @@ TEST_F(LoopInAMap, IsFoundWhenTheRunEnds) {
   EXPECT_FALSE(search_loops(map_, index_, options, {}).empty());
 }
 
-// The newer half shows another bay: its gate looks like that of the older bay, the rest does not.
+// The newer half shows another bay whose gate looks like that of the older bay; all else differs.
 class GateAlike : public LoopInAMap {
  protected:
   GateAlike() : LoopInAMap(mission_with_gate()) {}

@@ -1,4 +1,4 @@
-// Loops from their discovery to the corrected map, where the scale drifts and where it cannot.
+// Loops from detection to the corrected map, with and without scale drift.
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/drift_scene.h"
@@ -24,7 +24,7 @@ Pose drift_of_pose() {
   return {rotation_exp({0.02, 0.03, 0.01}), {0.1, -0.08, 0.04}};
 }
 
-// Metres between where a map has a loop's keyframe and where the loop saw it.
+// Distance between a loop's keyframe in the map and as measured by the loop, metres.
 double gap_at(const LoopEdge& loop, const Map& map) {
   const Pose keyframe_from_place = map.camera_from_world(loop.keyframe) * inverse(map.camera_from_world(loop.place));
   return (keyframe_from_place * inverse(loop.keyframe_from_place)).translation.norm();
@@ -143,7 +143,7 @@ TEST(LoopWithStereo, ChangesNoLengths) {
   EXPECT_LT(lap.worst_error(map, Scale::fixed), 0.015);
 }
 
-// What came shows that the map before has drifted.
+// A loop of new keyframes shows the drift of earlier ones.
 TEST(LoopWithStereo, BendsWhatCameBeforeToo) {
   const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
   Map map = lap.map;
@@ -155,7 +155,7 @@ TEST(LoopWithStereo, BendsWhatCameBeforeToo) {
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
-// The same on a way so long that what lies around both ends of the loop is a small part of it.
+// A lap so long that the surroundings of a loop's ends are a small part of the map.
 class LongLap : public testing::Test {
  protected:
   FinishOptions options_of_what_came() const {
@@ -194,7 +194,7 @@ TEST_F(LongLap, IsBentAsAWholeThen) {
   EXPECT_GT(moved, lap_.map.keyframe_count() / 3) << "far from the loop";
 }
 
-// A correction by which the newer half of a map of one camera grows.
+// A correction by which the newer half of a monocular map grows.
 class GrowingHalf : public testing::Test {
  protected:
   GrowingHalf() {

@@ -14,8 +14,8 @@ using testing::IsEmpty;
 
 constexpr std::size_t kFramesApart = 4;  // 32 cm and 8 degrees
 
-// What one camera sees on a quarter of a circle, and the model that a perfect reconstruction would make of it: point n
-// is the n-th of the landmarks that two images see.
+// A monocular mission on a quarter of a circle, and the model of a perfect reconstruction: point n is the n-th landmark
+// seen by two images.
 class ModelOfAMission : public testing::Test {
  protected:
   explicit ModelOfAMission(const SimulationOptions& options = {})
@@ -47,7 +47,7 @@ class ModelOfAMission : public testing::Test {
     return mission_.landmark_of_feature[kFramesApart * seen.keyframe.number][static_cast<std::size_t>(seen.feature)];
   }
 
-  // Share of the observations of the model's points in the map that show the landmark they are.
+  // Share of the observations of model points that show their landmarks.
   double right_share(const ModelMap& made) const {
     int right = 0, all = 0;
     for (std::uint32_t i = 0; i < made.model_points.size(); ++i) {
@@ -68,7 +68,7 @@ class ModelOfAMission : public testing::Test {
 
   SimulatedMission mission_;
   SfmModel model_;
-  std::vector<int> landmarks_;  // landmarks that the model's points are
+  std::vector<int> landmarks_;  // landmark of each model point
 };
 
 class ModelOfACleanMission : public ModelOfAMission {
@@ -150,7 +150,7 @@ TEST_F(ModelOfAMission, FindsTheRightFeaturesAmongNoisyOnes) {
 
 TEST_F(ModelOfAMission, DistrustsImagesThatDoNotShowWhatTheModelSays) {
   const int images = static_cast<int>(model_.images.size());
-  for (ModelPoint& point : model_.points) {  // seen by all, if it were true
+  for (ModelPoint& point : model_.points) {  // claims that all images see each point
     point.images.clear();
     for (int image = 0; image < images; ++image) point.images.push_back(image);
   }
@@ -169,8 +169,8 @@ TEST_F(ModelOfAMission, KnowsPointsTheBetterTheFinerItsMeasurementsWere) {
   }
 }
 
-// With the poses exact, a point's covariance is that of the reprojections: measured by triangulating noisy pixels anew
-// it would be the same. Here against its definition, the second derivatives of the squared errors.
+// With exact poses, a point's covariance is that of its reprojection errors. Compared with its definition by the second
+// derivatives of the squared errors.
 TEST_F(ModelOfACleanMission, HasTheCovarianceOfItsReprojections) {
   const ModelMap made = map_from_model(model_, of_model_only());
   const ModelPoint& point = model_.points[static_cast<std::size_t>(made.model_points.front())];

@@ -17,7 +17,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-// Every frames_apart-th frame of a mission; 8 cm and 2 degrees a frame.
+// Every frames_apart-th frame of a mission; 8 cm and 2 degrees per frame.
 std::vector<PosedFrame> posed_frames(const SimulatedMission& mission, std::size_t frames_apart) {
   std::vector<PosedFrame> frames;
   for (std::size_t i = 0; i < mission.frames.size(); i += frames_apart) {
@@ -27,8 +27,8 @@ std::vector<PosedFrame> posed_frames(const SimulatedMission& mission, std::size_
 }
 
 struct Placement {
-  double right_share = 0.0;      // share of the points that lie within 5 cm of the landmark they show
-  double mean_observations = 0;  // observations of a point, on average
+  double right_share = 0.0;      // share of points within 5 cm of their landmark
+  double mean_observations = 0;  // mean number of observations per point
 };
 
 Placement placement(const Map& map, const SimulatedMission& mission) {
@@ -67,7 +67,7 @@ TEST(MapFromPoses, PutsCleanPointsOnTheirLandmarksAndFindsThemAgainHalfAMetreOn)
   EXPECT_GT(placed.mean_observations, 1.5);
 }
 
-// Squared sigmas by which a point misses the landmark it shows; infinite for one that shows none.
+// Squared normalised error of a point; infinite for an outlier.
 double squared_error(const Map& map, const SimulatedMission& mission, PointId id) {
   const int landmark = true_landmark(mission, map, id);
   if (landmark < 0) return std::numeric_limits<double>::infinity();
@@ -97,7 +97,7 @@ TEST(MapFromPoses, StandsPosesThatAreOffByPixels) {
   const SimulatedMission mission = quarter_circle({});
   std::vector<PosedFrame> frames = posed_frames(mission, 4);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const double sign = i % 2 == 0 ? 1.0 : -1.0;  // by 0.15 degrees from one to the next: 1.2 pixels
+    const double sign = i % 2 == 0 ? 1.0 : -1.0;  // 0.15 degrees between neighbours, 1.2 pixels
     const Pose displaced_from_camera{rotation_exp({0.0, sign * 0.075 * kDegree, 0.0}), {0.0, 0.0, 0.0}};
     frames[i].camera_from_world = displaced_from_camera * frames[i].camera_from_world;
   }
@@ -127,11 +127,11 @@ TEST(MapFromPoses, MakesAMapOfOneFrameAndOfNone) {
 
 TEST(OverlappingKeyframes, AreThoseThatSeeTheSameThoughTakenMuchLater) {
   const SimulatedMission lap = simulate_mission(simulated_rig(), circling_trajectory(80, 10.0, 2.0, 2.0), {});
-  const Map map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes a lap, two laps
+  const Map map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes per lap, two laps
   const auto neighbours = overlapping_keyframes(map, {});
   ASSERT_THAT(neighbours, SizeIs(20));
   EXPECT_EQ(neighbours[0].front(), (KeyframeId{Origin::online, 10}));
-  EXPECT_THAT(neighbours[0], Not(Contains(KeyframeId{Origin::online, 5})));  // looks the other way
+  EXPECT_THAT(neighbours[0], Not(Contains(KeyframeId{Origin::online, 5})));  // opposite viewing direction
   EXPECT_THAT(neighbours, Each(Not(IsEmpty())));
 }
 

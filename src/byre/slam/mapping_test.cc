@@ -30,7 +30,7 @@ Map extended(Map map, const MappingOptions& options = {}) {
   return map;
 }
 
-// A perfect map of twenty keyframes, every second frame, for tests to spoil.
+// A true map of twenty keyframes, every second frame; tests add errors.
 class MappingOn : public ::testing::Test {
  protected:
   explicit MappingOn(const SimulationOptions& options) : mission_(quarter_circle(options)) {}
@@ -40,7 +40,7 @@ class MappingOn : public ::testing::Test {
   }
   Pose true_pose(KeyframeId id) const { return true_camera_from_world(mission_, 2 * id.number); }
 
-  // By three centimetres and half a degree.
+  // Displaces a keyframe by 3 cm and half a degree.
   void displace(KeyframeId id) {
     const Pose displaced_from_camera{rotation_exp({0.3 * kDegree, 0.3 * kDegree, -0.26 * kDegree}),
                                      {0.02, -0.02, 0.01}};
@@ -55,7 +55,7 @@ class MappingOnCleanFeatures : public MappingOn {
  protected:
   MappingOnCleanFeatures() : MappingOn(without_noise()) {}
 
-  // Removes every third point. Returns the landmarks among them that the newest keyframe and its neighbour both see.
+  // Removes every third point. Returns the landmarks of these that the newest keyframe and its neighbour both see.
   std::vector<int> forget_points() {
     std::vector<int> landmarks;
     for (const PointId id : map_.point_ids()) {
@@ -80,7 +80,7 @@ class MappingOnNoisyFeatures : public MappingOn {
   }
   MappingOnNoisyFeatures() : MappingOn(with_outliers()) {}
 
-  // The landmarks that the newest keyframe sees, each with the points in the map that show it.
+  // Landmarks in view of the newest keyframe, with their points in the map.
   std::map<int, std::set<PointId>> points_of_landmarks(const Map& map) const {
     std::map<int, std::set<PointId>> points;
     for (const PointId id : map.point_ids()) points[true_landmark(mission_, map, id)].insert(id);
@@ -94,7 +94,7 @@ class MappingOnNoisyFeatures : public MappingOn {
     return static_cast<int>(std::ranges::count_if(points, [](const auto& entry) { return entry.second.size() > 1; }));
   }
 
-  // The later half of a point's observations become those of a point beside it.
+  // Moves the later half of a point's observations to a new point next to it.
   void split(PointId id) {
     const std::vector<Observation> observations = map_.observations(id);
     if (observations.size() < 6) return;
@@ -210,7 +210,7 @@ TEST_F(MappingOnNoisyFeatures, TakesOutObservationsThatDisagree) {
   }
   ASSERT_GT(seen.size(), 10u);
   for (const auto& [observation, sighting] : seen) map_.remove_observation(observation);
-  for (std::size_t i = 0; i < seen.size(); ++i) {  // each sees the point of the next
+  for (std::size_t i = 0; i < seen.size(); ++i) {  // each feature gets the point of the next
     Sighting wrong = seen[i].second;
     wrong.point = seen[(i + 1) % seen.size()].second.point;
     ASSERT_TRUE(map_.add_observation(seen[i].first, wrong));
@@ -235,7 +235,7 @@ TEST_F(MappingOnNoisyFeatures, ForgetsOldPointsThatNoOtherKeyframeConfirmed) {
     if (after.find_point({Origin::online, next + i}) == nullptr) continue;
     ++(i < static_cast<std::uint32_t>(old_points) ? old_left : new_left);
   }
-  EXPECT_LE(old_left, 0.1 * old_points);  // chance may confirm one
+  EXPECT_LE(old_left, 0.1 * old_points);  // one may be confirmed by chance
   EXPECT_GE(new_left, 0.9 * new_points);
 }
 
@@ -283,7 +283,7 @@ TEST(ExtendMap, RemovesKeyframesThatAddNothing) {
   EXPECT_NE(after.find_keyframe(before_it), nullptr);
   EXPECT_NE(after.find_keyframe(newest), nullptr);
   EXPECT_THAT(find_faults(after), IsEmpty());
-  for (const PointId id : map.point_ids()) {  // nothing that several keyframes saw is lost with them
+  for (const PointId id : map.point_ids()) {  // points seen by several keyframes remain
     if (map.observations(id).size() < 8) continue;
     EXPECT_NE(after.find_point(id), nullptr);
   }
@@ -298,7 +298,7 @@ TEST(ExtendMap, OfAMapOfOneKeyframeMovesNothing) {
   EXPECT_THAT(delta.removed_points, IsEmpty());
 }
 
-// Every number of a delta that a run could change.
+// All numbers of a delta that could differ between runs.
 std::vector<double> flatten(const MapDelta& delta) {
   std::vector<double> numbers;
   const auto append = [&](const auto& matrix) {

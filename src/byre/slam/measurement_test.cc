@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDepth = 3.0;  // metres from the reference camera to the plane, which faces it
 
-// Grey value of a place on a surface, metres; waves in twelve directions.
+// Grey value at a position on a surface, metres; sum of waves in twelve directions.
 class Texture {
  public:
   explicit Texture(std::uint64_t seed) {
@@ -44,7 +44,7 @@ class Texture {
   std::array<Wave, 12> waves_;
 };
 
-// What a camera sees of a textured plane z = kDepth in the world.
+// View of a textured plane z = kDepth in the world.
 struct Painting {
   const Texture& texture;
   double noise_sigma = 0.0;  // grey values
@@ -83,7 +83,7 @@ Keypoint keypoint_at(const Eigen::Vector2d& pixel, std::uint8_t octave) {
   return keypoint;
 }
 
-// Two views of one point of the painting; the second view's corner lies off the point by corner_error.
+// Two views of one point; the second view's corner is off by corner_error.
 struct Pair {
   Pose camera_from_reference;
   std::uint8_t reference_octave = 1;
@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedPair{"ATurnedCamera", {{rotation_exp({0.0, 0.25, 0.0}), {-0.4, 0.0, 0.1}}}}),
     [](const auto& tested) { return tested.param.name; });
 
-// What is left when the patches say nothing.
+// Expects the fallback without usable patches.
 void expect_corner(const PixelMeasurement& measured, const Keypoint& keypoint) {
   EXPECT_FALSE(measured.aligned);
   EXPECT_EQ(measured.pixel, keypoint.pixel);

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// A camera ahead of the body, that looks along its x axis.
+// A camera in front of the body that looks along its x axis.
 Rig robot_rig() {
   Rig rig;
   rig.body_from_camera = {rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.0, 0.1}};

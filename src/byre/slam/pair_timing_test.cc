@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFrames = 80;
 
-// A drive round a room whose right images are earlier or later than the left ones.
+// A drive round a room with right images earlier or later than the left ones.
 class LatePair {
  public:
   explicit LatePair(double laps = 0.15)
@@ -37,7 +37,7 @@ class LatePair {
  private:
   static SimulationOptions options() {
     SimulationOptions options;
-    options.pixel_sigma = 0.03;  // low, because here both images of a pair have the noise of one left image
+    options.pixel_sigma = 0.03;  // low, since both images of a pair have the same noise here
     options.disparity_sigma = 0.1;
     return options;
   }

@@ -9,8 +9,8 @@
 namespace byre {
 namespace {
 
-// A true map by one camera in two parts that share no points, of which the second lies elsewhere and is larger, and
-// what wheels tell from keyframe to keyframe.
+// A true monocular map in two parts without common points. Tests displace and scale the second part, and add measured
+// motions between keyframes.
 class TwoParts : public ::testing::Test {
  protected:
   TwoParts() {
@@ -42,7 +42,7 @@ class TwoParts : public ::testing::Test {
     return window;
   }
 
-  // From each keyframe to the next, in lengths so much longer.
+  // Adds measured motions between successive keyframes, with scaled lengths.
   void tell(MapWindow& window, double lengths = 1.0) const {
     for (std::size_t i = 1; i < truth_.keyframes.size(); ++i) {
       const Pose motion = inverse(body(truth_, i - 1)) * body(truth_, i);
@@ -85,7 +85,7 @@ TEST_F(TwoParts, ComeToLieAsIsTold) {
   expect_truth(window);
 }
 
-// What is told is all a little too long, as the first part has it.
+// Measured motions are 5 % too long.
 TEST_F(TwoParts, TakeTheLengthsOfTheFirst) {
   MapWindow window = moved(wrong_);
   tell(window, 1.05);

@@ -15,7 +15,7 @@ Pose camera_of(const Pose& level_from_body) {
   return camera_pose(looking_down(), kMapFromLevel * level_from_body);
 }
 
-// How far a prior has the body's pose, in the body: its delta, and how well that is known.
+// Deviation of a prior from a pose, in the body, with its sigmas.
 struct Said {
   Vector6 delta;
   Vector6 sigmas;

@@ -7,10 +7,10 @@
 namespace byre {
 namespace {
 
-constexpr double kInformation = 1e6;  // information of a frame, 1 / s^2: it knows a readout time to a millisecond
-constexpr int kPoints = 300;          // points of a frame: 20 ms move each by more than a sigma
+constexpr double kInformation = 1e6;  // 1 / s^2, information of a frame: a sigma of 1 ms
+constexpr int kPoints = 300;          // points of a frame; 20 ms move each by more than a sigma
 
-// The readout time after frames that all say it is to change by so many seconds.
+// Readout time after frames that all measure this change, seconds.
 double after(ReadoutEstimator& estimator, double change, int frames) {
   for (int i = 0; i < frames; ++i) estimator.note({kInformation, kInformation * change, kPoints});
   return estimator.readout_time();
@@ -52,7 +52,7 @@ TEST(ReadoutEstimator, GivesUpWhatComesToNothing) {
 TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
   ReadoutEstimator estimator(0.0);
   for (int i = 0; i < 400; ++i) {
-    const double change = i / 8 % 2 == 0 ? 0.1 : -0.08;  // 0.01 on the whole, as an error that motion does not cause
+    const double change = i / 8 % 2 == 0 ? 0.1 : -0.08;  // 0.01 on average, due to another error
     estimator.note({kInformation, kInformation * change, kPoints});
   }
   EXPECT_EQ(estimator.readout_time(), 0.0);
@@ -63,8 +63,7 @@ TEST(ReadoutEstimator, BelievesNoCameraToBeThatSlow) {
   EXPECT_EQ(after(estimator, 0.2, 400), 0.0);
 }
 
-// What the frames of a mission say of a camera that takes that long, while none is thought of: by true points and
-// poses.
+// Readout time measured on true points and poses, seconds, with an assumed one of zero.
 double change_told_by(const SimulatedMission& mission) {
   const Map map = true_map(mission, 4, Origin::online);
   const MapView view{nullptr, map};

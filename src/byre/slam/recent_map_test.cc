@@ -15,7 +15,7 @@ namespace {
 using testing::IsEmpty;
 
 constexpr int kKeyframes = 60;
-constexpr std::uint32_t kFirstThatCame = 52;  // the last eight came
+constexpr std::uint32_t kFirstThatCame = 52;  // the last eight are new
 
 SimulatedMission long_way() {
   SimulationOptions options;
@@ -24,7 +24,7 @@ SimulatedMission long_way() {
   return simulate_mission(simulated_rig(), circling_trajectory(kKeyframes, 10.0, 2.0, 0.9), options);
 }
 
-// A point is seen by a few keyframes that follow each other, as round many corners.
+// Limits each point to a few successive keyframes, as behind corners.
 void forget_distant_views(Map& map) {
   constexpr std::uint32_t kViews = 6;
   for (const PointId id : map.point_ids()) {
@@ -37,7 +37,7 @@ void forget_distant_views(Map& map) {
 
 class RecentMap : public testing::Test {
  protected:
-  // As mapping leaves what came: a little off.
+  // The new keyframes are slightly off, as after local mapping.
   RecentMap() {
     forget_distant_views(map_);
     for (const KeyframeId id : map_.keyframe_ids()) {
