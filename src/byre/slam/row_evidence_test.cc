@@ -19,7 +19,7 @@ const CalibrationKnowledge kPrior{CalibrationMatrix::Identity() / (kSigmasOfPrio
 
 using OffsetAt = std::function<double(const Eigen::Vector2f& pixel)>;  // pixels
 
-// Rows by a calibration that errs so, of corners all over the image, which besides err by own_error where they lie.
+// Rows of corners all over the image with this calibration error, plus own_error at the corner.
 std::vector<RowMeasurement> rows_of(const CalibrationVector& error, const OffsetAt& own_error, int count) {
   const Calibration calibration = scene_calibration();
   const CalibrationSensitivity sensitivity(calibration);
@@ -45,7 +45,7 @@ double no_error(const Eigen::Vector2f&) {
   return 0.0;
 }
 
-// What rows tell best: by how much the right camera is turned about its optical axis.
+// The parameter that rows determine best: rotation of the right camera about its optical axis.
 constexpr int kTurn = kRightRotation + 2;
 
 TEST(RowEvidence, TellsHowTheCamerasAreTurnedAgainstEachOther) {
@@ -57,7 +57,7 @@ TEST(RowEvidence, TellsHowTheCamerasAreTurnedAgainstEachOther) {
   EXPECT_NEAR(known.expected[kTurn], 3.0, 4.0 * sigma);
 }
 
-// The most that any parameter is off zero, in its sigmas.
+// Largest deviation of a parameter from zero, in its sigmas.
 double most_sigmas(const CalibrationKnowledge& known) {
   const CalibrationVector sigmas = known.information.inverse().diagonal().cwiseSqrt();
   return known.expected.cwiseQuotient(sigmas).cwiseAbs().maxCoeff();
@@ -73,7 +73,7 @@ CalibrationKnowledge learn_one_by_one(const std::vector<RowMeasurement>& rows) {
   return joined(kPrior, told);
 }
 
-// Roof beams before a far wall, seen in the upper half of the image all the way through an alley.
+// Roof beams in front of a far wall stay in the upper half of the image all the way through an alley.
 TEST(RowEvidence, TakesNoSharedErrorsOfManyRowsForACalibrationThatErrs) {
   const OffsetAt leaning = [](const Eigen::Vector2f& pixel) {
     return pixel.y() > 240.0f ? 0.0 : 0.06 * (pixel.x() - 376.0f) / 376.0f;

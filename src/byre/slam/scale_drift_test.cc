@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Depths in two parts of a map, of which the newer has grown; known as well as they are disturbed.
+// Depths in two parts of a map, the newer one scaled, with noise of their sigma.
 std::vector<DepthPair> pairs_of(int count, double new_per_old, double sigma, unsigned seed = 7) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> depth(1.0, 8.0);
@@ -64,7 +64,7 @@ TEST(EstimateScaleDrift, SaysNothingOfTooFewPoints) {
   EXPECT_FALSE(estimate_scale_drift({}, 1));
 }
 
-// The newest keyframe as the points of the first half of the lap show it: where it truly is.
+// Track of the newest keyframe on points of the first half of the lap, at its true pose.
 TrackedFrame in_older_part(const DriftedLap& lap) {
   const Keyframe& keyframe = *lap.map.find_keyframe(lap.newest());
   std::map<int, PointId> older_points;

@@ -13,7 +13,7 @@ namespace {
 
 using PathOfCamera = std::function<Pose(int keyframe)>;  // world_from_left
 
-// Round a room of points, looking about.
+// Path round a room of points, with turns.
 Pose about_the_room(int keyframe) {
   const double t = 0.23 * keyframe;
   const Eigen::Quaterniond looking =
@@ -21,7 +21,7 @@ Pose about_the_room(int keyframe) {
   return {looking, {1.2 * std::sin(t), 0.5 * std::sin(1.3 * t), 1.0 * std::cos(0.8 * t)}};
 }
 
-// A map as it comes from keyframes of a camera that differs from its calibration.
+// Map by keyframes of cameras with a calibration error.
 class MapOfErringCamera {
  public:
   MapOfErringCamera(const Calibration& given, const CalibrationVector& error, const PathOfCamera& path, int keyframes,
@@ -108,7 +108,7 @@ class MapOfErringCamera {
   std::normal_distribution<double> noise_;
 };
 
-// Root mean square by which corners lie elsewhere than the true calibration has them, pixels: u, v, disparity.
+// Root mean square difference of corners by the refined and the true calibration, pixels: u, v, disparity.
 double remaining_shift(const Calibration& refined, const Calibration& truth) {
   const RectifiedChange change(refined, truth);
   double sum = 0.0;
@@ -182,7 +182,7 @@ TEST(SelfCalibration, GoesOnFromWhatIsKnownAsFromTheStart) {
   const MapOfErringCamera map(given, error, about_the_room, 40);
   const auto at_once = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
   ASSERT_TRUE(at_once);
-  // The same cameras, of which half of the error is known by now.
+  // The same cameras, with half of the error already corrected.
   const MapOfErringCamera known(changed(given, 0.5 * error), 0.5 * error, about_the_room, 40);
   const auto in_two_steps = self_calibrate(known.window(), {given, 0.5 * error}, 0, {});
   ASSERT_TRUE(in_two_steps);
@@ -198,7 +198,7 @@ TEST(SelfCalibration, LeavesTheDepthsOfAnExactCalibrationWhereTheyAre) {
   EXPECT_LT(found->change.cwiseQuotient(found->sigma_after).cwiseAbs().maxCoeff(), 4.5);
 }
 
-// As one camera alone would have made it.
+// The window of one camera.
 MapWindow without_disparities(MapWindow window) {
   for (WindowKeyframe& keyframe : window.keyframes) {
     std::vector<Keypoint> keypoints = to_vector(keyframe.keyframe.frame.features->keypoints());

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRate = 10.0;  // frames per second
 constexpr int kFreeze = 20;     // frame from which the image is repeated
 
-// A drive on a quarter of a circle of 2 m radius at 0.8 m/s, some frames of which are repeated.
+// A drive on a quarter of a circle of 2 m radius at 0.8 m/s with some repeated frames.
 class StillImageOnADrive : public ::testing::Test {
  protected:
   // A frame with sensor noise: pixels moved by at most one, one bit of each descriptor changed, a fifth not found.

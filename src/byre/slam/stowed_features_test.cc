@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// A keyframe has them in a map that has patches.
+// Features of a stored map with patches.
 std::shared_ptr<const Features> some_features() {
   const StoredMap stored = StoredMapScene(5, 20).stored();
   return stored.map.find_keyframe({Origin::offline, 0})->frame.features;

@@ -25,7 +25,7 @@ class MotionsOfATrueMap : public ::testing::Test {
   const SimulatedMission mission_ = quarter_circle_of(one_camera());
   Map map_ = true_map(mission_, 4, Origin::online);
 
-  // As wheels tell it that are so much too large, and spin from a time on.
+  // Motions by wheels with a scale error; from the time `spinning` on, wheels spin.
   TellMotion told(double scale = 1.0, Timestamp spinning = Timestamp::max()) const {
     return [this, scale, spinning](Timestamp earlier, Timestamp later) -> std::optional<BodyMotion> {
       const Timestamp gap = std::chrono::seconds(1);
@@ -58,7 +58,7 @@ TEST_F(MotionsOfATrueMap, LeaveOutWhatContradictsWhatWasSeen) {
   EXPECT_THAT(told_motions(map_, ids, 0, told(1.0, spinning)), SizeIs(ids.size() - 4));
 }
 
-// Nothing was seen of a way between keyframes that share no points, so that nothing can contradict it.
+// No image contradicts a motion between keyframes without common points.
 TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   const std::vector<KeyframeId> ends = {ids.front(), ids.back()};
@@ -70,7 +70,7 @@ TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
   EXPECT_THAT(told_motions(pair, {pair.keyframe_ids().front(), pair.keyframe_ids().back()}, 0, told()), SizeIs(1));
 }
 
-// A few points that two keyframes share may have been triangulated across a gap, and contradict nobody.
+// Few common points may have been triangulated across a gap, and contradict no motion.
 TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
   const KeyframeId earlier = map_.keyframe_ids()[3], later = map_.keyframe_ids()[4];
   const auto seen_by = [&](const Observation& seen, KeyframeId id) { return seen.keyframe == id; };
@@ -88,7 +88,7 @@ TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
   EXPECT_TRUE(motions.front().is_unseen);
 }
 
-// Found again in an old place, from which it was tracked on: what it shares with the one before it tells nothing.
+// After relocalisation at an old place, the points shared with the keyframe before are no evidence.
 TEST_F(MotionsOfATrueMap, AreBelievedWhereTheLaterKeyframeWasTrackedFromAnotherPlace) {
   const Map map =
       true_map(simulate_mission(one_camera(), circling_trajectory(120, 10.0, 2.0, 1.0), {}), 4, Origin::online);

@@ -30,7 +30,7 @@ Pose displaced(const Pose& camera_from_world, const Eigen::Vector3d& metres, con
   return exp_pose(delta) * camera_from_world;
 }
 
-// A second visit to a room that the first visit has mapped perfectly.
+// A second visit to a room with a true map of the first visit.
 class TrackingOnATrueMap : public ::testing::Test {
  protected:
   static SimulatedMission visit(std::uint64_t noise_seed, double outlier_ratio = 0.0) {
@@ -155,7 +155,7 @@ TEST_F(TrackingOnATrueMap, IsEmptyWhereThePredictionLooksAway) {
   EXPECT_FALSE(track_from(displaced(truth_, {0.0, 0.0, 0.0}, {0.0, 90.0 * kDegree, 0.0}), second_));
 }
 
-// Normalised by its covariance, a pose error's square follows chi-square with six degrees of freedom: 6 on average.
+// The squared normalised pose error is chi-square distributed with six degrees of freedom: 6 on average.
 TEST(Track, KnowsHowPreciseItIs) {
   SimulationOptions options;
   options.pixel_sigma = corner_measurement(Keypoint{}).sigma;

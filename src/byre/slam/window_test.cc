@@ -23,7 +23,7 @@ std::vector<KeyframeId> ids_of(const MapWindow& window) {
   return ids;
 }
 
-// Empty when every observation is held by its keyframe and by its point, once.
+// Empty if each observation occurs once in its keyframe and once in its point.
 std::vector<std::string> find_faults(const MapWindow& window) {
   std::vector<std::string> faults;
   std::set<std::pair<int, int>> held_by_points;
