@@ -148,7 +148,7 @@ class Whereabouts {
   void open_odometry(const std::optional<BodyMotion>& led);
   bool is_beyond(const Matrix6& covariance, const Pose& led_from_body) const;
   bool leads_well(const BodyMotion& told) const;
-  bool is_led_well() const;  // by the measured motion since the last visual pose
+  bool is_led_well() const;  // leads_well() for the measured motion since the last visual pose
   void believe();
   Pose held_to(const DrivenGround& ground, const Rig& rig, const Pose& camera_from_map);
   Pose held_to(const BodyTilt& tilt, const Rig& rig, const Pose& camera_from_map);

@@ -20,7 +20,7 @@ inline Rig monocular_rig() {
 struct LapOptions {
   int frames = 72;  // total
   int step = 3;     // frames between keyframes
-  // Most keyframes that see a point; later ones see a new point instead, as behind corners.
+  // Maximum number of keyframes that see a point; later ones see a new point instead, as behind corners.
   std::size_t max_views = 1000;
 };
 

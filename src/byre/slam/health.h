@@ -10,9 +10,9 @@ namespace byre {
 struct HealthOptions {
   double trusted_error = 0.2;         // metres, error bound of a trusted pose
   double sigmas = 3.0;                // sigmas of the position that must be within trusted_error, together with drift
-  double drift_share = 0.005;         // drift over the path since offline points last constrained the pose
+  double drift_share = 0.005;         // drift per length of path since offline points last constrained the pose
   double max_rotation_sigma = 0.02;   // radians
-  double max_bridged_rotation = 0.1;  // radians, sigmas of the rotation of a dead-reckoned pose
+  double max_bridged_rotation = 0.1;  // radians, `sigmas` times the rotation sigma of a dead-reckoned pose
   int min_points = 40;                // inliers of both maps
   // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
   double min_spread = 0.04;

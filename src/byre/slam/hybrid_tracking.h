@@ -45,7 +45,7 @@ struct HybridTrack {
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
-// Limits of a pose from offline points that takes precedence. Beyond them it is a look-alike place.
+// Limits of a pose from offline points. A pose beyond them is that of a look-alike place.
 struct HybridLimits {
   DriftBound drift{kNoLimit, kNoLimit};  // from the pose by online points
   double stray = kNoLimit;               // metres from the prediction, without a pose by online points

@@ -30,7 +30,7 @@ struct PlaceNoise {
   std::uint64_t seed = 0;      // seed of the order and of the missing ones; 0: no noise
 };
 
-// Least frames between loops: until mapping has closed a loop, the next frames would find it again.
+// Minimum number of frames between loops: until mapping has closed a loop, the next frames would find it again.
 inline constexpr int kMinFramesBetweenLoops = 10;
 
 struct LoopOptions {

@@ -11,8 +11,8 @@
 namespace byre {
 
 struct MovedPointsOptions {
-  int frames = 8;            // frames that find a point elsewhere, minus frames that find it in place
-  int frames_to_return = 3;  // consecutive frames that find a suspended point in place
+  int frames = 8;            // frames that find a point elsewhere, minus those that find it in place, to suspend it
+  int frames_to_return = 3;  // consecutive frames that find a suspended point in place, to use it again
 };
 
 // Points found elsewhere that lie among others found elsewhere: a moved object is a cluster in space, and a single

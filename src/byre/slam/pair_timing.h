@@ -49,7 +49,7 @@ class PairTiming {
   std::optional<SlopeSum::Slope> by_disparities() const { return disparities_.slope(kLeastColumnMotion); }
 
  private:
-  // Least motion, pixels per frame. Constant errors of disparities look like a turn of the camera, and are smaller.
+  // Minimum motion, pixels per frame. Constant errors of disparities look like a turn of the camera, and are smaller.
   static constexpr double kLeastRowMotion = 0.3;
   static constexpr double kLeastColumnMotion = 1.5;
 

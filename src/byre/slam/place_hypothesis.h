@@ -10,8 +10,7 @@
 
 namespace byre {
 
-// Prior log-odds of a place that the measured motion of the robot does not lead to: one such find in a hundred is of a
-// robot that was carried.
+// Prior log-odds of a place that contradicts the measured motion: one such find in a hundred is of a carried robot.
 inline const double kLogOddsOfCarried = -std::log(100.0);
 
 inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();

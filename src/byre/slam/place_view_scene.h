@@ -12,7 +12,7 @@ inline CellInView cell_in_view(const std::array<int, 3>& cell, int seen) {
   return {cell, 40, seen, kSide * centre, 40, seen};
 }
 
-// Cells of a room, first the agreeing ones, then the others. No four of them fit on one thing.
+// Cells of a room, first the agreeing ones, then the others. No four of them fit on one moved object.
 inline PlaceView view_of_room(int agreeing, int disagreeing, int seen = 10) {
   PlaceView view{.is_near_keyframe = true, .cells = {}};
   for (int i = 0; i < agreeing + disagreeing; ++i) {

@@ -37,7 +37,7 @@ class StillImage {
     Keypoint keypoint;
     Descriptor descriptor;
   };
-  // Where that corner is, and whether the frame has it at the same place.
+  // Position of a reference corner, and whether the frame has it at the same place.
   struct Corner {
     Eigen::Vector2d pixel;
     Eigen::Vector3d in_camera;

@@ -14,8 +14,8 @@
 namespace byre {
 namespace {
 
-// Appends the distinct points of one map, ascending, by a bit for each point: numbers of neighbouring points are close,
-// so this takes a tenth of the time of sorting.
+// Appends the distinct points of one map, ascending, by a bit for each point. Numbers of neighbouring points are close:
+// this takes a tenth of the time of sorting.
 void append_distinct(Origin origin, std::span<const PointId> points, ReusedVector<PointId>& distinct) {
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
   for (const PointId id : points) {
