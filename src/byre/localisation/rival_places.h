@@ -32,7 +32,7 @@ class RivalPlaces {
   // a rival.
   void propose(const Pose& camera_from_place, const Pose& camera_from_rival, double prior);
   void observe(const Pose& camera_from_place, const TrackAt& track_at);
-  // Sets the test of the robot's place after that frame.
+  // Sets the test of the robot's place after a frame.
   void note_place(Timestamp time, const Pose& camera_from_place, const PlaceHypothesis& place);
 
   // Log of the sum of the odds of all rivals, which the robot's place must outweigh; kNoRivals without rivals.
