@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// Linux has both for each thread, POSIX for the process.
+// On Linux both settings are per thread; POSIX defines them per process.
 void give_way_to_frames() {
   constexpr int kNiceness = 5;
   const auto self = static_cast<id_t>(gettid());

@@ -2,10 +2,9 @@
 
 namespace byre {
 
-// Lets threads of usual priority go first from here on wherever processors are short: the calling thread gets a third
-// of their share (its niceness is raised by 5), and takes no processor from one of them when there is something to do
-// again (SCHED_BATCH). For threads that no frame waits for; a thread cannot take it back. Threads that the caller
-// starts later give way as well.
+// Lowers the priority of the calling thread for good, so that frame threads run first when processors are short. Raises
+// niceness by 5 (a third of the share of a usual thread) and selects SCHED_BATCH (no preemption of other threads on
+// wake-up). Threads started later by the caller inherit both. Only for threads that no frame waits for.
 void give_way_to_frames();
 
 }  // namespace byre

@@ -27,7 +27,7 @@ class InlineExecutor final : public Executor {
     assert(idle());
     std::packaged_task<FinishedJob()> task([&job] { return run(job); });
     result_ = task.get_future();
-    task();  // keeps an exception for collect()
+    task();  // stores an exception for collect()
   }
   std::optional<FinishedJob> collect() override {
     if (idle()) return std::nullopt;
@@ -40,11 +40,11 @@ class InlineExecutor final : public Executor {
   std::future<FinishedJob> result_;
 };
 
-// A thread for jobs, one after the other; it is there from the first on. A new thread for each would be given a turn at
-// once, be it before the thread that makes it.
+// Thread that runs jobs one after the other, started with the first job. One thread for all jobs, because a new thread
+// may be scheduled before the thread that creates it.
 class JobThread {
  public:
-  // begin: what the thread does first of all.
+  // begin: called once on the thread before the first job.
   explicit JobThread(std::function<void()> begin) : begin_(std::move(begin)) {}
   ~JobThread() {
     {
@@ -56,7 +56,7 @@ class JobThread {
   JobThread(const JobThread&) = delete;
   JobThread& operator=(const JobThread&) = delete;
 
-  // What the job owns goes on the thread, before the result is there.
+  // The job's captures are destroyed on the thread before the result is ready.
   std::future<FinishedJob> start(Job job) {
     std::packaged_task<FinishedJob()> task([job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
     std::future<FinishedJob> result = task.get_future();
@@ -87,14 +87,14 @@ class JobThread {
   }
 
   std::function<void()> begin_;
-  std::mutex mutex_;  // for what follows
+  std::mutex mutex_;  // guards next_ and is_over_
   std::condition_variable news_;
   std::packaged_task<FinishedJob()> next_;
   bool is_over_ = false;
-  std::jthread thread_;  // last, so that it ends before what it uses
+  std::jthread thread_;  // last member: joined before the others are destroyed
 };
 
-// Runs jobs on a thread of its own; when results are handed over is left open.
+// Runs jobs on its own thread; derived classes define when collect() returns results.
 class WorkerExecutor : public Executor {
  public:
   explicit WorkerExecutor(std::function<void()> begin = [] {}) : thread_(std::move(begin)) {}
@@ -135,7 +135,7 @@ class PacedExecutor final : public WorkerExecutor {
   int frames_left_ = 0;
 };
 
-// No frame waits for a job, so that where processors are short, frames go first.
+// Frames never wait for a job, so the job thread has lower priority.
 class LiveExecutor final : public WorkerExecutor {
  public:
   LiveExecutor() : WorkerExecutor(give_way_to_frames) {}

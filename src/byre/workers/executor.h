@@ -9,32 +9,31 @@ namespace byre {
 
 using Job = std::function<std::any()>;
 
-// What a job came to.
 struct FinishedJob {
   std::any result;
   double seconds = 0.0;  // wall time the job took
 };
 
-// Where and when mapping runs, whatever it results in; a Worker knows that. At most one job is in flight. All methods
-// are called from one thread. An exception thrown by a job is thrown again by the collect() or finish() that would have
-// handed its result over.
+// Decides when and on which thread mapping jobs run, independent of their result type (see Worker). At most one job is
+// in flight. All methods are called from one thread. An exception of a job is rethrown by the collect() or finish()
+// that would return its result.
 class Executor {
  public:
   virtual ~Executor() = default;
   virtual void submit(Job job) = 0;                  // precondition: idle()
   virtual std::optional<FinishedJob> collect() = 0;  // called once per frame
-  virtual std::optional<FinishedJob> finish() = 0;   // waits for the job in flight, if there is one
-  virtual bool idle() const = 0;                     // no job in flight and none to be collected
+  virtual std::optional<FinishedJob> finish() = 0;   // waits for the job in flight, if any
+  virtual bool idle() const = 0;                     // no job in flight and no result to collect
 };
 
-// Runs the job in submit(); the next collect() hands it over. No threads.
+// Runs the job in submit(); the next collect() returns its result. No threads.
 std::unique_ptr<Executor> make_inline_executor();
 
-// One worker; collect() hands the result over exactly latency frames after submit(), waiting for it if it must.
-// Parallel, yet every run of a recording gives the same result. Precondition: latency > 0.
+// One worker thread. collect() returns the result exactly latency frames after submit() and waits for it if necessary.
+// Runs in parallel, yet each run of a recording gives the same result. Precondition: latency > 0.
 std::unique_ptr<Executor> make_paced_executor(int latency);
 
-// One worker; collect() hands the result over as soon as it is there. For live robots.
+// One worker thread. collect() returns the result as soon as it is available. For live robots.
 std::unique_ptr<Executor> make_live_executor();
 
 }  // namespace byre

@@ -22,7 +22,7 @@ std::any break_off() {
   throw std::runtime_error("broken job");
 }
 
-// Asks again and again, as frames do, until the job is done.
+// Polls once per "frame" until the job is done.
 std::optional<FinishedJob> collect_when_ready(Executor& executor) {
   auto finished = executor.collect();
   while (!finished && !executor.idle()) {
@@ -116,7 +116,7 @@ TEST(InlineExecutor, RunsTheJobOnTheCallersThreadBeforeSubmitReturns) {
 
 class PacedExecutor : public ::testing::TestWithParam<int> {
  protected:
-  // Which collect() after submit() hands the result over.
+  // Number of collect() calls after submit() until the result is returned.
   static int frames_until_handed_over(const Job& job) {
     const auto executor = make_paced_executor(GetParam());
     executor->submit(job);
@@ -159,7 +159,7 @@ int niceness_of_a_job(Executor& executor) {
   return number_of(executor.finish());
 }
 
-// A paced one's caller waits for the job, so that what holds up the job holds up the caller.
+// The caller of a paced executor waits for the job, so its job must keep the usual priority.
 TEST(LiveExecutor, LetsItsCallerGoFirstAsNoOtherDoes) {
   const int usual = niceness();
   EXPECT_GT(niceness_of_a_job(*make_live_executor()), usual);

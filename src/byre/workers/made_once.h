@@ -6,8 +6,8 @@
 
 namespace byre {
 
-// Things that are made when they are first asked for, and stay. Several threads may ask at once, and none waits for
-// another: where two make the same thing, the first one to be done is kept.
+// Array of lazily created values. Any thread may request a value, and none waits for another: if two create the same
+// value at once, the first one finished is kept.
 template <typename Thing>
 class MadeOnce {
  public:
@@ -18,10 +18,10 @@ class MadeOnce {
   MadeOnce(const MadeOnce&) = delete;
   MadeOnce& operator=(const MadeOnce&) = delete;
 
-  // The thing; nullptr if it is not made yet.
+  // nullptr if the value does not exist yet.
   const Thing* find(std::size_t index) const { return things_[index].load(std::memory_order_acquire); }
 
-  // make() gives the thing; what it throws goes to the caller, and the thing is made by who asks next.
+  // Creates the value by make() if it does not exist. An exception of make() propagates; the next call tries again.
   template <typename Make>
   const Thing& get(std::size_t index, Make make) const {
     std::atomic<const Thing*>& place = things_[index];
@@ -34,7 +34,7 @@ class MadeOnce {
 
  private:
   std::size_t count_;
-  std::unique_ptr<std::atomic<const Thing*>[]> things_;  // nullptr for what is not yet made
+  std::unique_ptr<std::atomic<const Thing*>[]> things_;  // nullptr until created
 };
 
 }  // namespace byre

@@ -11,15 +11,15 @@
 
 namespace byre {
 
-// A queue from one thread to another that never keeps the first one waiting: what is beyond its capacity is dropped,
-// the oldest first. With a capacity of one the newest wins.
+// Queue between two threads whose producer never waits: beyond its capacity the oldest items are dropped. With capacity
+// 1 the newest item wins.
 template <typename Item>
 class NewestQueue {
  public:
   explicit NewestQueue(std::size_t capacity) : capacity_(capacity) {}
 
   void put(Item item) {
-    std::optional<Item> dropped;  // freed once the mutex is
+    std::optional<Item> dropped;  // destroyed after the mutex is released
     const std::lock_guard lock(mutex_);
     items_.push_back(std::move(item));
     if (items_.size() > capacity_) {
@@ -30,14 +30,14 @@ class NewestQueue {
     changed_.notify_one();
   }
 
-  // No item will come any more: this is thrown once those that wait are taken.
+  // Ends the queue: take() throws the failure once the remaining items are taken.
   void fail(std::exception_ptr failure) {
     const std::lock_guard lock(mutex_);
     failure_ = std::move(failure);
     changed_.notify_one();
   }
 
-  // The oldest item, waited for at most so long.
+  // The oldest item; waits up to at_most for it, else empty. Throws the failure of a queue that has ended.
   std::optional<Item> take(std::chrono::milliseconds at_most) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, at_most, [this] { return !items_.empty() || failure_; });
@@ -59,7 +59,7 @@ class NewestQueue {
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  // All guarded by the mutex.
+  // All guarded by mutex_.
   std::deque<Item> items_;
   std::exception_ptr failure_;
   int dropped_ = 0;

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kSmallest = 256;                   // bytes; smaller blocks are of this size
+constexpr std::size_t kSmallest = 256;                   // bytes; smaller blocks are rounded up to this size
 constexpr std::size_t kLargest = std::size_t{1} << 20U;  // bytes; larger blocks are not kept
 constexpr std::size_t kSizes = std::bit_width(kLargest / kSmallest);
 constexpr std::size_t kKeptOfSize = 8;
@@ -21,7 +21,7 @@ struct KeptBlocks {
   std::size_t count = 0;
 };
 
-// Lists that outlive their thread's store are freed at once.
+// Blocks that outlive their thread's store are freed at once.
 thread_local bool is_store_gone = false;
 
 class Store {

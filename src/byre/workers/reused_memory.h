@@ -6,13 +6,12 @@
 
 namespace byre {
 
-// Blocks that this thread has let go of, kept for what it asks for next, up to some of each size: a frame asks for the
-// same lists as the frame before, and shall not ask the system for them. Give back on any thread what was taken on any
-// other; what comes back is kept for the thread that gives it. Throws std::bad_alloc.
+// Thread-local free lists with a limit for each block size, so that steady frames do not allocate. A block may be given
+// back on any thread and is kept for that thread. Throws std::bad_alloc.
 void* take_reused_memory(std::size_t bytes);
-void give_reused_memory(void* memory, std::size_t bytes) noexcept;  // bytes: as they were asked for
+void give_reused_memory(void* memory, std::size_t bytes) noexcept;  // bytes: the size requested
 
-// An allocator of the standard library's containers.
+// Allocator for standard containers, on these free lists.
 template <typename Value>
 struct ReusingAllocator {
   using value_type = Value;
@@ -31,12 +30,12 @@ struct ReusingAllocator {
   }
 };
 
-// A list that is made anew with every frame.
+// Vector that is rebuilt with each frame.
 template <typename Value>
 using ReusedVector = std::vector<Value, ReusingAllocator<Value>>;
 
-// Room for so many in a list that is kept from frame to frame and filled anew each time. In powers of two: a list that
-// is longer now and then by a few asks the system once, and not each time that it is the longest so far.
+// Reserves capacity in a list that is refilled each frame, rounded up to a power of two: small new maxima then do not
+// reallocate.
 template <typename List>
 void make_room(List& list, std::size_t count) {
   if (count > list.capacity()) list.reserve(std::bit_ceil(count));

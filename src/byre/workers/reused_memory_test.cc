@@ -27,7 +27,7 @@ TEST(ReusedMemory, IsNeverSmallerThanAskedFor) {
   constexpr std::size_t kMost = 3 << 20;
   for (std::size_t bytes = 1; bytes < kMost; bytes = bytes * 3 + 1) {
     give_reused_memory(take_reused_memory(bytes), bytes);
-    ReusedVector<std::byte> filled(bytes + 1, std::byte{7});  // the sanitizers tell where it is too small
+    ReusedVector<std::byte> filled(bytes + 1, std::byte{7});  // sanitizers report a block that is too small
     EXPECT_THAT(std::vector(filled.end() - 1, filled.end()), Each(std::byte{7})) << bytes;
   }
 }
@@ -47,7 +47,7 @@ TEST(ReusedMemory, HoldsListsThatGoFromThreadToThread) {
 
 TEST(ReusedMemory, HoldsListsThatOutliveItsStore) {
   std::thread([] {
-    thread_local ReusedVector<int> outlives;  // made before the store, hence destroyed after it
+    thread_local ReusedVector<int> outlives;  // constructed before the store, hence destroyed after it
     outlives.assign(1000, 1);
     EXPECT_EQ(outlives.size(), 1000U);
   }).join();

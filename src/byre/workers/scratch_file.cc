@@ -15,16 +15,16 @@
 namespace byre {
 namespace {
 
-// Bytes of addresses, not of memory or disk. Not all at once for what may ever be put in: a process may have few of
-// them (ulimit -v), and an emulator keeps a record of each page.
+// Bytes of address space mapped at a time, not memory or disk. Mapped in steps, because address space may be limited
+// (ulimit -v) and emulators keep a record of each page.
 constexpr std::size_t kStretch = std::size_t{64} << 20;
-constexpr std::size_t kPage = 4096;  // bytes; each piece begins on a page, so that its pages are its own
+constexpr std::size_t kPage = 4096;  // bytes; pieces start on a page boundary, so that no two share a page
 
-// A descriptor, or -1.
+// File descriptor, or -1.
 int open_unnamed_in(const char* folder) {
   const int unnamed = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (unnamed >= 0) return unnamed;
-  std::string name = std::string(folder) + "/byre-XXXXXX";  // for file systems that know no files without a name
+  std::string name = std::string(folder) + "/byre-XXXXXX";  // for file systems without O_TMPFILE
   const int named = mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) unlink(name.c_str());
   return named;
@@ -42,7 +42,7 @@ int open_unnamed() {
 
 class ScratchFile::File {
  public:
-  // Empty where there can be none.
+  // Null if no file can be created.
   static std::shared_ptr<const File> make() {
     const int descriptor = open_unnamed();
     return descriptor < 0 ? nullptr : std::make_shared<const File>(descriptor);
@@ -66,14 +66,14 @@ class ScratchFile::File {
     return true;
   }
 
-  // Gives whole pages back to the disk, where the file system can.
+  // Returns whole pages to the disk, if the file system supports it.
   void give_back(std::size_t begin, std::size_t end) const {
     fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(begin),
               static_cast<off_t>(end - begin));
   }
 
   std::size_t bytes_on_disk() const {
-    constexpr std::size_t kBlock = 512;  // bytes
+    constexpr std::size_t kBlock = 512;  // bytes; unit of st_blocks
     struct stat status {};
     return fstat(descriptor_, &status) == 0 ? kBlock * static_cast<std::size_t>(status.st_blocks) : 0;
   }
@@ -82,15 +82,15 @@ class ScratchFile::File {
   int descriptor_;
 };
 
-// A part of the file, and the addresses at which it is looked at: for as long as a piece of it is held.
+// A mapped part of the file; mapped for as long as a piece of it is held.
 class ScratchFile::Stretch {
  public:
-  // Empty where there are no addresses left.
+  // Null without free address space.
   static std::shared_ptr<const Stretch> make(std::shared_ptr<const File> file, std::size_t begin, std::size_t size) {
     void* const address =
         mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_NORESERVE, file->descriptor(), static_cast<off_t>(begin));
     if (address == MAP_FAILED) return nullptr;
-    munlock(address, size);  // a program that keeps its memory from being swapped has no use for that here
+    munlock(address, size);  // undoes mlockall(), which would lock these pages
     return std::make_shared<const Stretch>(std::move(file), begin, std::span(static_cast<std::byte*>(address), size));
   }
 
@@ -111,7 +111,7 @@ class ScratchFile::Stretch {
 
  private:
   std::shared_ptr<const File> file_;
-  std::size_t begin_;  // in the file
+  std::size_t begin_;  // bytes, offset in the file
   std::span<std::byte> bytes_;
 };
 
@@ -127,7 +127,7 @@ std::shared_ptr<const std::byte> ScratchFile::put(std::span<const std::byte> byt
   return {newest_->at(begin), [stretch = newest_, begin, end](const void*) { stretch->give_back(begin, end); }};
 }
 
-// What is to lie between the end of the file and another place shall lie in one stretch.
+// Makes newest_ cover the range from end_ to end.
 bool ScratchFile::make_room(std::size_t end) {
   if (newest_ && end <= newest_->end()) return true;
   newest_ = Stretch::make(file_, end_, std::max(kStretch, end - end_));

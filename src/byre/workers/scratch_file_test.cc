@@ -44,7 +44,7 @@ double resident_mb() {
   return memory_now().resident_mb;
 }
 
-// Sanitizers keep account of memory in memory.
+// Sanitizers use memory for their own records, so that measured memory is meaningless.
 #ifdef BYRE_SANITIZED
 constexpr bool kMemoryIsTold = false;
 #else
@@ -95,7 +95,7 @@ TEST(ScratchFile, TakesNoMemoryForWhatNobodyLooksAt) {
   EXPECT_LT(resident_mb(), before + 20.0);
 }
 
-// As byre node does where it is to keep its memory.
+// byre node locks its memory on request.
 TEST(ScratchFile, TakesNoMemoryEitherInAProgramThatLocksItsMemory) {
   if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
   if (mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) GTEST_SKIP() << "may not lock memory here";
@@ -122,7 +122,7 @@ TEST(ScratchFile, TakesAPieceOfAnySize) {
   EXPECT_TRUE(file.holds(second.get() + large.size() - 1));
 }
 
-// Processes may be given few, and an emulator keeps a record of each page.
+// Address space may be limited, and emulators keep a record of each page.
 TEST(ScratchFile, TakesNoMoreAddressesThanWhatIsHeldNeeds) {
   if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
   const double before = memory_now().addresses_mb;
@@ -159,7 +159,7 @@ TEST(ScratchFile, IsLookedAtWhileMoreIsPutIntoIt) {
   EXPECT_TRUE(are_same);
 }
 
-// Files that may not grow are as a disk that is full.
+// A file size limit of zero simulates a full disk.
 class FullDisk {
  public:
   FullDisk() {

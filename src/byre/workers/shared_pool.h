@@ -8,16 +8,17 @@
 
 namespace byre {
 
-// Things that are given out frame after frame: those that nobody holds any more are made anew in their own memory. Of
-// what is kept, as keyframes are, the memory is forgotten. Whoever holds a thing may let it go from any thread.
+// Pool of objects that are handed out frame after frame. Objects without other owners are reused with their memory; of
+// objects that stay in use, such as keyframes, the pool drops its reference. Owners may release an object on any
+// thread.
 template <typename Thing>
 class SharedPool {
  public:
-  // A thing that nobody else holds, to be filled and given out.
+  // An object without other owners, to be filled and handed out.
   const std::shared_ptr<Thing>& take() {
     auto taken = std::ranges::find_if(known_, [](const auto& known) { return known.use_count() == 1; });
     if (taken != known_.end()) {
-      std::atomic_thread_fence(std::memory_order_acquire);  // what another thread did with it is done before
+      std::atomic_thread_fence(std::memory_order_acquire);  // orders the last owner's accesses before the reuse
     } else {
       taken = known_.begin();  // unused, or held for longer than all others
       *taken = std::make_shared<Thing>();
@@ -27,9 +28,9 @@ class SharedPool {
   }
 
  private:
-  static constexpr std::size_t kMost = 8;  // more than are held at a time of what is not kept
+  static constexpr std::size_t kMost = 8;  // more than the number of short-lived objects held at a time
 
-  std::array<std::shared_ptr<Thing>, kMost> known_;  // by when they were given out; unused ones first
+  std::array<std::shared_ptr<Thing>, kMost> known_;  // in order of handing out; unused ones first
 };
 
 }  // namespace byre

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// Wall time since it was made.
+// Wall time since construction.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }

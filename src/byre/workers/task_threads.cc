@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// The caller waits for a task at most, and a helper may need this very processor to end it.
+// Spin limits. The caller waits for one task at most, and the helper may need the caller's processor to finish it.
 constexpr std::chrono::microseconds kForHelpers(50);
 constexpr std::chrono::microseconds kForCaller(200);
 

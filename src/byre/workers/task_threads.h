@@ -13,14 +13,14 @@
 
 namespace byre {
 
-// How many threads the machine runs at a time; one at least.
+// Number of hardware threads; at least 1.
 int processor_count();
 
-// Threads that help with short tasks and sleep between them. run() is called from one thread at a time.
+// Helper threads for short parallel tasks; they sleep between runs. run() is called from one thread at a time.
 class TaskThreads {
  public:
-  // While one lives, whoever waits for the others stays awake for some microseconds, as runs follow each other at once:
-  // to be woken takes tens of them.
+  // While a Shift lives, waiting threads spin for some microseconds before they sleep. For runs in close succession:
+  // waking a thread takes tens of microseconds.
   class Shift {
    public:
     explicit Shift(TaskThreads& threads) : threads_(threads) { threads_.is_on_shift_ = true; }
@@ -32,15 +32,16 @@ class TaskThreads {
     TaskThreads& threads_;
   };
 
-  explicit TaskThreads(int helpers);  // 0: the caller does all
+  explicit TaskThreads(int helpers);  // 0: the caller does all tasks
   TaskThreads(const TaskThreads&) = delete;
   TaskThreads& operator=(const TaskThreads&) = delete;
 
-  // Calls task(0) to task(count - 1), each once, on the calling thread and those that help, and returns when all are
-  // done. Tasks are begun in order; the caller waits for none that is not yet begun. Throws what a task threw first.
+  // Calls task(0) to task(count - 1) once each, on the calling thread and the helpers, and returns when all are done.
+  // Tasks start in order; the caller never waits for a task that has not started. Rethrows the first exception of a
+  // task.
   template <typename Task>
   void run(int count, const Task& task) {
-    run_all(count, std::cref(task));  // a reference needs no memory
+    run_all(count, std::cref(task));  // a reference, so that std::function does not allocate
   }
 
  private:
@@ -48,21 +49,21 @@ class TaskThreads {
   void help(const std::stop_token& stop);
   void work();  // until no task is left
   bool is_left() const { return next_ < count_; }
-  // Returns when the condition holds, the shift is over, or it has been too long.
+  // Returns when the condition holds, the shift ends, or `longest` has passed.
   template <typename Condition>
   void wait_awake(std::chrono::microseconds longest, Condition condition) const;
 
   std::atomic<bool> is_on_shift_ = false;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards all members below
   std::condition_variable_any begun_;
   std::condition_variable_any ended_;
   const std::function<void(int)>* task_ = nullptr;
   int count_ = 0;
   int next_ = 0;
-  std::atomic<int> runs_ = 0;     // begun so far; read without the mutex, as the next
-  std::atomic<int> helping_ = 0;  // helpers at work
+  std::atomic<int> runs_ = 0;     // number of runs started; also read without the mutex
+  std::atomic<int> helping_ = 0;  // helpers at work; also read without the mutex
   std::exception_ptr failure_;
-  std::vector<std::jthread> helpers_;  // last, so that they end first
+  std::vector<std::jthread> helpers_;  // last member: joined before the others are destroyed
 };
 
 }  // namespace byre

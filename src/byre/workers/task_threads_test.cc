@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Helpers, TaskThreadsOf, testing::Values(0, 1, 3));
 TEST(TaskThreads, WorkSideBySide) {
   TaskThreads threads(1);
   std::atomic<int> waiting = 0;
-  // Each task ends when the other has begun, which on one thread never happens.
+  // Each task ends once the other has started, which never happens on one thread.
   threads.run(2, [&](int) {
     ++waiting;
     while (waiting < 2) std::this_thread::yield();

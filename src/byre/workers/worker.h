@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// Runs jobs that result in something on an executor, one at a time. Called from one thread.
+// Runs jobs with a typed result on an executor, one at a time. Called from one thread.
 template <typename Result>
 class Worker {
  public:
@@ -22,7 +22,7 @@ class Worker {
 
   bool idle() const { return executor_->idle(); }
 
-  // job() returns a Result and owns, or shares, all that it reads. Precondition: idle().
+  // job() returns a Result and owns, or shares, all data that it reads. Precondition: idle().
   template <typename TypedJob>
   void start(TypedJob job) {
     executor_->submit([job = std::move(job)] { return std::any(std::in_place_type<Result>, job()); });

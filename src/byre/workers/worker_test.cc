@@ -96,7 +96,7 @@ TEST(Worker, DoesNotWaitForALiveJobThatRuns) {
   EXPECT_EQ(worker.finish()->result, 9);
 }
 
-// A result may be empty by itself, as that of a search that finds nothing.
+// A result may itself be empty, such as that of an unsuccessful search.
 TEST(Worker, TellsAnEmptyResultFromNone) {
   Worker<std::optional<int>> worker(make_inline_executor());
   worker.start([] { return std::optional<int>(); });
