@@ -20,20 +20,20 @@ struct Problem {
   double max_squared_error;  // pixels squared
 };
 
-// A pose and its truncated squared error, summed over the sightings (MSAC: Torr and Zisserman 2000). Pixels squared.
+// A pose and its truncated squared error summed over the sightings, pixels squared (MSAC: Torr and Zisserman 2000).
 struct Candidate {
   Pose camera_from_world;
   double cost = std::numeric_limits<double>::infinity();
   int inlier_count = 0;
 };
 
-// Projected less measured pixel and disparity; the disparity's part is zero where none was measured.
+// Projected less measured pixel and disparity; the disparity error is zero without a measured disparity.
 StereoPixel error_of(const PointSighting& sighting, const StereoPixel& projected) {
   const double disparity = sighting.disparity.value_or(projected.z());
   return projected - StereoPixel(sighting.pixel.x(), sighting.pixel.y(), disparity);
 }
 
-// Gives up once the cost exceeds cost_to_beat; the candidate's counts are then partial.
+// Stops once the cost exceeds cost_to_beat; the candidate's counts are then partial.
 Candidate score(const Problem& problem, const Pose& camera_from_world, double cost_to_beat) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   Candidate candidate{camera_from_world, 0.0, 0};
@@ -51,7 +51,7 @@ Candidate score(const Problem& problem, const Pose& camera_from_world, double co
   return candidate;
 }
 
-// Gauss-Newton's equations over the inliers of a pose, for a small motion in the camera frame.
+// Gauss-Newton equations over the inliers of a pose, for a small motion in the camera frame.
 struct NormalEquations {
   Matrix6 information = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
@@ -99,7 +99,7 @@ Candidate refine(const Problem& problem, Candidate best, int max_steps) {
 }
 
 std::array<std::size_t, 3> draw_three(std::size_t count, std::mt19937_64& random) {
-  const auto draw = [&] { return static_cast<std::size_t>(random() % count); };  // the same on every platform
+  const auto draw = [&] { return static_cast<std::size_t>(random() % count); };  // draws equal on all platforms
   std::array<std::size_t, 3> drawn{draw(), draw(), draw()};
   while (drawn[1] == drawn[0]) drawn[1] = draw();
   while (drawn[2] == drawn[0] || drawn[2] == drawn[1]) drawn[2] = draw();
@@ -115,7 +115,7 @@ std::vector<Pose> poses_from(const Problem& problem, const std::array<std::size_
   return perspective_three_point(points_in_world, bearings);
 }
 
-// Draws needed until one of three inliers has come up with the confidence asked for (Fischler and Bolles 1981).
+// Number of draws until one of three inliers has occurred with the wanted confidence (Fischler and Bolles 1981).
 int pose_draws_needed(double inlier_ratio, const RansacOptions& options) {
   const double all_inliers = inlier_ratio * inlier_ratio * inlier_ratio;
   if (all_inliers >= 1.0) return 1;
@@ -149,7 +149,7 @@ std::vector<bool> inliers_of(const Problem& problem, const Pose& camera_from_wor
   return inliers;
 }
 
-// On a line the turn about it is free, however many points there are.
+// Points on one line leave the rotation about it free, however many they are.
 bool on_one_line(std::span<const PointSighting> sightings, const std::vector<bool>& chosen) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < sightings.size(); ++i) {

@@ -9,11 +9,11 @@
 
 namespace byre {
 
-// A known point seen at a pixel of a rectified image, and in the right image where there is a disparity.
+// A point with given position, its pixel in a rectified image and, if measured, its disparity.
 struct PointSighting {
   Eigen::Vector3d point_in_world;
   Eigen::Vector2d pixel;
-  std::optional<double> disparity{};  // pixels; must agree too
+  std::optional<double> disparity{};  // pixels; counts in the reprojection error
 };
 
 struct AbsolutePose {
@@ -22,8 +22,8 @@ struct AbsolutePose {
   int inlier_count = 0;
 };
 
-// Perspective three-point inside RANSAC, then a non-linear refinement on the inliers. Empty when fewer than
-// four sightings agree or the geometry is degenerate (points on one line, all the same).
+// Perspective-three-point in RANSAC, then non-linear refinement on the inliers. Empty with fewer than four inliers or
+// degenerate geometry (points on one line or all equal).
 std::optional<AbsolutePose> estimate_absolute_pose(std::span<const PointSighting> sightings, const Rig& rig,
                                                    const RansacOptions& options);
 

@@ -22,7 +22,7 @@ Eigen::Vector2d random_pixel(std::mt19937& random) {
   return {u, v};
 }
 
-// Points in the room seen with noise of sigma pixels; every sighting before first_inlier is at an arbitrary pixel.
+// Sightings of random points with noise of sigma pixels; those before first_inlier have random pixels.
 Sightings seen(int count, int first_inlier, double sigma, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> depth(1.0, 6.0);

@@ -45,7 +45,8 @@ std::optional<Similarity> align(Points points_in_source, Points points_in_target
   }
 
   const auto [left, singular, right] = singular_values(covariance);
-  // On a line only one singular value survives, and the turn about the line is free. Quadratic in the line's width.
+  // Points on one line leave one singular value, and the rotation about the line is free. Quadratic in the line's
+  // width.
   constexpr double kThinnest = 1e-9;
   if (!(singular[1] > kThinnest * singular[0])) return std::nullopt;
 

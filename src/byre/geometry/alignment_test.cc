@@ -79,7 +79,7 @@ TEST(Align, AveragesNoiseOut) {
   const Points source = scattered(1000, 5);
   const auto found = align(source, mapped(truth(1.5), source, 0.05), Scale::free);
   ASSERT_TRUE(found.has_value());
-  // Sigma over the root of the count, times the points' distance from the origin for the translation.
+  // Expected error: sigma / sqrt(count), for the translation times the distance of the points from the origin.
   EXPECT_NEAR(found->scale, 1.5, 3e-3);
   EXPECT_THAT(found->target_from_source, PoseNear(truth(1.5).target_from_source, 0.03, 2e-3));
 }

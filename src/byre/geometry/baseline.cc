@@ -14,7 +14,7 @@ bool is_usual_baseline(double metres) {
   return metres >= kShortestBaseline && metres <= kLongestBaseline;
 }
 
-// The baseline in metres by the first smaller unit that gives a usual one; empty without such a unit.
+// The baseline in metres if its unit is the first smaller one that gives a usual value; empty without such a unit.
 std::optional<double> in_smaller_unit(double number) {
   constexpr std::array<double, 3> kUnits = {0.01, 0.001, 0.0254};  // centimetre, millimetre, inch
   for (const double unit : kUnits) {

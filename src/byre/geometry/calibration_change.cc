@@ -11,14 +11,14 @@ namespace {
 // Order of a camera's parameters.
 enum : int { kFocal, kAspect, kCentreU, kCentreV, kFirstDistortion };
 
-// The error of a good calibration, as tools that report 0.1 to 0.2 px of reprojection error leave it.
-constexpr double kFocalSigma = 4e-4;         // share of the focal length
-constexpr double kAspectSigma = 1e-4;        // share of fy / fx
+// Standard errors of a good calibration, as left by tools that report 0.1 to 0.2 px of reprojection error.
+constexpr double kFocalSigma = 4e-4;         // relative
+constexpr double kAspectSigma = 1e-4;        // relative, of fy / fx
 constexpr double kCentreSigma = 0.15;        // pixels
-constexpr double kRadialSigma = 1e-3;        // k1 and k2, and what takes the place of p1 and p2 in a fisheye
+constexpr double kRadialSigma = 1e-3;        // k1 and k2; k3 and k4 of a fisheye
 constexpr double kTangentialSigma = 1e-4;    // p1 and p2
 constexpr double kRotationSigma = 0.01;      // degrees
-constexpr double kBaselineTurnSigma = 0.05;  // degrees: 0.1 mm across a baseline of a hand's breadth
+constexpr double kBaselineTurnSigma = 0.05;  // degrees: 0.1 mm across a baseline of 0.1 m
 
 Camera changed(Camera camera, const double* sigmas) {
   const double focal = 1.0 + kFocalSigma * sigmas[kFocal];
@@ -37,12 +37,12 @@ Camera changed(Camera camera, const double* sigmas) {
   return camera;
 }
 
-// The right camera turned about itself by a small rotation, as it sees it.
+// Rotates the right camera about its own centre; rotation vector in its own frame.
 Pose turned(const Pose& right_from_left, const Eigen::Vector3d& rotation) {
   return Pose{rotation_exp(-rotation), Eigen::Vector3d::Zero()} * right_from_left;
 }
 
-// The right camera's centre carried round the left one by two small angles, its distance and its orientation kept.
+// Moves the right camera's centre about the left one by two small angles. Distance and orientation are kept.
 Pose carried_round(const Pose& right_from_left, double about_z, double about_y) {
   const Eigen::Vector3d centre = inverse(right_from_left).translation;
   const Eigen::Vector3d along = centre.normalized();

@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// A pair like those of small drones: 80 degrees wide, barrel distortion, not quite parallel.
+// A stereo pair like those of small drones: 80 degrees wide, barrel distortion, slightly non-parallel.
 inline Calibration scene_calibration() {
   const Camera left{.model = CameraModel::radial_tangential,
                     .width = 752,
@@ -24,7 +24,7 @@ inline Calibration scene_calibration() {
   return {left, StereoPartner{right, inverse(left_from_right)}, Pose{}};
 }
 
-// An error such as good calibrations have.
+// A typical error of a good calibration, times level.
 inline CalibrationVector draw_error(std::uint64_t seed, double level = 1.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, level);
@@ -33,8 +33,8 @@ inline CalibrationVector draw_error(std::uint64_t seed, double level = 1.0) {
   return error;
 }
 
-// What is measured of a point when images taken by cameras that are in truth like this are rectified by the calibration
-// given: u, v, disparity, row offset.
+// Measurement (u, v, disparity, row offset) of a point by cameras with calibration `truth` whose images are rectified
+// by calibration `given`.
 inline Eigen::Vector4d measured(const Calibration& truth, const Calibration& given, const Rectification& rectification,
                                 const Eigen::Vector3d& point_in_left) {
   const Rig& rig = rectification.rig;

@@ -5,15 +5,15 @@
 namespace byre {
 namespace {
 
-constexpr double kStep = 0.25;  // sigmas, of numerical differences
+constexpr double kStep = 0.25;  // sigmas, of central differences
 
-// One camera, and how the given calibration rectifies it.
+// One camera and its rectification by the given calibration.
 struct RectifiedCamera {
   const Camera& given;
   const Eigen::Quaterniond& camera_from_rectified;
   const Rig& rig;
 
-  // Where the given calibration puts what a camera in truth sees in a direction.
+  // Rectified pixel, by the given calibration, of a direction seen by a camera whose true calibration is `truth`.
   std::optional<Eigen::Vector2d> pixel_of(const Camera& truth, const Eigen::Vector3d& direction) const {
     const auto raw = truth.project(direction);
     const auto bearing = raw ? given.bearing(*raw) : std::nullopt;
@@ -22,7 +22,6 @@ struct RectifiedCamera {
   }
 };
 
-// A change of one parameter.
 CalibrationVector step_along(int parameter, double sigmas) {
   CalibrationVector step = CalibrationVector::Zero();
   step[parameter] = sigmas;
@@ -65,7 +64,7 @@ auto right_slopes(const Calibration& given, const Rectification& rectification) 
   };
 }
 
-// Slopes of the right camera's centre by each parameter of the baseline's turn, in baselines.
+// Derivatives of the right camera's centre by each parameter of the baseline rotation, in baselines.
 Eigen::Matrix<double, 3, 2> centre_slopes(const Calibration& given, const Rectification& rectification) {
   Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
   if (!given.right) return slopes;
@@ -99,7 +98,7 @@ CalibrationSensitivity::Jacobian CalibrationSensitivity::at(const StereoPixel& p
   if (!has_right_ || !(pixel.z() > 0.0)) return jacobian;
   const Eigen::Vector2d in_right(pixel.x() - pixel.z(), pixel.y());
   ByRightCamera by_right = right_.at(in_right);
-  // A point at depth z moves in the image by -focal / z times the centre's motion across the ray.
+  // A point at depth z moves in the image by -focal / z times the motion of the centre across the ray.
   const Eigen::Vector3d ray = rig_.ray(in_right);
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector3d centre = centre_by_turn_.col(i);

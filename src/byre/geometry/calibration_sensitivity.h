@@ -6,19 +6,18 @@
 
 namespace byre {
 
-// How a point's place in rectified images answers to the calibration of the cameras that took them, when the images
-// are rectified by the calibration that was given. Linear: for changes by a few of the parameters' sigmas.
+// Derivatives of a point's rectified measurement by the true calibration of the cameras, while the images are rectified
+// by the given one. Linear: valid for changes by a few of the parameters' sigmas.
 class CalibrationSensitivity {
  public:
-  // u, v, disparity, and the right row less the left one, which is zero while the calibration is right; pixels by the
-  // parameters' sigmas.
+  // Rows: u, v, disparity, and right row less left row, which is zero with the true calibration. Pixels per sigma of a
+  // parameter.
   using Jacobian = Eigen::Matrix<double, 4, kCalibrationParameters>;
 
   // Throws InputError when the calibration cannot be rectified.
   explicit CalibrationSensitivity(const Calibration& given);
 
-  // Slopes for a point that is seen at this pixel. Without a disparity (not positive) the two rows of the right image
-  // are zero.
+  // Derivatives at a measured pixel. Without a disparity (not positive) rows three and four are zero.
   Jacobian at(const StereoPixel& pixel) const;
 
   const Rig& rig() const { return rig_; }
@@ -30,10 +29,11 @@ class CalibrationSensitivity {
   using ByRightCamera = Eigen::Matrix<double, 2, kCalibrationParameters - kRightCamera>;
 
   Rig rig_;
-  bool has_right_ = false;          // without a right camera a disparity is a depth, which owes the cameras nothing
-  PixelGrid<ByCamera> left_;        // slopes of the left pixel by the left camera's parameters
-  PixelGrid<ByRightCamera> right_;  // slopes of the right pixel of a point far away, by the right camera's parameters
-  // Slopes of the right camera's centre by the baseline's turn, in baselines, in the rectified left camera's frame.
+  bool has_right_ = false;          // false: disparities are depths of a depth camera, independent of the calibration
+  PixelGrid<ByCamera> left_;        // derivatives of the left pixel by the left camera's parameters
+  PixelGrid<ByRightCamera> right_;  // derivatives of a distant point's right pixel by the right camera's parameters
+  // Derivatives of the right camera's centre by the baseline rotation, in baselines, in the rectified left camera's
+  // frame.
   Eigen::Matrix<double, 3, 2> centre_by_turn_;
 };
 

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// All over the image, at depths from 0.5 to 8 m, in the rectified left camera.
+// Points all over the image at depths from 0.5 to 8 m, in the rectified left camera.
 std::vector<Eigen::Vector3d> points_in_view(const Rig& rig) {
   std::vector<Eigen::Vector3d> points;
   for (const double depth : {0.5, 2.0, 8.0}) {

@@ -8,13 +8,13 @@
 namespace byre {
 namespace {
 
-// Both lens models bend a plane: the plane z = 1 (radial_tangential), or the plane whose vectors are as long as the
-// angle off the axis (equidistant). A vector v becomes v (1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4) with s = |v|^2, plus
-// the tangential part.
+// Both lens models distort a plane: the plane z = 1 (radial_tangential), or the plane whose vectors are as long as the
+// angle off the axis (equidistant). A vector v becomes v (1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4) with s = |v|^2, plus the
+// tangential part.
 struct Lens {
   std::array<double, 4> radial{};                                       // k1..k4
   std::array<double, 2> tangential{};                                   // p1, p2
-  double max_radius_squared = std::numeric_limits<double>::infinity();  // largest |v|^2 that the lens model holds for
+  double max_radius_squared = std::numeric_limits<double>::infinity();  // largest |v|^2 of the lens model's domain
 };
 
 Lens lens_of(const Camera& camera) {
@@ -30,8 +30,8 @@ Lens lens_of(const Camera& camera) {
   return {};
 }
 
-// The five coefficients are of a Bernstein polynomial: it lies in their hull, so if all are positive, so is it on [0,
-// 1]. Otherwise de Casteljau's halving decides, to an interval of 2^-halvings.
+// Whether a polynomial is positive on [0, 1], from its five Bernstein coefficients. It lies in their convex hull, so
+// positive coefficients suffice. Otherwise de Casteljau's subdivision decides, to an interval of 2^-halvings.
 bool is_positive(const std::array<double, 5>& bernstein, int halvings) {
   if (std::all_of(bernstein.begin(), bernstein.end(), [](double value) { return value > 0.0; })) return true;
   if (!(bernstein.front() > 0.0 && bernstein.back() > 0.0) || halvings == 0) return false;
@@ -43,7 +43,7 @@ bool is_positive(const std::array<double, 5>& bernstein, int halvings) {
   return is_positive(left, halvings - 1) && is_positive(right, halvings - 1);
 }
 
-// Whether the distorted radius still grows with the true one all the way from the axis to here.
+// Whether the distorted radius increases monotonically with the true one from the axis to this radius.
 bool is_in_field(const Lens& lens, double radius_squared) {
   if (!(radius_squared < lens.max_radius_squared)) return false;
   // Terms of the slope d(distorted radius) / d(radius), and its Bernstein form on [0, radius_squared].
@@ -81,7 +81,7 @@ Eigen::Matrix2d distortion_jacobian(const Lens& lens, const Eigen::Vector2d& v) 
   return jacobian;
 }
 
-// A Newton step, halved until it stays in the field and comes nearer.
+// A Newton step, halved until it stays in the field and reduces the error.
 std::optional<Eigen::Vector2d> newton_step(const Lens& lens, const Eigen::Vector2d& v,
                                            const Eigen::Vector2d& distorted) {
   const Eigen::Vector2d residual = distorted - distort(lens, v);
@@ -95,7 +95,7 @@ std::optional<Eigen::Vector2d> newton_step(const Lens& lens, const Eigen::Vector
   return std::nullopt;
 }
 
-// The vector that the lens bends to the one given.
+// The vector whose distortion is the given one.
 std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted) {
   constexpr int kMaxSteps = 60;
   const double tolerance = 1e-14 * (1.0 + distorted.norm());

@@ -30,7 +30,7 @@ Camera radial_tangential() {
           {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0}};
 }
 
-// TUM RGB-D, freiburg1: the sixth order matters.
+// TUM RGB-D, freiburg1: with a significant sixth-order term.
 Camera with_k3() {
   return {
       CameraModel::radial_tangential, 640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
@@ -48,7 +48,7 @@ Camera fisheye() {
           {0.0034823, 0.00071503, -0.0020532, 0.00020293, 0.0}};
 }
 
-// r (1 - r^2 / 3) grows until r = 1 and falls beyond.
+// r (1 - r^2 / 3) increases up to r = 1 and decreases beyond.
 Camera folding_at_radius_one() {
   return {CameraModel::radial_tangential, 640, 480, 300.0, 300.0, 320.0, 240.0, {-1.0 / 3.0, 0.0, 0.0, 0.0, 0.0}};
 }
@@ -110,7 +110,7 @@ TEST(PinholeCamera, DividesByDepth) {
   EXPECT_THAT(pinhole().project({1.0, -0.5, 2.0}), Optional(PointNear(Eigen::Vector2d(520.0, 137.5), 1e-12)));
 }
 
-// The expected pixels are the models' formulas worked out by hand.
+// Expected pixels: the formulas of the models, written out.
 TEST(RadialTangentialCamera, FollowsBrownAndConrady) {
   Camera camera{CameraModel::radial_tangential, 640, 480, 100.0, 100.0, 0.0, 0.0, {0.1, 0.01, 0.002, 0.003, 0.001}};
   const double x = 0.5, y = 0.4, s = 0.41;
@@ -154,7 +154,7 @@ TEST(CameraField, StaysClosedWhereTheLensGrowsAgainBeyondTheFold) {
 
 TEST(CameraField, StaysOpenWhereTheLensOnlyFlattens) {
   Camera camera = folding_at_radius_one();
-  // The slope 1 - 1.99 s + s^2 comes down to 0.01 near s = 1 and never crosses zero.
+  // The slope 1 - 1.99 s + s^2 has its minimum of 0.01 near s = 1.
   camera.distortion = {-1.99 / 3.0, 1.0 / 5.0, 0.0, 0.0, 0.0};
   EXPECT_TRUE(camera.project({2.0, 0.0, 1.0}).has_value());
 }

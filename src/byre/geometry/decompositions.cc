@@ -49,7 +49,7 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& matrix) {
   return Eigen::Quaterniond(Eigen::Matrix3d(left * signs.asDiagonal() * right.transpose()));
 }
 
-// Eigen's FromTwoVectors, but for opposite directions, where it decomposes a matrix.
+// Like Eigen's FromTwoVectors, but without its matrix decomposition for opposite directions.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   constexpr double kOpposite = 1e-12;
   const Eigen::Vector3d first = from.normalized(), second = to.normalized();

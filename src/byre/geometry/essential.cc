@@ -12,8 +12,8 @@
 namespace byre {
 namespace {
 
-// Polynomials in x, y, z of degree three at most, by their coefficients of kMonomials; those of degree two and of
-// degree one at most are zero before kSquares and kLinear.
+// Polynomials in x, y, z up to degree three, as coefficients of kMonomials. Polynomials up to degree two have zeros
+// before kSquares, those up to degree one before kLinear.
 constexpr int kTerms = 20;
 constexpr int kSquares = 10;
 constexpr int kLinear = 16;
@@ -35,7 +35,7 @@ constexpr int index_of(const Monomial& monomial) {
   return -1;
 }
 
-// Where the product of two monomials stands; -1 beyond degree three.
+// Index of the product of two monomials; -1 beyond degree three.
 constexpr auto kProducts = [] {
   std::array<std::array<int, kTerms>, kTerms> products{};
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -47,7 +47,7 @@ constexpr auto kProducts = [] {
   return products;
 }();
 
-// first_begin: the first term of `first` that is not zero; second is linear.
+// first_begin: index of the first non-zero term of `first`. Precondition: second is linear.
 [[gnu::noinline]] Polynomial times_linear(const Polynomial& first, int first_begin, const Polynomial& second) {
   Polynomial product = Polynomial::Zero();
   for (int i = first_begin; i < kTerms; ++i) {
@@ -71,7 +71,7 @@ struct PolynomialMatrix {
   }
 };
 
-// All matrices that satisfy the five epipolar equations.
+// Basis of the matrices that satisfy the five epipolar equations.
 Basis basis_of(const std::array<TwoViewMatch, 5>& matches) {
   Eigen::Matrix<double, 9, 5> equations;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -120,7 +120,7 @@ PolynomialMatrix reduced_square(const PolynomialMatrix& matrix) {
   return square;
 }
 
-// A row for each of the ten cubics that are zero for an essential matrix: two singular values alike, the third zero.
+// The ten cubics that vanish for an essential matrix (two equal singular values, the third zero), one per row.
 Eigen::Matrix<double, 10, kTerms> constraints(const PolynomialMatrix& matrix) {
   Eigen::Matrix<double, 10, kTerms> rows;
   const PolynomialMatrix square = reduced_square(matrix);
@@ -135,7 +135,8 @@ Eigen::Matrix<double, 10, kTerms> constraints(const PolynomialMatrix& matrix) {
   return rows;
 }
 
-// Multiplies the monomials of degree two and less by x, modulo the constraints. At a solution they are an eigenvector.
+// Matrix of the multiplication by x on the monomials up to degree two, modulo the constraints. Solutions are its
+// eigenvectors.
 Eigen::Matrix<double, 10, 10> multiplication_by_x(const Eigen::Matrix<double, 10, kTerms>& rows) {
   const Eigen::Matrix<double, 10, 10> cubics =
       -rows.leftCols<kSquares>().partialPivLu().solve(rows.rightCols<kSquares>());

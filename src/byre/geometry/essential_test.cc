@@ -22,7 +22,7 @@ std::array<TwoViewMatch, 5> five_matches(const Pose& motion, const DepthOf& dept
   return five;
 }
 
-// Matrices are compared up to scale and sign.
+// Distance up to scale and sign.
 double distance_between(const Eigen::Matrix3d& first, const Eigen::Matrix3d& second) {
   const Eigen::Matrix3d a = first.normalized(), b = second.normalized();
   return std::min((a - b).norm(), (a + b).norm());

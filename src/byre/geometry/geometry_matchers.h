@@ -1,6 +1,6 @@
 #pragma once
 
-// Matchers for tests: they say by how much and in what a pose or a point is off.
+// Matchers that report by how much a pose or point differs.
 
 #include "byre/pose.h"
 
@@ -8,14 +8,14 @@
 
 namespace byre {
 
-// A point or pixel within a distance of the one expected, in its own unit.
+// A point or pixel within a distance of the expected one, in its own unit.
 MATCHER_P2(PointNear, expected, tolerance, "") {
   const double distance = (arg - expected).norm();
   *result_listener << "which is " << distance << " away from " << testing::PrintToString(expected.transpose());
   return distance <= tolerance;
 }
 
-// A pose within metres and radians of the one expected.
+// A pose within metres and radians of the expected one.
 MATCHER_P3(PoseNear, expected, metres, radians, "") {
   const double distance = (arg.translation - expected.translation).norm();
   const double angle = angle_between(arg.rotation, expected.rotation);

@@ -15,7 +15,7 @@ namespace {
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-// Moves points at z = 1 to their mean and scales them to a mean distance of sqrt(2).
+// Normalises points at z = 1: zero mean and a mean distance of sqrt(2).
 template <typename PointOf>
 Eigen::Matrix3d normalisation(std::span<const TwoViewMatch> matches, PointOf point_of) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -41,17 +41,17 @@ Eigen::Matrix<double, 2, 9> equations_of(const Eigen::Vector3d& first, const Eig
   return equations;
 }
 
-// Empty when a second solution does as well.
+// The null vector as a matrix; empty if the null space has more than one dimension.
 std::optional<Eigen::Matrix3d> null_matrix(const Matrix9& normal_matrix) {
-  constexpr double kDegenerate = 1e-12;  // squared, over the largest
+  constexpr double kDegenerate = 1e-12;  // limit on the second-smallest over the largest eigenvalue
   const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(normal_matrix);
   if (!(eigen.eigenvalues()[1] > kDegenerate * eigen.eigenvalues()[8])) return std::nullopt;
   const Vector9 entries = eigen.eigenvectors().col(0);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(entries.data());
 }
 
-// A motion by which the plane through the directions `middle` and `unchanged`, whose lengths the homography keeps, is
-// seen to move as it says.
+// The motion that causes the homography for the plane spanned by `middle` and `unchanged`, two orthogonal unit
+// directions whose lengths the homography keeps.
 Pose motion_of_plane(const Eigen::Matrix3d& homography, const Eigen::Vector3d& middle,
                      const Eigen::Vector3d& unchanged) {
   const Eigen::Vector3d normal = middle.cross(unchanged);
@@ -86,7 +86,7 @@ std::optional<Eigen::Matrix3d> fit_homography(std::span<const TwoViewMatch> matc
   if (!normalised) return std::nullopt;
   const Eigen::Matrix3d homography = normalise_second.inverse() * *normalised * normalise_first;
   const double scale = singular_values(homography).values[1];
-  // What is in front of one camera is in front of the other.
+  // Points in front of one camera are in front of the other.
   const Eigen::Vector3d& first = matches.front().ray_in_first;
   const double sign = matches.front().ray_in_second.dot(homography * first) < 0.0 ? -1.0 : 1.0;
   if (!(std::abs(homography.determinant()) > 1e-9 * scale * scale * scale)) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<Eigen::Matrix3d> fit_homography(std::span<const TwoViewMatch> matc
 }
 
 std::vector<Pose> motions_from_homography(const Eigen::Matrix3d& homography) {
-  constexpr double kRotation = 1e-9;  // squared singular values alike to this are those of a rotation
+  constexpr double kRotation = 1e-9;  // difference of squared singular values below which the homography is a rotation
   const Eigen::Matrix3d squared = homography.transpose() * homography;
   const SymmetricEigen<3> eigen = symmetric_eigen(squared);
   const double least = eigen.values[0];
@@ -102,7 +102,7 @@ std::vector<Pose> motions_from_homography(const Eigen::Matrix3d& homography) {
   if (!(largest - least > kRotation)) return {};
   const double along_least = std::sqrt(std::max(0.0, 1.0 - least) / (largest - least));
   const double along_largest = std::sqrt(std::max(0.0, largest - 1.0) / (largest - least));
-  // The first needs the part along the largest value's direction that the least value allows, and vice versa.
+  // The homography keeps the length of the sum and of the difference of these two parts.
   const Eigen::Vector3d largest_part = along_least * eigen.vectors.col(2);
   const Eigen::Vector3d least_part = along_largest * eigen.vectors.col(0);
   const Eigen::Vector3d middle = eigen.vectors.col(1);

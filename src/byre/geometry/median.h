@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// The middle value, of an even number the upper of the two; there must be one. Reorders them.
+// The median; for an even count the upper of the two middle values. Reorders the values. Precondition: not empty.
 template <typename Value>
 Value median_of(std::span<Value> values) {
   assert(!values.empty());
@@ -17,7 +17,7 @@ Value median_of(std::span<Value> values) {
   return *middle;
 }
 
-// The middle value, of an even number the upper of the two; there must be one.
+// The median; for an even count the upper of the two middle values. Precondition: not empty.
 template <typename Value>
 Value median(std::vector<Value> values) {
   return median_of(std::span(values));
@@ -28,10 +28,9 @@ Value median_or(std::vector<Value> values, Value of_none) {
   return values.empty() ? of_none : median(std::move(values));
 }
 
-// The standard deviation of most of these if they are normal, from how far each is off, in its own sigmas. Never less
-// than one, and one where there is none.
+// Robust standard deviation from absolute deviations in sigmas, by their median. At least 1, and 1 without deviations.
 inline double robust_scale(std::vector<double> deviations) {
-  constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over the median of absolute deviations
+  constexpr double kSigmasOfMedian = 1.4826;  // standard deviation over median absolute deviation, normal distribution
   return deviations.empty() ? 1.0 : std::max(1.0, kSigmasOfMedian * median(std::move(deviations)));
 }
 

@@ -13,11 +13,11 @@ namespace byre {
 namespace {
 
 using Triple = std::array<Eigen::Vector3d, 3>;
-using Conic = Eigen::Matrix3d;  // symmetric; the directions d with d^T C d = 0
+using Conic = Eigen::Matrix3d;  // symmetric; the set of directions d with d^T C d = 0
 
 constexpr std::array<std::pair<int, int>, 3> kSides = {{{0, 1}, {0, 2}, {1, 2}}};
 
-// What is known of the triangle: depth_i^2 + depth_j^2 - 2 cosine depth_i depth_j = squared_length, for each side.
+// Constraints on the depths, one per side: depth_i^2 + depth_j^2 - 2 cosine depth_i depth_j = squared_length.
 struct Triangle {
   Eigen::Vector3d squared_lengths;
   Eigen::Vector3d cosines;
@@ -33,7 +33,7 @@ Triangle triangle_of(const Triple& points, const Triple& bearings) {
   return triangle;
 }
 
-// The quadratic form of the depths that is the squared length of a side.
+// The squared length of a side as a quadratic form of the depths.
 Conic squared_length_form(const Triangle& triangle, int side) {
   const auto [i, j] = kSides[side];
   Conic form = Conic::Zero();
@@ -42,14 +42,14 @@ Conic squared_length_form(const Triangle& triangle, int side) {
   return form;
 }
 
-// The ratio of two sides' lengths leaves only the direction of the depths: a conic through all solutions.
+// Conic through all solutions, from the ratio of two sides' lengths, which depends only on the direction of the depths.
 Conic ratio_conic(const Triangle& triangle, int side, int other) {
   const Conic conic = triangle.squared_lengths[other] * squared_length_form(triangle, side) -
                       triangle.squared_lengths[side] * squared_length_form(triangle, other);
   return conic / conic.norm();
 }
 
-// The real root of x^3 + b x^2 + c x + d that lies farthest from the inflection, and so is best conditioned.
+// The real root of x^3 + b x^2 + c x + d farthest from the inflection, which is the best conditioned one.
 double real_root(double b, double c, double d) {
   const double p = c - b * b / 3.0;
   const double half_q = b * b * b / 27.0 - b * c / 6.0 + 0.5 * d;
@@ -77,7 +77,7 @@ Eigen::Matrix3d cofactors(const Eigen::Matrix3d& matrix) {
   return result;
 }
 
-// Two conics whose common directions are those of the original two, the first a pair of lines.
+// Two conics with the same common directions as the original two; the first is a pair of lines.
 struct LinePairAndConic {
   Conic line_pair;
   Conic conic;
@@ -100,13 +100,13 @@ std::optional<std::array<Eigen::Vector3d, 2>> intersect(const Conic& conic, cons
   const double half_b = u.dot(conic * v);
   const double c = v.dot(conic * v);
   const double discriminant = half_b * half_b - a * c;
-  constexpr double kRounding = 1e-12;  // a double root may come out slightly complex
+  constexpr double kRounding = 1e-12;  // a double root may become slightly complex
   if (discriminant < -kRounding * (half_b * half_b + std::abs(a * c))) return std::nullopt;
   const double root = -(half_b + std::copysign(std::sqrt(std::max(0.0, discriminant)), half_b));
   return {{root * u + a * v, c * u + root * v}};
 }
 
-// The directions common to both conics, of either sign and any length.
+// The directions common to both conics, with arbitrary sign and length.
 std::vector<Eigen::Vector3d> common_directions(const Conic& first, const Conic& second) {
   const auto [line_pair, conic] = degenerate_member(first, second);
   const SymmetricEigen<3> eigen = symmetric_eigen(line_pair);
@@ -124,7 +124,7 @@ std::vector<Eigen::Vector3d> common_directions(const Conic& first, const Conic& 
   return directions;
 }
 
-// Newton on the three squared lengths; empty unless they are met with every point in front.
+// Newton's method on the three squared lengths; empty unless it converges with all points in front of the camera.
 std::optional<Eigen::Vector3d> polish(const Triangle& triangle, Eigen::Vector3d depths) {
   constexpr int kSteps = 3;
   Eigen::Vector3d residual;
@@ -158,7 +158,7 @@ std::optional<Eigen::Vector3d> depths_along(const Triangle& triangle, Eigen::Vec
   return polish(triangle, direction * std::sqrt(triangle.squared_lengths.sum() / sum_of_squared_lengths));
 }
 
-// The triangle's own axes: along its first side, in its plane, and normal to it.
+// Axes of the triangle: along its first side, in its plane, and normal to it.
 Eigen::Matrix3d axes(const Triple& points) {
   const Eigen::Vector3d along = (points[1] - points[0]).normalized();
   const Eigen::Vector3d normal = along.cross(points[2] - points[0]).normalized();

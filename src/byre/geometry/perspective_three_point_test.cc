@@ -67,7 +67,7 @@ TEST(PerspectiveThreePoint, EveryPoseExplainsTheBearings) {
 }
 
 TEST(PerspectiveThreePoint, FindsAllFourPosesOfASymmetricPyramid) {
-  // Equal sides and equal angles: the upright pose and three tilted ones.
+  // Equal sides and equal angles: one upright and three tilted poses.
   const Scene scene = seen_from(
       {}, {Eigen::Vector3d(1.0, 0.0, 2.0), Eigen::Vector3d(-0.5, 0.75, 2.0), Eigen::Vector3d(-0.5, -0.75, 2.0)});
   const std::vector<Pose> poses = perspective_three_point(scene.points_in_world, scene.bearings);
@@ -98,7 +98,7 @@ TEST(PerspectiveThreePoint, HasNoPoseForTheSamePointThrice) {
 }
 
 TEST(PerspectiveThreePoint, HasNoPoseForBearingsThatNoPlacingExplains) {
-  // One ray for two different points, and the third at a right angle: the depths would have to be negative.
+  // One ray for two different points, and the third at a right angle: the depths would be negative.
   const Triple points = {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 0.0, 0.0),
                          Eigen::Vector3d(0.0, 0.1, 0.0)};
   const Triple bearings = {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, 0.0, 1.0),

@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// A smooth field over an image: a value at each node of a grid, interpolated between them.
+// A smooth field over an image, interpolated bilinearly between the nodes of a grid.
 template <typename Value>
 class PixelGrid {
  public:
@@ -26,7 +26,7 @@ class PixelGrid {
     last_cell_height_ = height - 1 - (rows_ - 2) * kCell;
   }
 
-  // Outside the image that of the nearest pixel inside.
+  // Outside the image: the value at the nearest pixel inside.
   Value at(const Eigen::Vector2d& pixel) const {
     const Place x = place(pixel.x(), columns_, last_cell_width_);
     const Place y = place(pixel.y(), rows_, last_cell_height_);
@@ -54,7 +54,7 @@ class PixelGrid {
   int rows_ = 0;
   int last_cell_width_ = 0;   // pixels
   int last_cell_height_ = 0;  // pixels
-  std::vector<Value> nodes_;  // values of the nodes, row by row
+  std::vector<Value> nodes_;  // row by row
 };
 
 }  // namespace byre

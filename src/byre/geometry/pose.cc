@@ -8,7 +8,7 @@ namespace byre {
 
 Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector) {
   const double angle = rotation_vector.norm();
-  // sin(x/2)/x by its series near zero, where the quotient loses its digits.
+  // sin(x/2)/x, by its series near zero, where the quotient loses precision.
   const double half_sinc = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
   Eigen::Quaterniond rotation;
   rotation.w() = std::cos(0.5 * angle);

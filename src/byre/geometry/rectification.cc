@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// One camera and how it must be turned.
+// One camera and its rectifying rotation.
 struct View {
   const Camera* camera;
   Eigen::Quaterniond rectified_from_camera;
@@ -26,8 +26,8 @@ struct Field {
   double bottom = std::numeric_limits<double>::infinity();
 };
 
-// Where a border pixel lies on the plane z = 1; or, if the lens model cannot invert it or it lies to the side of the
-// rectified camera, the outermost pixel towards it.
+// A border pixel on the plane z = 1. If the lens model cannot invert it or it lies to the side of the rectified camera:
+// the outermost valid pixel on the line to the principal point.
 Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& border) {
   constexpr double kMinForward = 0.1;  // cosine of the angle off the rectified axis
   const Eigen::Vector2d centre(view.camera->cx, view.camera->cy);
@@ -47,7 +47,7 @@ Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& bord
                    "check intrinsics and distortion coefficients");
 }
 
-// Shrinks the field to the largest upright rectangle inside this view's own.
+// Shrinks the field to the largest upright rectangle inside this view's field.
 void clip_to_view(const View& view, Field& field) {
   const double last_u = view.camera->width - 1;
   const double last_v = view.camera->height - 1;
@@ -62,7 +62,8 @@ void clip_to_view(const View& view, Field& field) {
   }
 }
 
-// Both images turned so that their rows run along the baseline and both look along the mean of the optical axes.
+// Rotates both images so that their rows are parallel to the baseline and the view is along the mean of the optical
+// axes.
 Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
   const Pose left_from_right = inverse(partner.right_from_left);
   const Eigen::Vector3d x_axis = left_from_right.translation.normalized();
@@ -97,12 +98,12 @@ double disparity_baseline(const Calibration& calibration) {
   return calibration.depth ? calibration.depth->baseline : 0.0;
 }
 
-// The value between two that is nearest to zero. Not std::clamp: rounding may swap the bounds of a single value.
+// The value in [low, high] nearest to zero. Not std::clamp: rounding may swap nearly equal bounds.
 double nearest_to_axis(double low, double high) {
   return std::min(std::max(0.0, low), high);
 }
 
-// The camera that shows the whole field, and nothing beyond it, at the source's resolution.
+// The camera that shows exactly the whole field at the source's resolution.
 Rig rig_of_field(const Field& field, const Camera& source) {
   const double width = field.right - field.left;
   const double height = field.bottom - field.top;
@@ -110,14 +111,14 @@ Rig rig_of_field(const Field& field, const Camera& source) {
     throw InputError("calibration", "the cameras' fields of view do not overlap",
                      "check the extrinsic calibration of the pair");
   }
-  // A very wide lens is cropped rather than squeezed: at most this many times coarser than the source's centre.
+  // Very wide lenses are cropped: the resolution is at most this factor below that of the source's centre.
   constexpr double kMaxShrink = 2.0;
   const double filling = std::max((source.width - 1) / width, (source.height - 1) / height);
   Rig rig;
   rig.width = source.width;
   rig.height = source.height;
   rig.focal = std::max(filling, 0.5 * (source.fx + source.fy) / kMaxShrink);
-  // A field larger than the image is shown where it is nearest to the axis.
+  // A field larger than the image is cropped to the part nearest to the axis.
   const double half_width = 0.5 * (rig.width - 1);
   const double half_height = 0.5 * (rig.height - 1);
   const double middle_x = nearest_to_axis(field.left + half_width / rig.focal, field.right - half_width / rig.focal);
@@ -132,7 +133,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
 Rectification rectification_of(const Calibration& calibration) {
   const Camera& left = calibration.left;
   const double baseline = disparity_baseline(calibration);
-  constexpr double kMost = 10.0;  // metres; also of a baseline that a user confirms
+  constexpr double kMost = 10.0;  // metres; also limits a baseline that a user confirms
   if (baseline > kMost) {
     throw InputError("calibration", fmt::format("has a baseline of {:g} m", baseline),
                      "give lengths of the extrinsic calibration in metres");

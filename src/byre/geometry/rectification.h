@@ -5,17 +5,18 @@
 
 namespace byre {
 
-// How a calibrated camera or pair becomes an ideal rig: no distortion, one focal length, rows aligned. The rig's field
-// of view is the largest in which every pixel of both images is defined. A depth camera gives the rig its baseline.
+// Rectification of a calibrated camera or stereo pair to an ideal rig: no distortion, one focal length, rows aligned.
+// The rig has the largest field of view in which each pixel is defined in both images. A depth camera gives the rig its
+// baseline.
 struct Rectification {
   Rig rig;
   Eigen::Quaterniond left_from_rectified = Eigen::Quaterniond::Identity();
   Eigen::Quaterniond right_from_rectified = Eigen::Quaterniond::Identity();  // unused without a right camera
-  bool is_identity = false;                                                  // the images are those of the rig already
+  bool is_identity = false;                                                  // the images need no rectification
 };
 
-// Throws InputError when none exists: the right camera is not to the right of the left one, the cameras look in
-// directions too far apart, or their fields do not overlap.
+// Throws InputError if none exists: the right camera is not to the right of the left one, the optical axes differ too
+// much, or the fields of view do not overlap.
 Rectification rectification_of(const Calibration& calibration);
 
 }  // namespace byre

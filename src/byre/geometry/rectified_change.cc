@@ -3,7 +3,7 @@
 namespace byre {
 namespace {
 
-// A camera as calibrated, and how that is rectified.
+// A calibrated camera and its rectification.
 struct RectifiedView {
   const Camera& camera;
   const Eigen::Quaterniond& camera_from_rectified;

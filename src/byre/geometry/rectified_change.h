@@ -6,20 +6,20 @@
 
 namespace byre {
 
-// Where a corner that was found in images rectified by one calibration lies when they are rectified by another.
+// Maps corners of images rectified by one calibration to images rectified by another.
 class RectifiedChange {
  public:
-  // Throws InputError when either cannot be rectified. Precondition: both of one camera, or both of two.
+  // Throws InputError when either cannot be rectified. Precondition: both monocular, or both stereo.
   RectifiedChange(const Calibration& before, const Calibration& after);
 
   struct Corner {
-    StereoPixel pixel;        // disparity not positive: seen by the left camera alone
-    double row_offset = 0.0;  // the right row less the left one, pixels
+    StereoPixel pixel;        // disparity not positive: left camera only
+    double row_offset = 0.0;  // right row less left row, pixels
   };
   Corner operator()(const Corner& before) const;
 
-  const Rig& rig() const { return rig_; }  // the one after
-  // The rectified left cameras lie in one place, and are turned against each other.
+  const Rig& rig() const { return rig_; }  // rig after the change
+  // A pure rotation: the rectified left cameras share their centre.
   const Pose& after_from_before() const { return after_from_before_; }
 
  private:
@@ -27,8 +27,8 @@ class RectifiedChange {
                   const Rectification& rectified_after);
 
   Rig rig_;
-  bool has_right_ = false;  // without a right camera a disparity is a depth, which stays
-  double zoom_ = 1.0;       // focal length after, by that before
+  bool has_right_ = false;  // false: disparities are depths of a depth camera, which stay
+  double zoom_ = 1.0;       // focal length after over before
   Pose after_from_before_;
   PixelGrid<Eigen::Vector2d> left_;  // displacement, pixels
   PixelGrid<Eigen::Vector2d> right_;

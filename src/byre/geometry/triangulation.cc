@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// Lee and Civera 2019, eq. 11: turning either ray around would not bring the two points on the rays closer.
+// Lee and Civera 2019, eq. 11: reversing either ray does not bring the two points on the rays closer.
 bool meet_in_front(const Eigen::Vector3d& baseline, const Eigen::Vector3d& on_first, const Eigen::Vector3d& on_second) {
   const double gap = (on_first - baseline - on_second).squaredNorm();
   return gap < (on_first - baseline + on_second).squaredNorm() &&
@@ -24,14 +24,14 @@ std::optional<Eigen::Vector3d> triangulate(const Eigen::Vector3d& bearing_in_fir
   const Eigen::Vector3d second = first_from_second.rotation * bearing_in_second.normalized();
 
   const double sine = first.cross(second).norm();
-  // Rays that run straight at each other fix a depth no better than parallel ones, so the sine decides.
+  // Rays towards each other determine depth as badly as parallel ones, so the sine decides.
   if (!(sine > 0.0) || sine < std::sin(min_angle)) return std::nullopt;
-  // Depths by the sine rule in the triangle of the two cameras and the point.
+  // Depths by the sine rule, in the triangle of both cameras and the point.
   const double first_depth = second.cross(baseline).norm() / sine;
   const double second_depth = first.cross(baseline).norm() / sine;
   if (!(first_depth > 0.0 && second_depth > 0.0)) return std::nullopt;
   if (!meet_in_front(baseline, first_depth * first, second_depth * second)) return std::nullopt;
-  // eq. 10: each ray's point weighted by its inverse depth.
+  // Eq. 10: points on the rays weighted by inverse depth.
   return first_depth / (first_depth + second_depth) * (baseline + second_depth * (first + second));
 }
 

@@ -46,7 +46,7 @@ TEST(Triangulate, DoesNotDependOnWhichCameraIsFirst) {
 
 TEST(Triangulate, StaysWithinAFewSigmasOfTheTruth) {
   std::mt19937 random(2);
-  std::normal_distribution<double> noise(0.0, 1e-3);  // noise of a ray with z = 1, about half a pixel
+  std::normal_distribution<double> noise(0.0, 1e-3);  // ray noise at z = 1, about half a pixel
   const Eigen::Vector3d point_in_first(0.3, 0.2, 4.0);
   const Eigen::Vector3d point_in_second = kSecondFromFirst * point_in_first;
   const double parallax = 0.5 / 4.0;
@@ -81,7 +81,7 @@ TEST(Triangulate, IsEmptyBehindTheCameras) {
 
 TEST(Triangulate, IsEmptyBelowTheSmallestAngle) {
   const Pose second_from_first{Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}};
-  const Eigen::Vector3d point_in_first(0.5, 0.0, 50.0);  // seen under 0.02 radians
+  const Eigen::Vector3d point_in_first(0.5, 0.0, 50.0);  // parallax of 0.02 radians
   const Eigen::Vector3d point_in_second = second_from_first * point_in_first;
   EXPECT_TRUE(triangulate(point_in_first, point_in_second, second_from_first, 0.0199).has_value());
   EXPECT_FALSE(triangulate(point_in_first, point_in_second, second_from_first, 0.0201).has_value());

@@ -12,10 +12,10 @@
 namespace byre {
 namespace {
 
-constexpr int kMinPoints = 80;            // matches that agree on a motion with points before both cameras
-constexpr double kMinPlanarShare = 0.40;  // homography's share of both scores, above which the scene is a plane
-constexpr double kRotationShare = 0.9;    // share of the homography's score with which a rotation explains as much
-constexpr double kRivalShare = 0.9;       // share of the best score with which another motion could be the true one
+constexpr int kMinPoints = 80;            // triangulated points in front of both cameras
+constexpr double kMinPlanarShare = 0.40;  // homography's share of both scores above which the scene is planar
+constexpr double kRotationShare = 0.9;    // share of the homography's score from which a rotation suffices
+constexpr double kRivalShare = 0.9;       // share of the best score from which another motion is a rival
 
 using Matches = std::span<const TwoViewMatch>;
 
@@ -30,13 +30,13 @@ Models search_models(Matches matches) {
   return {search_rotation(matches, search), search_homography(matches, search), search_essential(matches, search)};
 }
 
-// Mur-Artal et al. 2015, eq. 3. Errors are counted in sigmas of both views, which makes it 0.45 for an exact plane.
+// Mur-Artal et al. 2015, eq. 3. Errors are in sigmas of both views; an exact plane then has a share of 0.45.
 bool is_planar(const Models& models) {
   return models.homography.score > kMinPlanarShare * (models.homography.score + models.essential.score);
 }
 
-// Motions of both models, for what one of them has missed is a rival of what the other has found. A plane's motions are
-// refined by what lies beside the plane too, which tells them apart.
+// Motions of both models, since one may find a rival that the other misses. Refinement uses points off the plane too,
+// which discriminates the motions of a homography.
 std::vector<Pose> motions_of(const Models& models, Matches matches) {
   std::vector<Pose> motions = motions_from_homography(models.homography.second_from_first);
   std::ranges::copy(motions_from_essential(essential_of(models.essential.second_from_first)),
@@ -50,14 +50,13 @@ double parallax(const Pose& second_from_first, const TwoViewMatch& match) {
   return std::atan2(turned.cross(match.ray_in_second).norm(), turned.dot(match.ray_in_second));
 }
 
-// A motion and what speaks for it: the same kind of score as a model's, of the lines, and of them only those of matches
-// that lie in front of both cameras.
+// A motion and its score: the epipolar score of a model, over matches that do not meet behind a camera.
 struct MotionCandidate {
   TwoViewMotion motion;
   double score = 0.0;
 };
 
-// Rays so nearly parallel may well meet behind the cameras by noise alone.
+// Nearly parallel rays may meet behind the cameras by noise alone.
 bool is_far(double match_parallax, const TwoViewMatch& match) {
   return match_parallax < 4.0 * match.sigma;
 }
@@ -81,10 +80,10 @@ MotionCandidate weigh(const Pose& second_from_first, Matches matches) {
   return candidate;
 }
 
-// Motions of a plane that the rest of the scene has brought to the same place are one.
+// Refinement on points off the plane may bring two motions of a homography together.
 bool is_same_motion(const Pose& first, const Pose& second) {
   constexpr double kMaxTurn = 0.005;  // radians
-  constexpr double kMaxShift = 0.05;  // share of the translation's length, which is one
+  constexpr double kMaxShift = 0.05;  // relative to the translation's unit length
   return angle_between(first.rotation, second.rotation) < kMaxTurn &&
          (first.translation - second.translation).norm() < kMaxShift;
 }

@@ -20,10 +20,10 @@ namespace {
 
 using Matches = std::span<const TwoViewMatch>;
 
-// 95 % of chi-square, two degrees of freedom: where a transferred point disagrees, and the most an agreeing one earns.
+// 95 % of chi-square, two degrees of freedom: bound of transferred points, and the largest score of an inlier.
 constexpr double kMaxTransferError = 5.99;
 
-// What a match says of a model; eq. 2 of the paper for both views.
+// Score of a match under a model; eq. 2 of Mur-Artal et al. 2015 for both views.
 struct Agreement {
   double score = 0.0;
   bool inlier = false;
@@ -37,13 +37,13 @@ Agreement agreement(double error_in_first, double error_in_second, double max_er
   return agreed;
 }
 
-// Squared sigmas between a ray and where the other view's ray is transferred to; both rays err.
+// Squared sigmas between a ray and the transferred ray of the other view; both have noise.
 double transfer_error(const Eigen::Vector3d& transferred, const Eigen::Vector3d& ray, double sigma) {
   const Eigen::Vector2d error = transferred.head<2>() / transferred.z() - ray.head<2>();
   return error.squaredNorm() / (2.0 * sigma * sigma);
 }
 
-// Agreement of a match with a homography, from point to point.
+// Score of a match under a homography, from point to point.
 class Transfer {
  public:
   explicit Transfer(const Eigen::Matrix3d& homography)
@@ -60,7 +60,7 @@ class Transfer {
   Eigen::Matrix3d first_from_second_;
 };
 
-// Agreement of a match with a motion, from point to epipolar line.
+// Score of a match under a motion, from point to epipolar line.
 class LineTransfer {
  public:
   explicit LineTransfer(const Pose& motion) : essential_(essential_of(motion)) {}
@@ -86,7 +86,7 @@ std::vector<TwoViewMatch> inliers_of(const Test& test, Matches matches) {
   return inliers;
 }
 
-// The rotation that brings one set of rays nearest to the other (Umeyama 1991, without scale and translation).
+// The rotation that aligns the first rays with the second ones (Umeyama 1991, without scale and translation).
 Eigen::Quaterniond fit_rotation(Matches matches) {
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   for (const TwoViewMatch& match : matches) {
@@ -95,7 +95,7 @@ Eigen::Quaterniond fit_rotation(Matches matches) {
   return nearest_rotation(products);
 }
 
-// The three kinds of model: how many matches make one, the models they make, the test of a match, and a better fit.
+// Traits of the three models: sample size, minimal solver, test of a match, and refinement.
 struct RotationKind {
   using Model = Eigen::Quaterniond;
   static constexpr std::size_t kSample = 2;
@@ -137,7 +137,7 @@ struct EssentialKind {
   static Model refine(const Model& model, Matches matches) { return refine_motion(model, matches); }
 };
 
-// Gives up, with a score of zero, once score_to_beat is out of reach.
+// Stops with a score of zero once score_to_beat cannot be reached.
 template <typename Kind>
 TwoViewModel<typename Kind::Model> score(const typename Kind::Model& model, Matches matches, double score_to_beat) {
   const auto test = Kind::test(model);
@@ -160,14 +160,14 @@ std::array<TwoViewMatch, kSample> draw_sample(Matches matches, std::mt19937_64& 
   for (std::size_t i = 0; i < kSample; ++i) {
     const auto before = drawn.begin() + static_cast<std::ptrdiff_t>(i);
     do {
-      drawn[i] = static_cast<std::size_t>(random() % matches.size());  // the same on every platform
+      drawn[i] = static_cast<std::size_t>(random() % matches.size());  // draws equal on all platforms
     } while (std::find(drawn.begin(), before, drawn[i]) != before);
     sample[i] = matches[drawn[i]];
   }
   return sample;
 }
 
-// Draws needed until a sample without outliers has come up with the confidence asked for (Fischler and Bolles 1981).
+// Number of draws until a sample without outliers has occurred with the wanted confidence (Fischler and Bolles 1981).
 int draws_needed(double inlier_ratio, std::size_t sample_size, const TwoViewSearch& search) {
   const double all_inliers = std::pow(inlier_ratio, static_cast<double>(sample_size));
   if (all_inliers >= 1.0) return 1;
@@ -176,7 +176,7 @@ int draws_needed(double inlier_ratio, std::size_t sample_size, const TwoViewSear
   return static_cast<int>(std::min(std::ceil(draws), static_cast<double>(search.max_iterations)));
 }
 
-// Fits to the inliers, which are others then, for as long as the score rises (Chum, Matas and Kittler 2003).
+// Refits to the inliers while the score rises (Chum, Matas and Kittler 2003).
 template <typename Kind>
 TwoViewModel<typename Kind::Model> locally_best(TwoViewModel<typename Kind::Model> best, Matches matches) {
   constexpr int kMaxRounds = 10;
@@ -206,7 +206,7 @@ TwoViewModel<typename Kind::Model> best_model(Matches matches, const TwoViewSear
   return best;
 }
 
-// A motion changes by a turn about the second camera and by a shift of the direction of translation in its tangent
+// Parameters of a motion: rotation about the second camera, and shift of the translation's direction in its tangent
 // plane.
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
@@ -235,7 +235,7 @@ struct TwoViewEquations {
   Vector5 gradient = Vector5::Zero();
 };
 
-// The lengths of the epipolar lines are held while the product changes.
+// Gauss-Newton with the lengths of the epipolar lines held constant.
 TwoViewEquations linearise(const Pose& motion, Matches matches) {
   const Eigen::Matrix3d rotation = motion.rotation.toRotationMatrix();
   const Eigen::Matrix3d essential = skew(motion.translation) * rotation;
@@ -245,7 +245,7 @@ TwoViewEquations linearise(const Pose& motion, Matches matches) {
     const double squared_error = epipolar_error(essential, match);
     if (!(squared_error < kMaxEpipolarError)) continue;
     const Eigen::Vector3d turned = rotation * match.ray_in_first;
-    // Slope of second . (translation x turned).
+    // Derivative of second . (translation x turned).
     const Eigen::Vector3d by_translation = turned.cross(match.ray_in_second);
     const double product = motion.translation.dot(by_translation);
     const Eigen::Vector3d by_turn = turned.cross(match.ray_in_second.cross(motion.translation));
@@ -297,7 +297,7 @@ Pose refine_motion(const Pose& second_from_first, std::span<const TwoViewMatch> 
 }
 
 double direction_sigma(const Pose& second_from_first, std::span<const TwoViewMatch> matches) {
-  constexpr std::size_t kUnknowns = 5;  // each match tells one number
+  constexpr std::size_t kUnknowns = 5;  // each match is one equation
   if (matches.size() < kUnknowns) return std::numeric_limits<double>::infinity();
   const Pose motion{second_from_first.rotation, second_from_first.translation.normalized()};
   const Eigen::LDLT<Matrix5> information(linearise(motion, matches).information);

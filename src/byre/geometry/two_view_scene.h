@@ -1,6 +1,6 @@
 #pragma once
 
-// Two views of made-up points with known motion, for the tests of what tells the motion from them.
+// Two views of synthetic points with a given motion, for tests of two-view estimators.
 
 #include "byre/geometry/two_view_match.h"
 #include "byre/rig.h"
@@ -16,7 +16,7 @@ namespace byre {
 struct TwoViewSceneOptions {
   int count = 300;
   double pixel_sigma = 0.0;    // noise in each view, pixels
-  double outlier_ratio = 0.0;  // share of matches whose pixel in the second view is anywhere within 60 pixels
+  double outlier_ratio = 0.0;  // share of matches whose second pixel is displaced by up to 60 pixels per axis
   std::uint32_t seed = 1;
 };
 
@@ -25,12 +25,12 @@ inline Rig one_camera() {
       .width = 752, .height = 480, .focal = 450.0, .cx = 376.0, .cy = 240.0, .baseline = 0.0, .body_from_camera = {}};
 }
 
-// Sideways and a little forward, with a turn.
+// Sideways and a little forward, with a rotation.
 inline Pose sideways_motion(double metres) {
   return {rotation_exp({0.02, -0.05, 0.03}), metres * Eigen::Vector3d(0.9, 0.1, -0.4).normalized()};
 }
 
-// What a ray of the first camera meets, as a depth; the random number is between 0 and 1.
+// Depth of the scene along a ray of the first camera; random is uniform between 0 and 1.
 using DepthOf = std::function<double(const Eigen::Vector3d& ray, double random)>;
 
 inline double room_depth(const Eigen::Vector3d&, double random) {
@@ -42,7 +42,7 @@ inline double wall_depth(const Eigen::Vector3d& ray, double) {
   return 4.0 / (1.0 + 0.4 * ray.x() + 0.2 * ray.y());
 }
 
-// Points of the scene that both cameras have in view; matches of noisy pixels, in pixels' own sigma (1 where exact).
+// Matches of points in view of both cameras, with noisy pixels; sigma is that of the noise, or 1 pixel without noise.
 inline std::vector<TwoViewMatch> matches_of(const Pose& second_from_first, const DepthOf& depth_of,
                                             const TwoViewSceneOptions& options) {
   const Rig rig = one_camera();

@@ -85,7 +85,7 @@ TEST(EstimateTwoViewMotion, SaysThatTheParallaxIsTooSmall) {
   EXPECT_EQ(failure_of(matches_of(sideways_motion(0.05), room_depth, {})), TwoViewFailure::small_parallax);
 }
 
-// The other motion that would give the same homography has half of the wall behind the cameras.
+// The other motion with the same homography has half of the wall behind the cameras.
 TEST(EstimateTwoViewMotion, TellsAMotionAlongAWall) {
   const auto wall_in_front = [](const Eigen::Vector3d&, double) { return 4.0; };
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
@@ -172,7 +172,7 @@ TEST(DirectionSigma, TellsHowFarTheDirectionIsOff) {
     const Pose refined = refine_motion(truth, matches);
     squared_sum += std::pow(angle_between_translations(refined, truth) / direction_sigma(refined, matches), 2);
   }
-  EXPECT_GT(squared_sum / kTrials, 0.5);  // one is expected from the direction known least
+  EXPECT_GT(squared_sum / kTrials, 0.5);  // expected: 1, from the least determined direction
   EXPECT_LT(squared_sum / kTrials, 2.0);
 }
 
