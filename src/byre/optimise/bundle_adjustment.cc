@@ -37,7 +37,7 @@ BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const
   return result;
 }
 
-// The problem at its solution, with the pose held for want of an anchor fixed.
+// The problem at its solution; a pose held in place of an anchor becomes fixed.
 BundleProblem moved(BundleProblem problem, const BundleResult& result, const BundleRoles& roles) {
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     problem.poses[i].camera_from_world = result.camera_from_world[i];

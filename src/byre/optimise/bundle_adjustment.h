@@ -17,31 +17,31 @@ struct BundlePose {
 
 struct BundlePoint {
   Eigen::Vector3d position_in_world;
-  bool fixed = false;  // an offline point: trusted, never moved
+  bool fixed = false;  // an offline point, never moved
 };
 
-// A point seen in a rectified image; without a disparity when disparity_sigma is negative.
+// Observation of a point in a rectified image. A negative disparity_sigma means no disparity.
 struct BundleObservation {
   int pose = 0;                   // index into BundleProblem::poses
   int point = 0;                  // index into BundleProblem::points
   StereoPixel measured;           // u, v, disparity; pixels
   double pixel_sigma = 1.0;       // pixels, of u and of v
   double disparity_sigma = -1.0;  // pixels
-  double weight = 1.0;  // factor on the observation's share of the cost; errors and covariances are told without it
+  double weight = 1.0;            // factor on the observation's cost; reported errors and covariances exclude it
 
   bool is_stereo() const { return disparity_sigma > 0.0; }
 };
 
-// A calibration that is to be found along with poses and points: that of one rig, as a change of the one given.
+// Self-calibration of one rig together with poses and points, as a change of its given calibration.
 struct BundleCalibration {
-  const CalibrationSensitivity* sensitivity = nullptr;  // owned by the caller, of the rig
+  const CalibrationSensitivity* sensitivity = nullptr;  // belongs to the rig; owned by the caller
   int rig = 0;                                          // index into BundleProblem::rigs
-  // What is known beforehand, in the parameters' sigmas: where the change is expected, and how surely.
+  // Prior on the change, in the parameters' sigmas: mean and inverse covariance.
   CalibrationVector expected = CalibrationVector::Zero();
   CalibrationMatrix information = CalibrationMatrix::Identity();
 };
 
-// How one camera moved to where another one is, as wheels and a gyroscope tell it.
+// Measured motion between two cameras, from wheel odometry and a gyroscope.
 struct BundleMotion {
   int earlier = 0;  // indices into BundleProblem::poses
   int later = 0;
@@ -49,23 +49,23 @@ struct BundleMotion {
   Matrix6 information = Matrix6::Identity();  // inverse covariance of delta in exp_pose(delta) * later_from_earlier
 };
 
-// Everything the solver needs, by value; knows nothing of maps.
+// Input of the solver, by value and independent of maps.
 struct BundleProblem {
   std::vector<Rig> rigs;
   std::vector<BundlePose> poses;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
-  std::vector<BundleMotion> motions;             // between poses that are observed
-  std::optional<BundleCalibration> calibration;  // empty: the calibration is taken as it is
+  std::vector<BundleMotion> motions;             // between observed poses
+  std::optional<BundleCalibration> calibration;  // empty: the calibration is fixed
 };
 
 struct BundleOptions {
   int max_iterations = 10;
   double huber_width = 2.0;     // sigmas
-  int covariance_of_pose = -1;  // index of the pose whose marginal covariance is wanted, or -1
-  // Indices of poses of which the same is wanted in a large problem, all at once. Precondition: observed, not fixed.
+  int covariance_of_pose = -1;  // index of the pose whose marginal covariance is computed, or -1
+  // Poses whose marginal covariances are computed together, for large problems. Precondition: observed and not fixed.
   std::vector<int> covariances_of_poses;
-  // Asked before the first and after each iteration, on the calling thread; true ends the solution there. The result is
+  // Called before the first and after each iteration, on the calling thread; true stops the solver. The result is then
   // usable: the best poses and points so far. May be empty.
   std::function<bool()> should_stop;
 };
@@ -75,23 +75,22 @@ struct BundleResult {
   std::vector<Eigen::Vector3d> points_in_world;  // one per point
   // One per observation: squared sigmas before the robust loss; infinite for a point at or behind the camera.
   std::vector<double> squared_errors;
-  // Covariance of delta in exp_pose(delta) * camera_from_world, for the pose asked for, relative to the fixed ones.
-  // Empty when none was asked for, the pose did not move, or its observations do not determine it.
+  // Covariance of delta in exp_pose(delta) * camera_from_world for covariance_of_pose, relative to the fixed poses.
+  // Empty if not requested, the pose did not move, or its observations do not determine it.
   std::optional<Matrix6> pose_covariance;
-  std::vector<Matrix6> pose_covariances;  // for each of those asked for; empty where they are not determined
+  std::vector<Matrix6> pose_covariances;  // one per covariances_of_poses; empty if not determined
   CalibrationVector calibration_change = CalibrationVector::Zero();  // change in the parameters' sigmas
   int iterations = 0;
-  bool usable = false;  // false when the solver failed: then poses and points are as given
+  bool usable = false;  // false if the solver failed; poses and points are then unchanged
 };
 
 // Minimises the robust reprojection error over poses and points (Triggs 2000) with a Schur complement, see
-// bundle_schur.h. Observations that start at or behind the camera have no say. Poses or points without any other stay
-// where they are. With nothing fixed the first observed pose is held. Where nothing tells the scale (one camera, one
-// pose held), the distance between the held camera and the one that starts farthest from it is.
+// bundle_schur.h. Observations that start at or behind the camera are ignored; poses and points without any other
+// observation do not move. Without a fixed pose or point the first observed pose is held. If the scale is undetermined
+// (one camera, one held pose), the distance from the held camera to the one that starts farthest from it is held too.
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options);
 
-// The problem with the measurements that there would be, had the given calibration been so much better; its calibration
-// is no longer sought.
+// The problem with its measurements corrected for a change of the calibration, which is no longer estimated.
 BundleProblem with_change(BundleProblem problem, const CalibrationVector& change);
 
 }  // namespace byre

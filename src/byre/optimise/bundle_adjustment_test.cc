@@ -33,7 +33,7 @@ bool identical(const Pose& first, const Pose& second) {
   return first.rotation.coeffs() == second.rotation.coeffs() && first.translation == second.translation;
 }
 
-// Indices of one observation of every third point that five poses see or more.
+// Indices of one observation of every third point with at least five observations.
 std::vector<int> one_observation_of_well_seen_points(const BundleProblem& problem) {
   std::vector<int> indices;
   for (int point = 0; point < static_cast<int>(problem.points.size()); point += 3) {
@@ -56,7 +56,7 @@ TEST(BundleAdjust, RecoversCleanMonoBetweenTwoAnchors) {
   expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-5);
 }
 
-// How far the first camera is from the one that starts farthest from it; that one's index.
+// Index of the camera that starts farthest from the first one, and its distance.
 std::pair<int, double> farthest(const BundleProblem& problem) {
   std::pair<int, double> result{0, 0.0};
   for (int i = 0; i < static_cast<int>(problem.poses.size()); ++i) {
@@ -177,7 +177,7 @@ double sum_of_huber(const std::vector<double>& squared_errors) {
   return sum;
 }
 
-// Asked at the start, then after each iteration.
+// should_stop is called before the first and after each iteration.
 BundleOptions stopping_after(int iterations) {
   BundleOptions options = patient();
   options.should_stop = [questions = 0, iterations]() mutable { return questions++ >= iterations; };
@@ -278,7 +278,7 @@ TEST(BundleAdjust, SurvivesPointsSeenOnceWithoutDisparity) {
   EXPECT_THAT(result.camera_from_world[4], PoseNear(scene.truth.poses[4].camera_from_world, 1e-5, 1e-5));
 }
 
-// Half of the observations of one pose say that it lies a little to the side of where the others have it.
+// Half of the observations of one pose come from a slightly displaced pose.
 TEST(BundleAdjust, FollowsTheObservationsThatWeighMore) {
   BundleSceneOptions options{.fixed_poses = 2, .moving_poses = 1, .points = 80, .fixed_points = 80};
   options.mono_fraction = 1.0;

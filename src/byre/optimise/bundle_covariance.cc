@@ -17,9 +17,9 @@ namespace {
 
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
-// One observation's share of the normal equations.
+// Contribution of one observation to the normal equations.
 struct Block {
-  int slot = -1;  // the pose's place in the reduced matrix, negative for a fixed pose
+  int slot = -1;  // index of the pose in the reduced matrix, negative for a fixed pose
   Matrix6 pose_pose;
   Matrix63 pose_point;
   Eigen::Matrix3d point_point;
@@ -44,8 +44,8 @@ bool in_front(const BundleProblem& solved, const BundleObservation& observation)
   return (camera_from_world * solved.points[observation.point].position_in_world).z() >= kNearestDepth;
 }
 
-// The place of each moving, observed pose in the reduced matrix; negative for the others. The wanted pose comes last,
-// where a Cholesky factor shows its marginal.
+// Index of each moving, observed pose in the reduced matrix; negative for the others. The wanted pose is last: the
+// Cholesky factor then contains its marginal.
 std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>& observations, int wanted) {
   std::vector<int> slots(solved.poses.size(), -1);
   for (const int i : observations) slots[solved.observations[i].pose] = 0;
@@ -58,7 +58,7 @@ std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>&
   return slots;
 }
 
-// False when elimination has all but cancelled a pivot.
+// False if the elimination nearly cancels a pivot.
 template <typename Matrix>
 bool is_regular(const Eigen::LLT<Matrix>& factor, const Matrix& matrix) {
   constexpr double kSingular = 1e-10;
@@ -66,7 +66,7 @@ bool is_regular(const Eigen::LLT<Matrix>& factor, const Matrix& matrix) {
          (factor.matrixLLT().diagonal().array().square() > kSingular * matrix.diagonal().array()).all();
 }
 
-// Empty when the point is not determined, as when it was seen once without a disparity.
+// Empty if the point is not determined, such as one observed once without a disparity.
 std::optional<Eigen::Matrix3d> point_covariance(const std::vector<Block>& blocks) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const Block& block : blocks) information += block.point_point;
@@ -75,12 +75,12 @@ std::optional<Eigen::Matrix3d> point_covariance(const std::vector<Block>& blocks
   return factor.solve(Eigen::Matrix3d::Identity());
 }
 
-// The normal matrix over poses, lower triangle.
+// Normal matrix over the poses, lower triangle.
 class ReducedMatrix {
  public:
   explicit ReducedMatrix(int poses) : matrix_(Eigen::MatrixXd::Zero(6 * poses, 6 * poses)) {}
 
-  // Adds all that is seen of one point, as if its position were known.
+  // Adds all observations of one point as if its position were exact.
   void add(const std::vector<Block>& blocks) {
     for (const Block& block : blocks) {
       if (block.slot >= 0) at(block.slot, block.slot) += block.pose_pose;
@@ -89,7 +89,7 @@ class ReducedMatrix {
 
   void add(int slot, const Matrix6& information) { at(slot, slot) += information; }
 
-  // Between two poses; what both slots have in common is kept where it lies in the lower triangle.
+  // Adds the block between two poses to the lower triangle.
   void add(int row, int column, const Matrix6& information) {
     if (column <= row) {
       at(row, column) += information;
@@ -98,7 +98,7 @@ class ReducedMatrix {
     }
   }
 
-  // Subtracts what finding the point's position has used up.
+  // Subtracts the information used to estimate the point's position.
   void eliminate(const std::vector<Block>& blocks, const Eigen::Matrix3d& point_covariance) {
     for (const Block& row : blocks) {
       if (row.slot < 0) continue;
@@ -118,7 +118,7 @@ class ReducedMatrix {
   Eigen::MatrixXd matrix_;
 };
 
-// A point that is not determined tells next to nothing of the poses; it is left out, which errs on the safe side.
+// Skips an undetermined point: it constrains the poses very little, and the covariance errs on the large side.
 void add_point(ReducedMatrix& reduced, const std::vector<Block>& blocks, bool fixed) {
   if (fixed) return reduced.add(blocks);
   const auto covariance = point_covariance(blocks);
@@ -127,7 +127,7 @@ void add_point(ReducedMatrix& reduced, const std::vector<Block>& blocks, bool fi
   reduced.eliminate(blocks, *covariance);
 }
 
-// What holding a distance tells of the pose.
+// Information on the pose from the held distance.
 Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_world) {
   const Eigen::Vector3d place_in_camera = camera_from_world * scale.place_in_world;
   const Eigen::RowVector3d by_camera = place_in_camera.normalized().transpose() / scale.sigma();
@@ -136,7 +136,7 @@ Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_wor
   return by_pose.transpose() * by_pose;
 }
 
-// What told motions tell of poses.
+// Adds the information of the measured motions.
 void add_motions(ReducedMatrix& reduced, const BundleProblem& solved, const std::vector<int>& slots) {
   for (const BundleMotion& motion : solved.motions) {
     const Pose& earlier = solved.poses[motion.earlier].camera_from_world;
@@ -167,7 +167,7 @@ ReducedMatrix reduce_to_poses(const BundleProblem& solved, const std::vector<int
   return reduced;
 }
 
-// Inverse of the information left to the last pose when the others are eliminated.
+// Covariance of the last pose, marginalised over the others.
 std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
   const Eigen::LLT<Eigen::MatrixXd> factor(lower_triangle);
   if (!is_regular(factor, lower_triangle)) return std::nullopt;

@@ -41,7 +41,7 @@ BundleProblem displaced(BundleProblem problem, const Eigen::VectorXd& delta) {
   return problem;
 }
 
-// The inverse of the whole normal matrix, from central differences.
+// Inverse of the full normal matrix, from central differences.
 Eigen::MatrixXd full_covariance(const BundleProblem& problem) {
   constexpr double kStep = 1e-6;
   const auto poses = std::ranges::count(problem.poses, false, &BundlePose::fixed);
@@ -120,7 +120,7 @@ TEST(BundleAdjust, GivesNoCovarianceUnlessAsked) {
   EXPECT_FALSE(bundle_adjust(make_scene(8, {}).problem, {}).pose_covariance);
 }
 
-// The same whether one pose is asked for or several in a large problem.
+// The covariances equal those of separate calls, in a large problem too.
 TEST(BundleAdjust, ReportsTheCovariancesOfSeveralPoses) {
   const BundleScene scene =
       make_scene(2, {.moving_poses = 5, .points = 60, .fixed_points = 10, .noise = 1.0, .start_position = 0.02});
@@ -137,7 +137,7 @@ TEST(BundleAdjust, ReportsTheCovariancesOfSeveralPoses) {
   }
 }
 
-// Normalised errors squared of repeated trials sum to chi-square; the bounds hold with 99.9 %.
+// Squared normalised errors of repeated trials follow chi-square; the bounds hold with 99.9 %.
 TEST(BundleAdjust, ReportsACovarianceThatMatchesItsErrors) {
   constexpr int kTrials = 200;
   constexpr double kDegrees = 6.0 * kTrials;

@@ -6,12 +6,12 @@
 
 namespace byre {
 
-// Poses, points and the change of the calibration, and what is looked up again and again.
+// Current poses, points and change of the calibration, with cached rotation matrices.
 struct BundleEstimate {
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;
   CalibrationVector calibration = CalibrationVector::Zero();
-  std::vector<Eigen::Matrix3d> rotations;  // turns of the poses
+  std::vector<Eigen::Matrix3d> rotations;  // rotation matrices of the poses
 
   void update_rotations() {
     rotations.resize(poses.size());
@@ -19,10 +19,10 @@ struct BundleEstimate {
   }
 };
 
-// A step, and what it would gain were the costs quadratic.
+// A step and its expected gain under the quadratic model of the cost.
 struct BundleStep {
-  Eigen::VectorXd poses;                // six a slot: turn, then translation
-  std::vector<Eigen::Vector3d> points;  // one a track
+  Eigen::VectorXd poses;                // six per slot: rotation, then translation
+  std::vector<Eigen::Vector3d> points;  // one per track
   CalibrationVector calibration = CalibrationVector::Zero();
   double expected_gain = 0.0;
   double squared_length = 0.0;

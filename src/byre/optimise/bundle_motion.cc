@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-constexpr double kSquaredWidth = 9.0;  // squared sigmas of six numbers together at which a motion's say has halved
+constexpr double kSquaredWidth = 9.0;  // squared sigmas of all six components together, at which the weight is one half
 
 }  // namespace
 

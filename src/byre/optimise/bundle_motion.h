@@ -4,23 +4,23 @@
 
 namespace byre {
 
-// What a told motion says of two poses: how far they are from it, as a small motion of the later one, and what that
-// counts for. The loss is Cauchy's: a motion that is far off, as of a wheel that spins, has next to no say.
+// Error of two poses under a measured motion, as a small motion of the later pose. The Cauchy loss leaves gross errors,
+// such as of a spinning wheel, almost no influence.
 struct MotionError {
-  Vector6 residual;     // exp_pose(residual) * told = later_from_earlier of the poses, to first order
-  double cost = 0.0;    // twice its share of the cost
-  double weight = 0.0;  // influence that the loss leaves it, 1 at no error
+  Vector6 residual;     // exp_pose(residual) * measured = later_from_earlier of the poses, to first order
+  double cost = 0.0;    // robust squared error; the cost counts half of it
+  double weight = 0.0;  // factor on the information by the loss, 1 at zero error
 };
 MotionError motion_error(const BundleMotion& motion, const Pose& earlier_from_world, const Pose& later_from_world);
 
-// Slopes of the residual by delta in exp_pose(delta) * camera_from_world, to first order.
+// Derivatives of the residual by delta in exp_pose(delta) * camera_from_world, to first order.
 struct MotionSlopes {
   Matrix6 by_earlier;
   Matrix6 by_later;
 };
 MotionSlopes motion_slopes(const Pose& earlier_from_world, const Pose& later_from_world);
 
-// The same by a turn, then a translation, that are each added to the pose's own (see Reprojection).
+// Converts a derivative by delta to one by rotation, then translation, added to the pose's own (see Reprojection).
 Matrix6 by_turn_and_translation(const Matrix6& slope, const Pose& camera_from_world);
 
 }  // namespace byre

@@ -33,7 +33,7 @@ TEST(MotionError, HasTheSlopesThatDifferencesHave) {
   }
 }
 
-// One camera, of which the first pose is held: nothing but what is told knows the scale.
+// A monocular scene with its first pose held: only the measured motions determine the scale.
 BundleScene scene_of_one_camera(int moving_poses, int points) {
   BundleScene scene = make_scene(2, {.fixed_poses = 1,
                                      .moving_poses = moving_poses,

@@ -10,10 +10,11 @@
 
 namespace byre {
 
-// One observation. What follows from it is worked out anew each time: kept, it would take several times the memory.
+// One observation. Its residual and derivatives are recomputed when needed: storing them takes several times the
+// memory.
 struct BundleTerm {
-  int seen = 0;   // index into the problem's observations
-  int slot = -1;  // place of the pose in the reduced system; negative for one that stays
+  int seen = 0;   // index into BundleProblem::observations
+  int slot = -1;  // index of the pose in the reduced system; negative for a fixed pose
 };
 
 // The observations of one point: terms [begin, end).
@@ -24,23 +25,23 @@ struct BundleTrack {
   bool moves = false;
 };
 
-// An observation's error at an estimate, and its slopes.
+// Residual of an observation at an estimate, and its derivatives.
 struct LinearObservation {
   Eigen::Vector3d residual;
   double weight = 1.0;
   Eigen::Matrix3d by_point;
-  Eigen::Matrix<double, 3, 6> by_pose;      // for a pose that moves
-  CalibrationBorder::Slope by_calibration;  // where one is sought
+  Eigen::Matrix<double, 3, 6> by_pose;      // set for a moving pose
+  CalibrationBorder::Slope by_calibration;  // set with self-calibration
 };
 
-// The normal equations of one point, to eliminate it by, and to find it by once the poses' steps are known.
+// Normal equations of one point, for its elimination and for its step once the steps of the poses are given.
 class PointEquations {
  public:
   void add(const LinearObservation& linear) {
     normal_.noalias() += linear.weight * linear.by_point.transpose() * linear.by_point;
     gradient.noalias() += linear.weight * linear.by_point.transpose() * linear.residual;
   }
-  // When all views are added.
+  // Precondition: all observations are added.
   void damp(double radius) {
     damping = normal_.diagonal().unaryExpr(&bounded) / radius;
     normal_.diagonal() += damping;

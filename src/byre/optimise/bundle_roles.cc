@@ -29,7 +29,7 @@ Eigen::Vector3d camera_in_world(const BundlePose& pose) {
   return inverse(pose.camera_from_world).translation;
 }
 
-// The held pose, where the scale depends on it alone: no disparity, no second pose and no fixed point tells it.
+// The held pose if it alone fixes the gauge: no disparity, second held pose or fixed point determines the scale.
 std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& roles) {
   std::optional<int> anchor;
   for (const int i : roles.observations) {
@@ -42,7 +42,8 @@ std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& 
   return anchor;
 }
 
-// A pose that nothing is seen from stays where it is, which tells nothing.
+// Motions between two observed poses, not both fixed. A pose without observations does not move, so that its motion
+// carries no information.
 std::vector<int> motions_that_count(const BundleProblem& problem, const BundleRoles& roles,
                                     const std::vector<bool>& is_observed) {
   std::vector<int> indices;

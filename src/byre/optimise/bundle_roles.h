@@ -8,11 +8,11 @@
 
 namespace byre {
 
-// What takes part in the solution of a bundle problem.
+// Parts of a bundle problem that take part in the solution.
 struct BundleRoles {
   std::vector<bool> pose_moves;
   std::vector<bool> point_moves;
-  std::vector<int> observations;  // indices: in front of the camera, and not between two fixed things; by point
+  std::vector<int> observations;  // indices by point: in front of the camera, with a moving pose or point
   std::vector<int> motions;       // indices: not between two fixed poses
 
   bool moves(const BundleObservation& observation) const {
@@ -22,10 +22,10 @@ struct BundleRoles {
 
 BundleRoles choose_roles(const BundleProblem& problem);
 
-// What must be held for the scale to be determined; nothing where it is.
+// The distance to hold if the scale is undetermined, else empty.
 std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles);
 
-// What a solver has come to.
+// Output of a solver.
 struct BundleSolution {
   std::vector<Pose> camera_from_world;           // one per pose
   std::vector<Eigen::Vector3d> points_in_world;  // one per point

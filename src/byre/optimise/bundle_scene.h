@@ -13,14 +13,14 @@ struct BundleSceneOptions {
   int fixed_poses = 2;
   int moving_poses = 4;
   int points = 80;
-  int fixed_points = 0;          // first points, which stay fixed
+  int fixed_points = 0;          // number of fixed points, the first ones
   double mono_fraction = 0.25;   // share of the observations without disparity
   double noise = 0.0;            // sigmas
   double start_position = 0.05;  // metres, of moving poses and points
   double start_rotation = 0.02;  // radians
 };
 
-// The truth, and what the solver gets: fixed things in their place, moving ones displaced.
+// The truth, and the solver's input: moving poses and points displaced.
 struct BundleScene {
   BundleProblem truth;
   BundleProblem problem;
@@ -34,7 +34,7 @@ inline bool sees(const Rig& rig, const Pose& camera_from_world, const Eigen::Vec
   return point_in_camera.z() > 0.5 && rig.contains(rig.project(point_in_camera).head<2>());
 }
 
-// A point that at least two of the poses see.
+// A point in view of at least two poses.
 inline Eigen::Vector3d shared_point(const BundleProblem& problem, Draw& draw) {
   for (;;) {
     const int first = static_cast<int>(draw.uniform(0.0, static_cast<double>(problem.poses.size())));
@@ -59,7 +59,7 @@ inline BundleObservation observe(const BundleProblem& problem, int pose, int poi
   return observation;
 }
 
-// Cameras side by side that look at a cloud of points.
+// Cameras in a row that view a cloud of points.
 inline BundleProblem true_problem(const BundleSceneOptions& options, Draw& draw) {
   BundleProblem problem;
   problem.rigs.push_back(stereo_rig());
@@ -82,7 +82,7 @@ inline BundleProblem true_problem(const BundleSceneOptions& options, Draw& draw)
   return problem;
 }
 
-// For scenes that are to be solved to the last digit.
+// Options for convergence to the last digit.
 inline BundleOptions patient() {
   BundleOptions options;
   options.max_iterations = 50;

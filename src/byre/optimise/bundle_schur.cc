@@ -20,11 +20,11 @@ namespace {
 
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
-// Most points whose equations are kept between the two times that they are needed. Those of a million would take as
-// much memory as all else that is known of these.
+// Largest number of points whose equations are kept from elimination to back-substitution. For a million points they
+// would double the memory of the points.
 constexpr std::size_t kMostKept = 100000;
 
-// The problem as the solver walks through it. Lives for one call.
+// State of the solver; lives for one call.
 class SchurBundle {
  public:
   SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
@@ -40,21 +40,20 @@ class SchurBundle {
     if (problem.calibration) border_.emplace(problem, slot_count_);
   }
 
-  BundleEstimate take_estimate() { return std::move(estimate_); }  // once, at the end
+  BundleEstimate take_estimate() { return std::move(estimate_); }  // to be called once, at the end
   double cost() const { return cost_of(estimate_); }
 
-  // The normal equations at the estimate, damped, with the points eliminated. Returns the largest slope of the cost.
+  // Builds the damped normal equations at the estimate and eliminates the points. Returns the largest gradient
+  // component.
   double linearise(double radius);
-  // Empty where the equations have no solution.
+  // Empty if the equations have no solution.
   std::optional<BundleStep> solve();
-  // Covariances of delta in exp_pose(delta) * camera_from_world, one for each pose. Empty where the equations have no
-  // solution.
+  // Covariances of delta in exp_pose(delta) * camera_from_world, one per pose. Empty if the equations have no solution.
   std::vector<Matrix6> covariances(const std::vector<int>& poses);
-  // The estimate after a step.
   BundleEstimate moved(const BundleStep& step) const;
   double cost_of(const BundleEstimate& estimate) const;
   void take_over(BundleEstimate estimate) { estimate_ = std::move(estimate); }
-  double squared_length() const;  // all that moves
+  double squared_length() const;  // sum over all moving parameters
 
  private:
   void give_slots(const BundleRoles& roles);
@@ -79,26 +78,26 @@ class SchurBundle {
   }
 
   const BundleProblem& problem_;  // owned by the caller
-  std::vector<const Rig*> rigs_;  // one a pose; constant after construction, as are the next seven
+  std::vector<const Rig*> rigs_;  // one per pose; constant after construction, as are the next seven
   std::optional<HeldDistance> scale_;
   double huber_width_ = 0.0;
-  std::vector<int> slots_;  // one a pose
+  std::vector<int> slots_;  // one per pose
   int slot_count_ = 0;
   std::vector<BundleTrack> tracks_;
   std::vector<BundleTerm> terms_;
   std::vector<const BundleMotion*> motions_;  // owned by the caller
 
   BundleEstimate estimate_;
-  // As linearise leaves them.
+  // Written by linearise().
   std::optional<ReducedSystem> reduced_;  // with the points eliminated
-  std::vector<Matrix6> own_;              // one a pose, before the points are eliminated
-  Eigen::VectorXd gradient_;              // slopes by the poses
-  Eigen::VectorXd used_up_;               // part of the gradient that finding the points uses up
+  std::vector<Matrix6> own_;              // one per pose: normal matrix before the points are eliminated
+  Eigen::VectorXd gradient_;              // by the poses
+  Eigen::VectorXd used_up_;               // part of the gradient removed by the elimination of the points
   Eigen::VectorXd damping_;               // added to the diagonal of reduced_
   double radius_ = 0.0;
-  std::vector<PointEquations> kept_;         // one a track, or none where these are too many
-  std::vector<Matrix63> between_;            // one a term of the track at hand: normal matrix between pose and point
-  std::optional<CalibrationBorder> border_;  // empty where no calibration is sought
+  std::vector<PointEquations> kept_;         // one per track; empty with more than kMostKept tracks
+  std::vector<Matrix63> between_;            // one per term of the current track: normal matrix between pose and point
+  std::optional<CalibrationBorder> border_;  // empty without self-calibration
   double largest_slope_ = 0.0;
 };
 
@@ -214,7 +213,7 @@ void SchurBundle::linearise_track(std::size_t index) {
   if (!kept_.empty()) kept_[index] = equations;
 }
 
-// Takes from the other equations what finding the point uses up.
+// Subtracts the elimination of a point from the equations of poses and calibration.
 void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) {
   const BundleTrack& track = tracks_[index];
   if (border_) border_->eliminate(equations.covariance, equations.gradient);
@@ -306,7 +305,7 @@ double SchurBundle::linearise(double radius) {
   return size == 0 ? largest_slope_ : std::max(largest_slope_, gradient_.cwiseAbs().maxCoeff());
 }
 
-// The steps of poses and calibration. False where the equations have no solution.
+// Steps of poses and calibration. False if the equations have no solution.
 bool SchurBundle::solve_poses(BundleStep& step) {
   const Eigen::VectorXd pull = used_up_ - gradient_;
   if (border_) {
@@ -347,7 +346,7 @@ std::vector<Matrix6> SchurBundle::covariances(const std::vector<int>& poses) {
   if (!solved) return {};
   std::vector<Matrix6> covariances;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    Matrix6 delta_from_step = Matrix6::Zero();  // steps are a turn about the camera, then a shift
+    Matrix6 delta_from_step = Matrix6::Zero();  // steps are a rotation about the camera, then a translation
     delta_from_step.topLeftCorner<3, 3>() = skew(estimate_.poses[static_cast<std::size_t>(poses[i])].translation);
     delta_from_step.topRightCorner<3, 3>().setIdentity();
     delta_from_step.bottomLeftCorner<3, 3>().setIdentity();
@@ -357,7 +356,7 @@ std::vector<Matrix6> SchurBundle::covariances(const std::vector<int>& poses) {
   return covariances;
 }
 
-// The step of a point, given those of poses and calibration. False where it has none.
+// Step of a point by back-substitution. False if it has no solution.
 bool SchurBundle::solve_point(std::size_t index, BundleStep& step) {
   const BundleTrack& track = tracks_[index];
   const Eigen::Vector3d& point = estimate_.points[static_cast<std::size_t>(track.point)];
@@ -432,7 +431,7 @@ double SchurBundle::cost_of(const BundleEstimate& estimate) const {
 double SchurBundle::squared_length() const {
   double squared = estimate_.calibration.squaredNorm();
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i] >= 0) squared += 1.0 + estimate_.poses[i].translation.squaredNorm();  // a quaternion's length is 1
+    if (slots_[i] >= 0) squared += 1.0 + estimate_.poses[i].translation.squaredNorm();  // a unit quaternion adds 1
   }
   for (const BundleTrack& track : tracks_) {
     if (track.moves) squared += estimate_.points[static_cast<std::size_t>(track.point)].squaredNorm();
@@ -442,11 +441,11 @@ double SchurBundle::squared_length() const {
 
 enum class Progress : std::uint8_t { goes_on, settled, failed };
 
-// One iteration: a step where there is one that gains.
+// One iteration: takes a step if it reduces the cost.
 Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
-  constexpr double kLevel = 1e-10;      // slope
-  constexpr double kStill = 1e-8;       // share of the length of all that moves
-  constexpr double kLeastShare = 1e-3;  // share of the gain expected
+  constexpr double kLevel = 1e-10;      // gradient
+  constexpr double kStill = 1e-8;       // relative to the length of all moving parameters
+  constexpr double kLeastShare = 1e-3;  // share of the expected gain
   constexpr double kLeastGain = 1e-6;   // share of the cost
   if (bundle.linearise(region.radius()) <= kLevel) return Progress::settled;
   const std::optional<BundleStep> step = bundle.solve();

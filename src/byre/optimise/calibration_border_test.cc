@@ -14,7 +14,7 @@ namespace {
 using testing::Each;
 using testing::Lt;
 
-// The calibration of an ideal pair, which is rectified into just this rig.
+// Calibration of an ideal stereo pair whose rectification is this rig.
 Calibration calibration_of(const Rig& rig) {
   Camera camera;
   camera.width = rig.width;
@@ -35,7 +35,7 @@ CalibrationVector some_change() {
 }
 
 // A bundle measured by cameras that differ from their calibration.
-class CalibratedBundle : public testing::TestWithParam<int> {  // poses that move
+class CalibratedBundle : public testing::TestWithParam<int> {  // number of moving poses
  protected:
   explicit CalibratedBundle(double noise = 0.0) {
     BundleSceneOptions options;
@@ -77,7 +77,7 @@ class NoisyCalibratedBundle : public CalibratedBundle {
  protected:
   NoisyCalibratedBundle() : CalibratedBundle(1.0) {}
 
-  // The robust cost by another change of the calibration than the one found.
+  // Robust cost at another change of the calibration than the estimated one.
   double cost(const BundleResult& result, const CalibrationVector& change, double huber_width) const {
     const CalibrationBorder border(scene_.problem, 0);
     double cost = border.cost(change);

@@ -17,9 +17,9 @@ namespace {
 using Row = Eigen::Matrix<double, 3, 6>;
 using CalibrationRow = Eigen::Matrix<double, 3, kCalibrationParameters>;
 
-// One observation's weighted derivatives.
+// Weighted derivatives of one observation.
 struct Share {
-  int slot = -1;  // the pose's place in the reduced matrix, negative for one that does not move
+  int slot = -1;  // index of the pose in the reduced matrix, negative for a fixed pose
   Row by_pose;
   Eigen::Matrix3d by_point;
   CalibrationRow by_calibration;
@@ -44,15 +44,14 @@ Share weighted_share(const BundleProblem& solved, const BundleObservation& obser
   return share;
 }
 
-// The normal matrix over moving poses, then the calibration; lower triangle.
+// Normal matrix over moving poses, then the calibration; lower triangle.
 class CalibrationSystem {
  public:
   explicit CalibrationSystem(int poses)
       : poses_(6 * poses),
         matrix_(Eigen::MatrixXd::Zero(poses_ + kCalibrationParameters, poses_ + kCalibrationParameters)) {}
 
-  // All that is seen of one point, with the point eliminated unless it is fixed. One that is not determined at all is
-  // left out.
+  // Adds all observations of one point and eliminates it unless it is fixed. Skips an undetermined point.
   void add(const std::vector<Share>& shares, bool is_fixed) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const Share& share : shares) information += share.by_point.transpose() * share.by_point;
@@ -66,7 +65,7 @@ class CalibrationSystem {
     if (!is_fixed) eliminate(shares, factor.solve(Eigen::Matrix3d::Identity()));
   }
 
-  // What is left of the calibration's part when the poses are eliminated. Once: the matrix is used up.
+  // Information of the calibration with the poses eliminated. To be called once: it overwrites the matrix.
   std::optional<CalibrationMatrix> of_calibration() {
     const CalibrationMatrix own = matrix_.bottomRightCorner<kCalibrationParameters, kCalibrationParameters>();
     const CalibrationMatrix whole = own.selfadjointView<Eigen::Lower>();
@@ -82,10 +81,10 @@ class CalibrationSystem {
 
  private:
   static constexpr double kSingular = 1e-10;
-  // Information added to each pose, 1 / m^2 and 1 / rad^2, so that what nothing holds, such as the whole, stays finite.
+  // Information added to each pose, 1 / m^2 and 1 / rad^2, which bounds undetermined directions such as the gauge.
   static constexpr double kFreePose = 1e-2;
-  // The same for each point, as a share of what is known of it: rounding would leave of a point whose depth is all but
-  // unknown what is worse than nothing.
+  // Information added to each point, relative to its own: for a point of nearly unknown depth rounding would otherwise
+  // leave an error larger than its information.
   static constexpr double kFreePoint = 1e-8;
 
   void add_known(const std::vector<Share>& shares) {
@@ -126,7 +125,7 @@ class CalibrationSystem {
   Eigen::MatrixXd matrix_;
 };
 
-// The place of each pose that moves and is seen in the reduced matrix, negative for the others.
+// Index of each moving, observed pose in the reduced matrix; negative for the others.
 std::vector<int> slots_of_moving_poses(const BundleProblem& solved, const std::vector<int>& observations, int& count) {
   std::vector<int> slots(solved.poses.size(), -1);
   for (const int i : observations) slots[solved.observations[static_cast<std::size_t>(i)].pose] = 0;

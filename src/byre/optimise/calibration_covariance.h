@@ -6,11 +6,10 @@
 
 namespace byre {
 
-// What the observations tell of the calibration that is sought, with poses and points free: the information of
-// BundleCalibration together with what is left of the observations' once points and then poses are eliminated from the
-// robustly weighted normal matrix. solved: the problem with poses and points at the solution. Dense over the moving
-// poses: cubic in their number. A pose that nothing determines is taken as known to 10 m and 10 radians, a point to
-// 10,000 times as far as across. Empty where that does not help either.
+// Information on the estimated calibration, marginalised over poses and points: the prior of BundleCalibration plus the
+// Schur complement of the robustly weighted normal matrix over points, then poses. solved: the problem with poses and
+// points at the solution. Dense over the moving poses: cubic in their number. Weak priors of 10 m and 10 radians per
+// pose, and of 10,000 times the lateral sigma per point, keep it regular. Empty if it is still singular.
 std::optional<CalibrationMatrix> calibration_information(const BundleProblem& solved, double huber_width);
 
 }  // namespace byre

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRobustWidth = 2.0;  // sigmas
 
-// A pair that drives straight on, with nothing held. Most points are so far that their depth is all but unknown.
+// A stereo pair in straight motion, with nothing fixed. Most points are too distant for a depth.
 BundleProblem drive_towards_far_points(std::uint64_t seed, const CalibrationSensitivity& sensitivity) {
   constexpr int kPoses = 10, kNearPoints = 60, kFarPoints = 200;
   Draw draw(seed);

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// For problems whose costs, losses and manifolds live beside them, and which were checked before.
+// For problems whose costs, losses and manifolds are owned by the caller and validated before.
 inline ceres::Problem::Options borrowing_problem() {
   ceres::Problem::Options options;
   options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -19,7 +19,7 @@ inline Rig stereo_rig() {
   return rig;
 }
 
-// Draws from a seeded generator; the same seed gives the same scene. Braces, not parentheses, keep draws in order.
+// Random draws with a seed. Braces, not parentheses, fix the order of draws in an expression.
 class Draw {
  public:
   explicit Draw(unsigned seed) : generator_(seed) {}
@@ -33,7 +33,7 @@ class Draw {
     delta.tail<3>() = normal3(radians);
     return delta;
   }
-  // A point that the rig sees well inside its image, 1 to 8 m away.
+  // A point at least 20 pixels inside the image, 1 to 8 m deep.
   Eigen::Vector3d point_in_view(const Rig& rig) {
     const Eigen::Vector2d pixel{uniform(20.0, rig.width - 20.0), uniform(20.0, rig.height - 20.0)};
     const double depth = uniform(1.0, 8.0);

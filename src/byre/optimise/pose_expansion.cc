@@ -2,12 +2,12 @@
 
 #include "byre/optimise/huber.h"
 
-// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+// The vectorised part of this file is compiled once per instruction set, except for those without arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/optimise/pose_expansion.cc"
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 #ifndef BYRE_OPTIMISE_POSE_EXPANSION_CC_
@@ -16,17 +16,17 @@
 namespace byre {
 namespace {
 
-// How the camera sees points, and what their errors cost.
+// Camera parameters and constants of the loss.
 struct View {
   std::array<double, 9> rotation;  // camera_from_world, row by row
   std::array<double, 3> translation;
   double focal, cx, cy, baseline;
   double huber_width;
-  double cost_behind;  // what a point at or behind the camera costs
+  double cost_behind;  // cost of a point at or behind the camera
 };
 
-// Terms added up, lane by lane so that the order does not depend on how many lanes a vector has. Symmetric matrices by
-// their upper triangle: xx, xy, xz, yy, yz, zz.
+// Sums per lane, so that their order does not depend on the vector width. Upper triangles of symmetric matrices: xx,
+// xy, xz, yy, yz, zz.
 struct Sums {
   using Lanes = WeighedPoints::Lanes;
 
@@ -51,9 +51,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, WeighedPoints::kLanes>;
 using V = hn::Vec<D>;
 
-// A term's derivatives by the points in the camera.
+// Expansion of the cost in the position of the points in the camera.
 struct ByPoint {
-  V x, y, z;  // the points in the camera
+  V x, y, z;  // in the camera
   V xx, xy, xz, yy, yz, zz;
   V down_x, down_y, down_z;
 };
@@ -63,7 +63,7 @@ HWY_INLINE void add_to(WeighedPoints::Lanes& sum, std::size_t lane, V term) {
   hn::StoreU(hn::LoadU(d, sum.data() + lane) + term, d, sum.data() + lane);
 }
 
-// The points move by translation + rotation x point.
+// Adds the expansion in the pose: the points move by translation + rotation x point.
 HWY_INLINE void add_by_pose(const ByPoint& p, std::size_t lane, Sums& sums) {
   const V m00 = p.y * p.xz - p.z * p.xy, m01 = p.y * p.yz - p.z * p.yy, m02 = p.y * p.zz - p.z * p.yz;
   const V m10 = p.z * p.xx - p.x * p.xz, m11 = p.z * p.xy - p.x * p.yz, m12 = p.z * p.xz - p.x * p.zz;
@@ -84,7 +84,7 @@ HWY_INLINE void add_by_pose(const ByPoint& p, std::size_t lane, Sums& sums) {
   for (std::size_t i = 0; i < 6; ++i) add_to(sums.descent[i], lane, descent[i]);
 }
 
-// As many points of a block as a vector has lanes, from one lane on.
+// Adds one vector of points of a block, from the given lane on.
 HWY_INLINE void add_points(const WeighedPoints::Block& block, std::size_t lane, const View& view, Sums& sums) {
   const D d;
   const auto of = [&](const WeighedPoints::Lanes& lanes) { return hn::LoadU(d, lanes.data() + lane); };
@@ -99,7 +99,7 @@ HWY_INLINE void add_points(const WeighedPoints::Block& block, std::size_t lane, 
   const V weight = hn::IfThenElseZero(is_before, of(block.weight));
   add_to(sums.cost, lane, hn::IfThenZeroElse(is_before, of(block.weight) * all(view.cost_behind)));
   p.z = hn::IfThenElse(is_before, p.z, all(1.0));
-  // The projection, its error, and its derivatives: by x and y alike, and of each by z.
+  // Projection, its error, and its derivatives: by x and y (equal), and by z.
   const V inverse = all(1.0) / p.z;
   const V by_side = all(view.focal) * inverse;
   const V u = by_side * p.x, v = by_side * p.y, disparity = by_side * all(view.baseline);
@@ -112,7 +112,7 @@ HWY_INLINE void add_points(const WeighedPoints::Block& block, std::size_t lane, 
   const V pull_u = uu * error_u + uv * error_v + ud * error_d, u_of_z = uu * u_by_z + uv * v_by_z + ud * d_by_z;
   const V pull_v = uv * error_u + vv * error_v + vd * error_d, v_of_z = uv * u_by_z + vv * v_by_z + vd * d_by_z;
   const V pull_d = ud * error_u + vd * error_v + dd * error_d, d_of_z = ud * u_by_z + vd * v_by_z + dd * d_by_z;
-  // Huber's loss.
+  // Huber loss.
   const V squared_error = error_u * pull_u + error_v * pull_v + error_d * pull_d;
   const V length = hn::Sqrt(hn::Max(squared_error, hn::Zero(d)));
   const V width = all(view.huber_width);
@@ -213,7 +213,7 @@ void WeighedPoints::square_weights() {
 }
 
 PoseExpansion WeighedPoints::expand(const Rig& rig, const Pose& camera_from_world, double huber_width) const {
-  constexpr double kSquaredErrorBehind = 1e4;  // what a step that moves a point behind the camera pays for it
+  constexpr double kSquaredErrorBehind = 1e4;  // cost of a point that a step moves behind the camera
   View view{{}, {}, rig.focal, rig.cx, rig.cy, rig.baseline, huber_width, huber_cost(kSquaredErrorBehind, huber_width)};
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   for (int i = 0; i < 9; ++i) view.rotation[static_cast<std::size_t>(i)] = rotation(i / 3, i % 3);

@@ -9,8 +9,7 @@
 
 namespace byre {
 
-// The cost of a pose, and its expansion to second order in delta, which moves it to exp_pose(delta) *
-// camera_from_world.
+// Cost of a pose and its second-order expansion in delta of exp_pose(delta) * camera_from_world.
 struct PoseExpansion {
   double cost = 0.0;  // squared sigmas
   Matrix6 normal_matrix = Matrix6::Zero();
@@ -19,33 +18,33 @@ struct PoseExpansion {
   PoseExpansion& operator+=(const PoseExpansion& other);
 };
 
-// A point that a frame sees, as its share of a pose's cost reads it.
+// A point observed by a frame, as a term of the pose's cost.
 struct WeighedPoint {
   Eigen::Vector3d point_in_world;
   StereoPixel measured;
-  Eigen::Matrix3d information;  // inverse covariance in pixels; zero in its third row and column: no disparity
-  double weight = 1.0;          // multiplies its cost
+  Eigen::Matrix3d information;  // inverse covariance, 1 / pixels^2; third row and column zero without a disparity
+  double weight = 1.0;          // factor on its cost
 };
 
-// Points that a frame sees, four side by side in memory, so that the processor works on several of them at once.
+// Points observed by a frame, in blocks of four for vector instructions.
 class WeighedPoints {
  public:
-  void clear();  // the memory stays
+  void clear();  // keeps the memory
   void reserve(std::size_t points) { make_room(blocks_, (points + kLanes - 1) / kLanes); }
   void add(const WeighedPoint& point);
   void square_weights();
 
-  // The sum of the points' costs, each its squared error under Huber's loss. A point at or behind the camera pays for
-  // it and pulls nowhere. The same to the last bit on every processor.
+  // Sum of the points' Huber losses. A point at or behind the camera has a constant cost and no gradient. Bit-identical
+  // on every processor.
   PoseExpansion expand(const Rig& rig, const Pose& camera_from_world, double huber_width) const;
 
   static constexpr std::size_t kLanes = 4;
   using Lanes = std::array<double, kLanes>;
-  // All zero where there is no point.
+  // Unused lanes are zero.
   struct Block {
-    Lanes x{}, y{}, z{};                       // metres in the world
+    Lanes x{}, y{}, z{};                       // metres, in the world
     Lanes u{}, v{}, disparity{};               // pixels
-    Lanes uu{}, uv{}, ud{}, vv{}, vd{}, dd{};  // information
+    Lanes uu{}, uv{}, ud{}, vv{}, vd{}, dd{};  // upper triangle of the information
     Lanes weight{};
   };
 

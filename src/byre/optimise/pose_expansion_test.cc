@@ -36,7 +36,7 @@ WeighedPoints side_by_side(const std::vector<WeighedPoint>& points) {
   return packed;
 }
 
-// The definition, point by point.
+// Reference implementation, point by point.
 PoseExpansion expand_one_by_one(const std::vector<WeighedPoint>& points, const Pose& camera_from_world) {
   PoseExpansion sum;
   for (const WeighedPoint& point : points) {

@@ -19,10 +19,10 @@ namespace byre {
 
 namespace {
 
-// What takes part in the solution.
+// Parts of a graph that take part in the solution.
 struct GraphRoles {
   std::vector<bool> node_moves;
-  std::vector<int> edges;  // indices: with an end that moves
+  std::vector<int> edges;  // indices of the edges with a moving end
 };
 
 std::vector<std::vector<int>> neighbours(const PoseGraph& graph) {
@@ -35,7 +35,7 @@ std::vector<std::vector<int>> neighbours(const PoseGraph& graph) {
   return result;
 }
 
-// The fixed nodes; without any, the first that has an edge.
+// The fixed nodes; without any, the first node with an edge.
 std::vector<bool> held_nodes(const PoseGraph& graph, const std::vector<std::vector<int>>& neighbours_of) {
   std::vector<bool> held;
   for (const PoseGraphNode& node : graph.nodes) held.push_back(node.fixed);
@@ -45,7 +45,7 @@ std::vector<bool> held_nodes(const PoseGraph& graph, const std::vector<std::vect
   return held;
 }
 
-// The nodes given, and those that paths of edges join to them.
+// The given nodes and those connected to them by edges.
 std::vector<bool> joined_to(std::vector<bool> reached, const std::vector<std::vector<int>>& neighbours_of) {
   std::vector<int> open;
   for (int node = 0; node < static_cast<int>(reached.size()); ++node) {
@@ -90,7 +90,7 @@ std::unique_ptr<ceres::LossFunction> make_loss(RobustLoss loss, double width) {
   return nullptr;
 }
 
-// A node's three blocks, as PoseGraphCost has them.
+// Parameter blocks of a node, as in PoseGraphCost.
 struct NodeBlocks {
   explicit NodeBlocks(const PoseGraphNode& node)
       : rotation(node.camera_from_world.rotation),
@@ -105,7 +105,7 @@ struct NodeBlocks {
   double log_scale;
 };
 
-// Ceres' view of a graph. Lives for one call.
+// The graph as a Ceres problem. Lives for one call.
 class CeresGraph {
  public:
   CeresGraph(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options)
@@ -139,10 +139,10 @@ class CeresGraph {
   ceres::Solver::Options solver_options() const {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // one thread, and the same with every BLAS
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // one thread; independent of the BLAS library
     options.max_num_iterations = options_.max_iterations;
     options.num_threads = options_.threads;
-    options.function_tolerance = 1e-9;  // relative change of the cost; long loops close slowly at the end
+    options.function_tolerance = 1e-9;  // relative; long loops converge slowly
     options.logging_type = ceres::SILENT;
     return options;
   }
@@ -157,9 +157,9 @@ class CeresGraph {
   }
 
   const PoseGraphOptions& options_;  // owned by the caller, constant
-  bool is_metric_;                   // edges tell the world's lengths; constant after construction
+  bool is_metric_;                   // some edge is in world lengths; constant after construction
   std::vector<NodeBlocks> nodes_;    // written by Ceres
-  std::deque<PoseGraphCost> costs_;  // one per edge that has a say; a deque, for Ceres holds their addresses
+  std::deque<PoseGraphCost> costs_;  // one per edge used; a deque, because Ceres holds the addresses
   RotationManifold manifold_;
 };
 
@@ -173,7 +173,7 @@ PoseGraphResult unmoved(const PoseGraph& graph) {
   return result;
 }
 
-// The losses to minimise in turn.
+// The losses to minimise one after the other.
 std::vector<RobustLoss> stages(RobustLoss loss) {
   if (loss == RobustLoss::cauchy) return {RobustLoss::huber, RobustLoss::cauchy};
   return {loss};
@@ -185,7 +185,7 @@ PoseGraphResult solve(const PoseGraph& graph, const GraphRoles& roles, const Pos
   CeresGraph ceres_graph(graph, roles, options);
   for (const RobustLoss loss : stages(options.loss)) {
     const ceres::Solver::Summary summary = ceres_graph.solve(graph, roles, loss);
-    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first is the start
+    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first entry is the start
     result.usable = summary.IsSolutionUsable();
     if (!result.usable) return result;
     result.cost = summary.final_cost;

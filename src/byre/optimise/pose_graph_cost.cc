@@ -10,10 +10,10 @@ namespace byre {
 
 namespace {
 
-// Slopes of an edge's error by a node's rotation, position and logarithm of the scale.
+// Derivatives of an edge's error by a node's rotation, position and logarithm of the scale.
 using NodeJacobian = Matrix7;
 
-// A node as Ceres holds it.
+// A node from Ceres' parameter blocks.
 struct NodeState {
   explicit NodeState(const double* const* parameters)
       : rotation(parameters[0]), position_in_world(parameters[1]), log_scale(*parameters[2]) {}
@@ -23,7 +23,7 @@ struct NodeState {
   double log_scale;
 };
 
-// A root W of the information, W^T W = information. Singular matrices have one too.
+// A root W of the information, W^T W = information. Also for singular matrices.
 Matrix6 square_root(const Matrix6& information) {
   const Eigen::LDLT<Matrix6> factor(information);
   const Vector6 diagonal = factor.vectorD().cwiseMax(0.0).cwiseSqrt();
@@ -38,7 +38,7 @@ Matrix7 whitening_of(const PoseGraphEdge& edge, bool scale_has_a_say) {
   return whitening;
 }
 
-// Writes the derivatives by one node's blocks, those that are asked for, in Ceres' order of rows.
+// Writes the requested derivatives by one node's blocks, row-major as in Ceres.
 void write(const NodeJacobian& jacobian, double** blocks) {
   if (blocks[0]) {
     Eigen::Map<Eigen::Matrix<double, 7, 4, Eigen::RowMajor>> by_rotation(blocks[0]);
@@ -57,7 +57,7 @@ PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say)
       scales_have_a_part_(edge.is_in_world_lengths ? 0.0 : 1.0),
       whitening_(whitening_of(edge, scale_has_a_say)) {}
 
-// With rotations R, positions c, scales s = exp(l) and the measured position m of the second in the first, the error is
+// Error for rotations R, positions c, scales s = exp(l) and the measured position m of the second camera in the first:
 //   s2 R2 (c1 - c2) + s2/s1 R2 R1^T m,   log(R2 R1^T measured^T),   l2 - l1 - measured.
 bool PoseGraphCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   const NodeState first(parameters);

@@ -16,7 +16,7 @@ using Vector14 = Eigen::Matrix<double, 14, 1>;
 using Jacobian14 =
     Eigen::Matrix<double, 7, 14>;  // columns: rotation, position and log scale of the first node, then of the second
 
-// A node as the cost takes it.
+// A node's parameter blocks.
 struct Node {
   Eigen::Quaterniond rotation;
   Eigen::Vector3d position_in_world;
@@ -87,7 +87,7 @@ Matrix6 random_information(Draw& draw) {
   return root * root.transpose();
 }
 
-// What the nodes predict, as an edge would measure it.
+// The measurement that an edge without error has.
 PoseGraphEdge predicted_edge(const Nodes& nodes) {
   const auto camera_from_world = [](const Node& node) {
     return Pose{node.rotation, -(node.rotation * node.position_in_world)};
@@ -100,7 +100,7 @@ PoseGraphEdge predicted_edge(const Nodes& nodes) {
   return edge;
 }
 
-// An edge off by the given turn, and everything else at random.
+// An edge with the given rotation error, and random values elsewhere.
 class PoseGraphCostTest : public testing::TestWithParam<double> {
  protected:
   PoseGraphCostTest() {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Synthetic pose graphs with known truth, for the tests and benchmarks of this room.
+// Synthetic pose graphs with ground truth, for the tests and benchmarks of this room.
 
 #include "byre/optimise/optimise_scene.h"
 #include "byre/optimise/pose_graph.h"
@@ -15,16 +15,16 @@ struct GraphSceneOptions {
   int nodes = 80;
   int rounds = 2;               // on the same circle
   double radius = 5.0;          // metres
-  int links = 1;                // edges from each node to so many after it
-  int loops = 0;                // edges from each node to so many of the next round, those beside it
+  int links = 1;                // edges from each node to that many successors
+  int loops = 0;                // edges from each node to that many neighbouring nodes of the next round
   double position_noise = 0.0;  // metres, of an edge
   double rotation_noise = 0.0;  // radians
 };
 
-inline constexpr double kPositionSigma = 0.02;   // metres, unless there is noise
-inline constexpr double kRotationSigma = 0.005;  // radians
+inline constexpr double kPositionSigma = 0.02;   // metres, for edges without noise
+inline constexpr double kRotationSigma = 0.005;  // radians, for edges without noise
 
-// A camera that looks ahead while it goes round and round, a little up and down.
+// A camera on a circle that looks ahead and moves a little up and down.
 inline PoseGraph true_graph(const GraphSceneOptions& options) {
   PoseGraph graph;
   for (int i = 0; i < options.nodes; ++i) {
@@ -36,7 +36,7 @@ inline PoseGraph true_graph(const GraphSceneOptions& options) {
   return graph;
 }
 
-// What an edge between two nodes measures without noise.
+// Measurement of an edge between two nodes without noise.
 inline PoseGraphEdge true_edge(const PoseGraph& graph, int first, int second) {
   const PoseGraphNode& from = graph.nodes[first];
   const PoseGraphNode& to = graph.nodes[second];
@@ -76,7 +76,7 @@ inline PoseGraph measured_graph(unsigned seed, const GraphSceneOptions& options)
   return graph;
 }
 
-// Moves every node to where the edges from its predecessor lead: the drift of odometry.
+// Chains the edges between successive nodes, which gives the drift of odometry.
 inline PoseGraph with_odometry(PoseGraph graph) {
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.second != edge.first + 1) continue;
@@ -91,7 +91,7 @@ inline std::vector<Pose> poses_of(const PoseGraph& graph) {
   return poses;
 }
 
-// Root mean square distance of the cameras, metres.
+// Root-mean-square distance between cameras, metres.
 inline double position_error(const std::vector<Pose>& camera_from_world, const PoseGraph& truth) {
   double sum = 0.0;
   for (std::size_t i = 0; i < truth.nodes.size(); ++i) {

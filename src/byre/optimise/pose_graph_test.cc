@@ -76,7 +76,7 @@ TEST_P(EveryLoss, CorrectsTheDriftOfOdometry) {
 INSTANTIATE_TEST_SUITE_P(OptimisePoseGraph, EveryLoss,
                          testing::Values(RobustLoss::none, RobustLoss::huber, RobustLoss::cauchy));
 
-// The errors left are chi-square with six degrees of freedom for each edge more than a tree has; 99.9 %.
+// The remaining errors follow chi-square with six degrees of freedom per edge beyond a spanning tree; 99.9 %.
 TEST(OptimisePoseGraph, LeavesTheErrorsThatTheNoiseExplains) {
   const PoseGraph measured = measured_graph(4, kNoisy);
   const PoseGraphResult result = optimise_pose_graph(with_odometry(measured), with_loss(RobustLoss::none));
@@ -85,7 +85,7 @@ TEST(OptimisePoseGraph, LeavesTheErrorsThatTheNoiseExplains) {
   EXPECT_NEAR(result.cost, 0.5 * sum(result.squared_errors), 1e-9 * degrees);
 }
 
-// Equal springs in a ring: each of n edges gets an n-th of what does not close.
+// Equal springs in a ring: each of n edges takes 1/n of the closing error.
 TEST(OptimisePoseGraph, SpreadsWhatDoesNotCloseEvenly) {
   constexpr int kNodes = 10;
   constexpr double kGap = 0.5;  // metres
@@ -117,7 +117,7 @@ TEST(OptimisePoseGraph, MovesTogetherWithTheWorld) {
   }
 }
 
-// A graph with one loop edge that claims two opposite places of the circle to be the same.
+// A graph with a false loop edge between two opposite nodes of the circle.
 PoseGraph with_false_loop(PoseGraph graph) {
   graph.edges.push_back(
       {.first = 10, .second = 31, .second_from_first = Pose{}, .information = graph.edges.front().information});
@@ -154,14 +154,14 @@ TEST(OptimisePoseGraph, IsBentByAFalseLoopMoreWithoutARobustLoss) {
   EXPECT_LT(error_with(RobustLoss::huber), 0.2 * error_with(RobustLoss::none));
 }
 
-// The scale of what each camera measures grows by 0.5 % from node to node, unnoticed but for edges between rounds.
+// The scale of the cameras drifts by 0.5 % per node. Only edges between rounds measure it.
 PoseGraph with_scale_drift(const GraphSceneOptions& options) {
   PoseGraph graph = true_graph(options);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) graph.nodes[i].scale = std::pow(1.005, i);
   return graph;
 }
 
-// As a monocular odometry holds it: every node's scale is thought to be the first one's.
+// The odometry of a monocular camera: all scales are assumed equal to the first one's.
 PoseGraph as_odometry_thinks(PoseGraph truth) {
   for (int i = 0; i + 1 < static_cast<int>(truth.nodes.size()); ++i) {
     truth.edges.push_back(true_edge(truth, i, i + 1));
@@ -191,7 +191,7 @@ TEST(OptimisePoseGraph, RemovesScaleDriftWhenScalesAreFree) {
   }
 }
 
-// As wheels tell it from node to node, in the lengths of the world; the first node's scale is not what they tell.
+// Wheel odometry between successive nodes, in world lengths that differ from the first node's scale.
 TEST(OptimisePoseGraph, HoldsScalesToTheLengthsThatEdgesTell) {
   PoseGraph truth = with_scale_drift({.nodes = 40, .rounds = 1});
   for (PoseGraphNode& node : truth.nodes) node.scale *= 1.1;

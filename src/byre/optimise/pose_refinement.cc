@@ -21,19 +21,19 @@ namespace byre {
 
 namespace {
 
-// An observation as the solver reads it.
+// An observation in the solver's form.
 struct Sighting {
   Eigen::Vector3d point_in_world;
   StereoPixel measured;
-  Eigen::Matrix3d information;  // inverse covariance in pixels; without a disparity its third row and column are zero
+  Eigen::Matrix3d information;  // inverse covariance, 1 / pixels^2; third row and column zero without a disparity
   double weight;
-  double squared_error;  // squared sigmas; infinite at or behind the camera, or when not a number
-  bool tolerated;        // within the gate, with the systematic sigma among the others
+  double squared_error;  // squared sigmas; infinite at or behind the camera, or if not a number
+  bool tolerated;        // within the gate, once the systematic sigma is added
   bool stereo;
   bool inlier;
 };
 
-// A prior as the solver reads it.
+// A prior in the solver's form.
 struct KnownPose {
   Pose world_from_camera;
   Matrix6 information;
@@ -44,7 +44,7 @@ std::optional<KnownPose> known_pose(const std::optional<PosePrior>& prior) {
   return KnownPose{inverse(prior->camera_from_world), prior->covariance.inverse()};
 }
 
-// Its share of the cost: a residual of six numbers, log_pose(camera_from_world * world_from_camera).
+// Cost of the prior: a residual of six numbers, log_pose(camera_from_world * world_from_camera).
 PoseExpansion expand(const KnownPose& known, const Pose& camera_from_world) {
   const Vector6 error = log_pose(camera_from_world * known.world_from_camera);
   Matrix6 jacobian = Matrix6::Identity();
@@ -54,7 +54,7 @@ PoseExpansion expand(const KnownPose& known, const Pose& camera_from_world) {
   return {error.dot(known.information * error), gain * jacobian, -gain * error};
 }
 
-// The measurement's plus the point's, projected; square pixels.
+// Covariance of the measurement plus that of the point, projected; square pixels.
 Eigen::Matrix3d residual_covariance(const PoseObservation& observation, const StereoJacobian& by_point) {
   const double pixel_variance = observation.pixel_sigma * observation.pixel_sigma;
   const double disparity_variance = observation.disparity_sigma * observation.disparity_sigma;
@@ -70,7 +70,7 @@ Eigen::Matrix3d information_of(const Eigen::Matrix3d& covariance, bool stereo) {
   return information;
 }
 
-// Squared sigmas.
+// Bound of inliers, squared sigmas.
 double gate_of(bool stereo) {
   return stereo ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
 }
@@ -106,7 +106,7 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
   return sighting;
 }
 
-// Weighs all observations anew at this pose; all in front of the camera are inliers so far. Refills `sightings`.
+// Evaluates all observations at this pose; all in front of the camera become inliers. Refills `sightings`.
 void sight(std::span<const PoseObservation> observations, const Rig& rig, const Pose& camera_from_world,
            double systematic_sigma, std::vector<Sighting>& sightings) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
@@ -117,7 +117,7 @@ void sight(std::span<const PoseObservation> observations, const Rig& rig, const 
   }
 }
 
-// From the median of the finite squared errors, so that up to half of them may be outliers.
+// Uses the median of the finite squared errors, which tolerates up to half of them as outliers.
 double variance_factor(const std::vector<Sighting>& sightings) {
   constexpr double kMedianMono = 1.386;    // median of chi-square with two degrees of freedom
   constexpr double kMedianStereo = 2.366;  // median of chi-square with three degrees of freedom
@@ -150,7 +150,7 @@ void gather_inliers(const std::vector<Sighting>& sightings, WeighedPoints& point
   }
 }
 
-// What a pose is to agree with.
+// Terms of the pose's cost.
 struct Evidence {
   const Rig& rig;
   const WeighedPoints& points;
@@ -164,7 +164,7 @@ struct Evidence {
   }
 };
 
-// Gauss-Newton, damped (Levenberg-Marquardt) after a step that led uphill.
+// Gauss-Newton, damped (Levenberg-Marquardt) after a step that increases the cost.
 Pose descend(const Evidence& evidence, Pose camera_from_world, int iterations) {
   constexpr double kConverged = 1e-4;  // squared sigmas
   double damping = 0.0;
@@ -188,9 +188,9 @@ Pose descend(const Evidence& evidence, Pose camera_from_world, int iterations) {
   return camera_from_world;
 }
 
-// Empty where a direction is not determined.
+// Empty if a direction is not determined.
 std::optional<Matrix6> inverse_of(const Matrix6& normal_matrix) {
-  constexpr double kSingular = 1e-10;  // smallest eigenvalue, once the diagonal is scaled to ones
+  constexpr double kSingular = 1e-10;  // smallest eigenvalue of the matrix scaled to a unit diagonal
   const Vector6 scale = normal_matrix.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6 scaled = scale.asDiagonal() * normal_matrix * scale.asDiagonal();
   const auto [values, vectors] = symmetric_eigen(scaled);
@@ -199,11 +199,11 @@ std::optional<Matrix6> inverse_of(const Matrix6& normal_matrix) {
   return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
 }
 
-// What the inliers of a region of the image say together.
+// Sums over the inliers of an image region.
 struct Region {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // inverse covariance of an error that all share
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // inverse covariance of an error shared by all
   Eigen::Vector3d descent = Eigen::Vector3d::Zero();      // information * the shared error
-  Eigen::Matrix<double, 6, 3> by_error = Eigen::Matrix<double, 6, 3>::Zero();  // how the shared error pushes the pose
+  Eigen::Matrix<double, 6, 3> by_error = Eigen::Matrix<double, 6, 3>::Zero();  // pose's gradient by the error
   int points = 0;
 };
 
@@ -229,11 +229,11 @@ Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, c
   return regions;
 }
 
-// Pixels: how far the regions' mean errors lie off more than noise explains. The prior counts as one region.
+// Estimates the systematic sigma, pixels, from mean errors of regions beyond noise. The prior counts as one region.
 double systematic_sigma_of(const Regions& regions, double variance_factor, double prior) {
-  constexpr int kMinPoints = 4;         // inliers of a region that has a say
-  constexpr double kPriorValues = 2.0;  // numbers that the prior counts for: one region's u and v
-  constexpr double kPoseFreedom = 6.0;  // numbers that the pose has taken out of the regions' errors
+  constexpr int kMinPoints = 4;         // fewest inliers of a region to count
+  constexpr double kPriorValues = 2.0;  // weight of the prior: u and v of one region
+  constexpr double kPoseFreedom = 6.0;  // degrees of freedom that the pose takes from the regions' errors
   double excess = 0.0;
   double values = -kPoseFreedom;
   for (const Region& region : regions) {
@@ -247,14 +247,14 @@ double systematic_sigma_of(const Regions& regions, double variance_factor, doubl
   return std::sqrt(variance);
 }
 
-// What an error of so many pixels, another in each region, does to the pose.
+// Covariance of the pose by an independent error in each region, with sigma in pixels.
 Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_normal_matrix, double sigma) {
   Matrix6 pushes = Matrix6::Zero();
   for (const Region& region : regions) pushes += region.by_error * region.by_error.transpose();
   return sigma * sigma * inverse_normal_matrix * pushes * inverse_normal_matrix;
 }
 
-// Empty where the inliers, and the prior, leave a direction open. points: memory.
+// Empty if inliers and prior leave a direction undetermined. points: reused memory.
 std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std::vector<Sighting>& sightings,
                                               const std::optional<KnownPose>& known, const Rig& rig,
                                               const PoseRefinementOptions& options, WeighedPoints& points) {
@@ -264,8 +264,8 @@ std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std:
   const Evidence evidence{rig, points, known, huber_width};
   const std::optional<Matrix6> inverse = inverse_of(evidence.expand_at(pose).normal_matrix);
   if (!inverse) return std::nullopt;
-  // Weights set priorities, they do not make measurements better: a weighted estimate's covariance is
-  // inverse(N) M inverse(N), where M is the normal matrix with the weights squared.
+  // Weights are priorities, not accuracies. The covariance of the weighted estimate is inverse(N) M inverse(N), with M
+  // the normal matrix with squared weights.
   points.square_weights();
   Matrix6 squared = refined.variance_factor * points.expand(rig, pose, huber_width).normal_matrix;
   if (known) squared += expand(*known, pose).normal_matrix;
@@ -286,12 +286,12 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   const std::optional<KnownPose> known = known_pose(prior);
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
-  // A pose is refined several times a frame: the memory stays.
+  // Kept between calls: a frame refines its pose several times.
   thread_local std::vector<Sighting> sightings;
   thread_local WeighedPoints inliers;
   sight(observations, rig, predicted_camera_from_world, options.systematic_sigma, sightings);
-  // Far from the solution all errors are large: gates and loss follow their median down, so that no minority that
-  // happens to fit captures the pose.
+  // Far from the solution all errors are large. Gates and loss follow the decrease of their median, so that a minority
+  // that fits by chance does not capture the pose.
   for (int round = 0; round < options.rounds; ++round) {
     const double factor = variance_factor(sightings);
     choose_inliers(sightings, factor);

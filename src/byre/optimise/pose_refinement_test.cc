@@ -24,8 +24,8 @@ struct SceneOptions {
   int points = 100;
   double mono_fraction = 0.0;
   double noise = 0.0;               // sigmas
-  double point_sigma = 0.0;         // metres, of the points as known
-  double prediction_metres = 0.05;  // off the truth
+  double point_sigma = 0.0;         // metres, of the map points
+  double prediction_metres = 0.05;  // error of the prediction
   double prediction_radians = 0.03;
 };
 
@@ -67,10 +67,10 @@ Scene make_scene(unsigned seed, const SceneOptions& options) {
   return scene;
 }
 
-// Where nothing errs but noise.
+// Without systematic errors.
 constexpr PoseRefinementOptions kNoiseAlone{.systematic_sigma = 0.0};
 
-// The sum of squared errors in units of the covariance over trials.
+// Sum of squared normalised errors over trials.
 double normalised_errors(int trials, const SceneOptions& options, double first_weight) {
   double sum = 0.0;
   for (int trial = 0; trial < trials; ++trial) {
@@ -272,7 +272,7 @@ TEST(RefinePose, IsEmptyWhenNothingAgrees) {
   EXPECT_TRUE(!refined || refined->inlier_count < 8);
 }
 
-// Normalised errors squared of repeated trials sum to chi-square; the bounds hold with 99.9 %.
+// Squared normalised errors of repeated trials follow chi-square; the bounds hold with 99.9 %.
 TEST(RefinePose, ReportsACovarianceThatMatchesItsErrors) {
   constexpr int kTrials = 300;
   constexpr double kDegrees = 6.0 * kTrials;
@@ -289,7 +289,7 @@ TEST(RefinePose, ReportsACovarianceThatMatchesErrorsLargerThanStated) {
               3.3 * std::sqrt(2.0 * kDegrees));
 }
 
-// For mono the gates make the variances some 15 % too small.
+// In mono the gates make the variances about 15 % too small.
 TEST(RefinePose, ReportsAMonoCovarianceNotFarBelowItsErrors) {
   constexpr int kTrials = 300;
   constexpr double kDegrees = 6.0 * kTrials;
@@ -297,7 +297,7 @@ TEST(RefinePose, ReportsAMonoCovarianceNotFarBelowItsErrors) {
               3.3 * std::sqrt(2.0 * kDegrees));
 }
 
-// Sharp points, whose errors in a part of the image are all the same beside noise; another in each of 4 x 3 parts.
+// Accurate points with an error that is constant within each of 4 x 3 image regions, plus noise.
 Scene scene_with_systematic_errors(unsigned seed, double systematic_sigma) {
   constexpr double kSharp = 0.06;  // pixels
   Scene scene = make_scene(seed, {.points = 400, .prediction_metres = 0.01, .prediction_radians = 0.003});
@@ -332,7 +332,7 @@ TEST(RefinePose, KeepsSharpPointsWhoseErrorIsSystematic) {
 
 TEST(RefinePose, ReportsACovarianceThatSystematicErrorsDoNotExceed) {
   constexpr int kTrials = 50;
-  double known = 0.0, by_noise = 0.0;  // squared errors in units of the covariance, six on average
+  double known = 0.0, by_noise = 0.0;  // mean squared normalised errors, expected six
   for (unsigned trial = 0; trial < kTrials; ++trial) {
     const Scene scene = scene_with_systematic_errors(100 + trial, 0.4);
     const auto add = [&](const std::optional<PoseRefinement>& refined, double& sum) {
@@ -357,7 +357,7 @@ TEST(RefinePose, EstimatesTheSystematicPart) {
   EXPECT_LT(large->systematic_sigma, 0.8);
 }
 
-// A prior that puts the camera by that much off the truth; sigma in metres and radians.
+// A prior displaced from the truth by delta; sigma in metres and radians.
 PosePrior prior_off(const Scene& scene, const Vector6& delta, double sigma) {
   return {exp_pose(delta) * scene.true_camera_from_world, sigma * sigma * Matrix6::Identity()};
 }
@@ -392,7 +392,7 @@ TEST(RefinePoseWithPrior, HasTheSameBytesWithoutOne) {
   EXPECT_EQ(refined->covariance, alone->covariance);
 }
 
-// Clean measurements stay within the loss's quadratic part, so that both costs are plain sums of squares.
+// Clean measurements stay in the quadratic part of the loss, so that both costs are plain sums of squares.
 double cost_of(const Scene& scene, const PosePrior& prior, const Pose& camera_from_world) {
   double cost = 0.0;
   for (const PoseObservation& observation : scene.observations) {

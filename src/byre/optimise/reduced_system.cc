@@ -10,11 +10,11 @@
 
 namespace byre {
 
-// Blocks row by row. The matrix that CHOLMOD gets has the same pattern each time, so that it is analysed once.
+// Blocks row by row. The pattern of the matrix is constant, so that CHOLMOD analyses it once.
 struct ReducedSystem::Sparse {
-  std::vector<std::vector<int>> columns;  // columns that each row has blocks in, ascending, its own last
+  std::vector<std::vector<int>> columns;  // columns of the blocks of each row, ascending, its diagonal last
   std::vector<std::size_t> begin;         // index of each row's first block
-  std::vector<Matrix6> blocks;            // none once they are in the matrix, which takes as much again to be factored
+  std::vector<Matrix6> blocks;  // emptied once in the matrix, because the factorisation needs as much memory again
   Eigen::SparseMatrix<double> lower;
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor;
 
@@ -37,7 +37,7 @@ struct ReducedSystem::Sparse {
     return blocks[begin[static_cast<std::size_t>(row)] + static_cast<std::size_t>(place - of_row.begin())];
   }
 
-  // The lower triangle, column by column. Uses up the blocks.
+  // Writes the lower triangle, column by column. Clears the blocks.
   void fill_lower() {
     std::vector<std::vector<std::pair<int, const Matrix6*>>> rows_of_column(columns.size());
     for (std::size_t row = 0; row < columns.size(); ++row) {
@@ -66,7 +66,7 @@ struct ReducedSystem::Sparse {
 
 namespace {
 
-// A quarter of all pairs.
+// At least a quarter of all pairs.
 bool are_most_pairs(int poses, const std::vector<std::vector<int>>& neighbours) {
   std::size_t pairs = 0;
   for (const std::vector<int>& columns : neighbours) pairs += columns.size();
@@ -87,7 +87,7 @@ ReducedSystem::ReducedSystem(ReducedSystem&&) noexcept = default;
 ReducedSystem& ReducedSystem::operator=(ReducedSystem&&) noexcept = default;
 
 void ReducedSystem::set_zero() {
-  // The upper triangle is never touched, so that nearly half of a large matrix takes no memory.
+  // The upper triangle is never written, so that nearly half of a large matrix takes no memory.
   for (Eigen::Index first = 0; first < dense_.cols(); first += 6) {
     dense_.block(first, first, dense_.rows() - first, 6).setZero();
   }

@@ -10,26 +10,26 @@
 
 namespace byre {
 
-// The normal equations over poses, six unknowns each, once the points are eliminated; symmetric, of which the lower
-// triangle is kept. By the pairs of poses that see a common point where these are few: their number grows with the map,
-// that of all pairs with its square. Dense where poses are few, or most of them see the same room: then CHOLMOD, which
-// fills in nearly all pairs anyway, takes twice the memory for its copies of the matrix.
+// Normal equations over poses, six unknowns each, after elimination of the points; symmetric, lower triangle stored.
+// Sparse over pairs of poses with common points if those are few: their number is linear in the map's size, that of all
+// pairs quadratic. Dense for few poses, or if most poses view the same points: CHOLMOD then fills in nearly all pairs
+// and takes twice the memory for its copies.
 class ReducedSystem {
  public:
   using Block = Eigen::Map<Matrix6, Eigen::Unaligned, Eigen::OuterStride<>>;
 
   static constexpr int kMaxDensePoses = 60;
 
-  // neighbours: for each pose those before it that it shares points with, ascending. Used only where poses are many.
+  // neighbours: for each pose the earlier poses with common points, ascending. Used only in the sparse form.
   ReducedSystem(int poses, std::vector<std::vector<int>> neighbours);
   ~ReducedSystem();
   ReducedSystem(ReducedSystem&&) noexcept;
   ReducedSystem& operator=(ReducedSystem&&) noexcept;
 
   void set_zero();
-  // Preconditions: column <= row, and both are neighbours or the same.
+  // Preconditions: column <= row, and both are neighbours or equal.
   Block at(int row, int column);
-  // Empty where the matrix is not positive definite. Once after each filling: the matrix is used up.
+  // Empty if the matrix is not positive definite. To be called once per filling: it overwrites the matrix.
   std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& right_hand_side) { return solution(right_hand_side); }
   std::optional<Eigen::MatrixXd> solve_several(const Eigen::MatrixXd& right_hand_sides) {
     return solution(right_hand_sides);
@@ -42,8 +42,8 @@ class ReducedSystem {
   struct Sparse;
 
   int poses_ = 0;
-  Eigen::MatrixXd dense_;           // empty where it is sparse
-  std::unique_ptr<Sparse> sparse_;  // empty where it is dense
+  Eigen::MatrixXd dense_;           // empty in the sparse form
+  std::unique_ptr<Sparse> sparse_;  // null in the dense form
 };
 
 }  // namespace byre

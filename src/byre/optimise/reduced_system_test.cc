@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Each pose is a neighbour of those up to three before it, and of the first.
+// Each pose is a neighbour of the three before it and of the first.
 std::vector<std::vector<int>> neighbours_of(int poses) {
   std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(poses));
   for (int row = 1; row < poses; ++row) {
@@ -21,7 +21,8 @@ std::vector<std::vector<int>> neighbours_of(int poses) {
   return neighbours;
 }
 
-// Fills the system with random blocks, made positive definite by a heavy diagonal; returns it as one matrix.
+// Fills the system with random blocks and a dominant diagonal, which makes it positive definite. Returns the full
+// matrix.
 Eigen::MatrixXd fill(ReducedSystem& system, int poses, double diagonal) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-1.0, 1.0);
@@ -43,12 +44,12 @@ Eigen::MatrixXd fill(ReducedSystem& system, int poses, double diagonal) {
   return whole;
 }
 
-class ReducedSystemOf : public testing::TestWithParam<int> {};  // poses
+class ReducedSystemOf : public testing::TestWithParam<int> {};  // number of poses
 
 TEST_P(ReducedSystemOf, HasTheSolutionOfTheWholeMatrix) {
   ReducedSystem system(GetParam(), neighbours_of(GetParam()));
   const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(6 * GetParam(), -1.0, 2.0);
-  for (const double diagonal : {2000.0, 700.0}) {  // the second time by the pattern of the first
+  for (const double diagonal : {2000.0, 700.0}) {  // the second solution reuses the pattern of the first
     const Eigen::MatrixXd whole = fill(system, GetParam(), diagonal);
     const auto solution = system.solve(right);
     ASSERT_TRUE(solution);

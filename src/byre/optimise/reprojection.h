@@ -6,13 +6,13 @@
 
 namespace byre {
 
-// Nearer than this the inverse depth is continued by its tangent, so that a point that slips behind a camera while
-// solving has a finite error that grows the further behind it is.
+// Below this depth the inverse depth continues along its tangent. A point that moves behind a camera during
+// optimisation then has a finite error that grows with its distance behind it.
 inline constexpr double kNearestDepth = 0.01;  // metres
 
 struct InverseDepth {
   double value;
-  double derivative;  // slope by the depth
+  double derivative;  // by the depth
 };
 
 inline InverseDepth inverse_depth(double depth) {
@@ -22,8 +22,8 @@ inline InverseDepth inverse_depth(double depth) {
   return {value, -value * value};
 }
 
-// One measurement in a rectified image, ready for least squares. Residuals are the projected minus the measured
-// (u, v, disparity) in sigmas; without a disparity (disparity_sigma negative) the third one is zero.
+// Residual of one measurement in a rectified image: projected minus measured (u, v, disparity) in sigmas. Without a
+// disparity (disparity_sigma negative) the third component is zero.
 class Reprojection {
  public:
   Reprojection(const Rig& rig, const StereoPixel& measured, double pixel_sigma, double disparity_sigma) {

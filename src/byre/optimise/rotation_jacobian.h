@@ -6,8 +6,7 @@
 
 namespace byre {
 
-// d(rotation_log(rotation_exp(delta) * rotation)) / d(delta), from the rotation's own logarithm (Chirikjian 2012,
-// eq. 10.86).
+// d(rotation_log(rotation_exp(delta) * rotation)) / d(delta), from rotation_log(rotation) (Chirikjian 2012, eq. 10.86).
 inline Eigen::Matrix3d inverse_left_jacobian(const Eigen::Vector3d& logarithm) {
   const double angle = logarithm.norm();
   const double half = 0.5 * angle;

@@ -4,9 +4,9 @@
 
 namespace byre {
 
-// A rotation as a unit quaternion (x, y, z, w) moves as rotation_exp(delta) * rotation. Costs give their derivatives by
-// delta in the first three of four columns, and the Jacobian of Plus is the identity above a row of zeros: the chain
-// through the quaternion would only be multiplied in and out again.
+// Unit quaternion (x, y, z, w) updated as rotation_exp(delta) * rotation. Costs write their derivatives by delta to the
+// first three of four columns, and PlusJacobian is the identity above a zero row: this avoids the chain rule through
+// the quaternion.
 class RotationManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }

@@ -5,11 +5,11 @@
 
 namespace byre {
 
-// How far a step may lead: the larger, the less it is damped. Grows and shrinks as in Ceres (Nielsen 1999).
+// Trust region of Levenberg-Marquardt: a larger radius means less damping. Updated as in Ceres (Nielsen 1999).
 class TrustRegion {
  public:
   double radius() const { return radius_; }
-  // The share is that of the gain expected which there was.
+  // share: actual over expected gain.
   void widen(double share) {
     radius_ = std::min(1e16, radius_ / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * share - 1.0, 3)));
     shrink_ = 2.0;
@@ -25,7 +25,7 @@ class TrustRegion {
   double shrink_ = 2.0;
 };
 
-// Ceres' bounds of the diagonal that damping is in proportion to.
+// Ceres' bounds of the diagonal that scales the damping.
 inline double bounded(double diagonal) {
   return std::clamp(diagonal, 1e-6, 1e32);
 }
