@@ -24,7 +24,7 @@ struct PoseGraphEdge {
   Matrix6 information = Matrix6::Identity();
   double scale = 1.0;         // ratio of the two cameras' measured lengths
   double scale_sigma = 0.01;  // standard error of the scale's logarithm; used only if scales are free
-  // Motion in metres of the world from another sensor, such as wheels; independent of the nodes' scales.
+  // Motion in the world's lengths, from another sensor such as wheels; independent of the nodes' scales.
   bool is_in_world_lengths = false;
 };
 

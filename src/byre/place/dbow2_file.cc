@@ -27,7 +27,7 @@ struct Dbow2Node {
   float weight = 0.0f;
 };
 
-// The line being read, for messages.
+// The line that is parsed, for messages.
 struct Line {
   const std::filesystem::path& path;
   const TextLine& text;
@@ -68,7 +68,7 @@ Descriptor parse_descriptor(const Line& line, std::span<const std::string_view> 
   return descriptor;
 }
 
-// number: of the node that the line describes.
+// number: index of the node.
 Dbow2Node parse_node(const Line& line, std::uint32_t number) {
   const std::vector<std::string_view> fields = split_fields(line.text.text);
   if (fields.size() != kNodeFields) {
@@ -87,8 +87,7 @@ Dbow2Node parse_node(const Line& line, std::uint32_t number) {
   return node;
 }
 
-// Nodes by number, the root included, and which are whose children: those of node n are
-// children[first_child[n]] to children[first_child[n + 1]].
+// Nodes by index, with the root. The children of node n are children[first_child[n]] to children[first_child[n + 1]].
 struct Dbow2Tree {
   std::vector<Dbow2Node> nodes;
   std::vector<std::uint32_t> first_child;
@@ -105,7 +104,7 @@ void link_children(Dbow2Tree& tree) {
   for (std::uint32_t node = 1; node < node_count; ++node) tree.children[next[tree.nodes[node].parent]++] = node;
 }
 
-// lines: the header's, then one for each node but the root.
+// lines: the header, then one line per node except the root.
 void require_consistent(const Dbow2Tree& tree, const Dbow2Header& header, const std::filesystem::path& path,
                         std::span<const TextLine> lines) {
   std::vector<std::uint32_t> level(tree.nodes.size(), 0);

@@ -6,9 +6,9 @@
 
 namespace byre {
 
-// Reads the text format of DBoW2: a line "k L scoring weighting", then a line for each node but the root, "parent
-// is_leaf d0 .. d31 weight". Nodes are numbered as they come, from 1; the root is 0. The weights are taken as they are;
-// scoring and weighting are of no further use, for byre has one way to score. Throws InputError naming the line.
+// Reads the text format of DBoW2: a line "k L scoring weighting", then per node except the root a line "parent is_leaf
+// d0 .. d31 weight". Nodes are numbered in file order from 1; the root is 0. Weights are used unchanged; scoring and
+// weighting are ignored, because byre has one scoring method. Throws InputError naming the line.
 VocabularyTree read_dbow2(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ using testing::FloatEq;
 using testing::HasSubstr;
 using testing::Pair;
 
-// A node's line; the descriptor is the given byte in place 0 and 255 in place 31.
+// Line of a node whose descriptor has the given byte at index 0, 255 at index 31, and zeros between.
 std::string node(int parent, int is_leaf, int first_byte, const std::string& weight) {
   std::string line = std::to_string(parent) + " " + std::to_string(is_leaf) + " " + std::to_string(first_byte);
   for (int i = 1; i < 31; ++i) line += " 0";
@@ -31,7 +31,7 @@ Descriptor descriptor(std::uint64_t first_byte) {
   return {first_byte, 0, 0, std::uint64_t{255} << 56};
 }
 
-// As DBoW2 writes it: siblings come together, but not level by level.
+// The order of DBoW2's writer: siblings are adjacent, levels are not.
 //   root - 1 (leaf), 2, 3;  2 - 6, 7 (leaves);  3 - 4, 5 (leaves)
 const std::string kNodes = node(0, 1, 1, "0.5") + node(0, 0, 14, "0") + node(0, 0, 224, "0") + node(3, 1, 96, "4") +
                            node(3, 1, 192, "8.25") + node(2, 1, 6, "1") + node(2, 1, 12, "2e0");

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Sets or unsets $BYRE_VOCABULARY for one test.
+// Unsets $BYRE_VOCABULARY and restores it afterwards.
 class DefaultVocabulary : public testing::Test {
  protected:
   DefaultVocabulary() {

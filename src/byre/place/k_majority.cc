@@ -11,9 +11,9 @@
 namespace byre {
 namespace {
 
-constexpr int kWordBits = 64;  // bits of each of the four numbers of a descriptor
+constexpr int kWordBits = 64;  // bits per element of a descriptor
 
-// Counts, bit by bit, how many descriptors of a cluster have it set.
+// Per bit the number of descriptors of a cluster in which it is set.
 class BitCounts {
  public:
   void add(const Descriptor& descriptor) {
@@ -25,7 +25,7 @@ class BitCounts {
     }
   }
 
-  // Bits on which the descriptors are split evenly stay as they were.
+  // Ties keep the bit of `before`.
   Descriptor majority(const Descriptor& before) const {
     Descriptor result{};
     for (std::size_t i = 0; i < result.size(); ++i) {
@@ -43,8 +43,8 @@ class BitCounts {
   std::uint64_t descriptors_ = 0;
 };
 
-// An index drawn with probability proportional to its weight. std::discrete_distribution differs between libraries.
-// Precondition: total is the sum of the weights and not zero.
+// An index drawn with probability proportional to its weight. std::discrete_distribution is not portable between
+// libraries. Precondition: total is the sum of the weights and not zero.
 std::size_t draw(std::span<const std::uint32_t> weights, std::uint64_t total, std::mt19937_64& random) {
   std::uint64_t left = random() % total;
   std::size_t index = 0;
@@ -52,7 +52,7 @@ std::size_t draw(std::span<const std::uint32_t> weights, std::uint64_t total, st
   return index;
 }
 
-// k-means++: each further centre is drawn with a probability proportional to the squared distance to those before.
+// k-means++: draws each further centre with probability proportional to the squared distance to the nearest centre.
 std::vector<Descriptor> seed_centres(std::span<const Descriptor> descriptors, int count, std::mt19937_64& random) {
   std::vector<Descriptor> centres = {descriptors[random() % descriptors.size()]};
   std::vector<std::uint32_t> squared_distance(descriptors.size(), std::numeric_limits<std::uint32_t>::max());
@@ -63,13 +63,13 @@ std::vector<Descriptor> seed_centres(std::span<const Descriptor> descriptors, in
       squared_distance[i] = std::min(squared_distance[i], distance * distance);
       total += squared_distance[i];
     }
-    if (total == 0) break;  // every different descriptor is a centre
+    if (total == 0) break;  // every distinct descriptor is a centre
     centres.push_back(descriptors[draw(squared_distance, total, random)]);
   }
   return centres;
 }
 
-// Gives each descriptor its nearest centre; false when none changes.
+// Assigns each descriptor to its nearest centre; false if nothing changes.
 bool assign(std::span<const Descriptor> descriptors, Clusters& clusters) {
   bool changed = false;
   for (std::size_t i = 0; i < descriptors.size(); ++i) {

@@ -5,8 +5,7 @@
 
 namespace byre {
 
-// Gives every keyframe the words of this vocabulary. Does nothing when they are of this very one already, so a map
-// that was saved with them is ready at once, and one that was saved with another vocabulary is made ready.
+// Assigns every keyframe its words of this vocabulary. Does nothing if the map's words are of this vocabulary already.
 void add_words(StoredMap& stored, const Vocabulary& vocabulary);
 
 }  // namespace byre

@@ -24,13 +24,13 @@ std::vector<Word> words_in(const BagOfWords& bag) {
   return words;
 }
 
-// The most that the rounded sum of so many scores can come to, none of which is greater.
+// Upper bound on the rounded sum of `count` scores up to `score`.
 float greatest_sum(float score, int count) {
   constexpr float kRounding = 1.0001f;
   return kRounding * score * static_cast<float>(count);
 }
 
-// The best of the group scores so far, as many as are kept.
+// The best `count` group scores so far.
 class BestGroups {
  public:
   explicit BestGroups(int count) : count_(static_cast<std::size_t>(std::max(count, 0))) {}
@@ -41,7 +41,7 @@ class BestGroups {
     if (scores_.size() > count_) scores_.pop_back();
   }
 
-  // Whether no group of at most that score is kept.
+  // Whether a group with at most this score is discarded.
   bool leave_out(float score, float min_score_share) const {
     const bool is_behind_all = scores_.size() >= count_ && (scores_.empty() || score < scores_.back());
     return is_behind_all || score < min_score_share * best_;
@@ -55,7 +55,7 @@ class BestGroups {
 
 }  // namespace
 
-// The matches of a query that are not yet in a group.
+// Matches of a query that are not yet in a group.
 class PlaceGrouping {
  public:
   PlaceGrouping(const PlaceIndex& index, const BagOfWords& query, const std::function<bool(KeyframeId)>& is_excluded)
@@ -66,7 +66,7 @@ class PlaceGrouping {
     std::ranges::make_heap(ranking_, is_worse);
   }
 
-  // Takes out the best match; empty when none is left.
+  // Removes and returns the best match; empty if none is left.
   std::optional<PlaceMatch> take_best() {
     while (!ranking_.empty()) {
       std::ranges::pop_heap(ranking_, is_worse);
@@ -77,7 +77,7 @@ class PlaceGrouping {
     return std::nullopt;
   }
 
-  // The match that was taken out, with those covisible with it, which are taken out as well.
+  // Groups a removed match with its covisible matches, which are removed too.
   PlaceCandidate take_group(const PlaceMatch& best, const MapView& map, int group_size) {
     std::vector<PlaceMatch> members = {best};
     for (const Covisible& covisible : map.covisible_keyframes(best.keyframe, group_size)) {
@@ -96,7 +96,7 @@ class PlaceGrouping {
  private:
   static bool is_worse(const PlaceMatch& a, const PlaceMatch& b) { return is_better(b, a); }
 
-  // The score of a keyframe that is in no group yet and may be in one; zero for any other.
+  // Removes a keyframe from the matches and returns its score; zero if it is removed already, excluded, or no match.
   float take(KeyframeId id) {
     const std::optional<std::uint32_t> slot = index_.slot_of(id);
     const float score = slot ? std::exchange(scores_[*slot], 0.0f) : 0.0f;
@@ -105,8 +105,8 @@ class PlaceGrouping {
 
   const PlaceIndex& index_;
   const std::function<bool(KeyframeId)>& is_excluded_;
-  std::vector<float> scores_;        // by slot; zero for what was taken out
-  std::vector<PlaceMatch> ranking_;  // a heap, the best match first; with some that were taken out
+  std::vector<float> scores_;        // by slot; zero for removed matches
+  std::vector<PlaceMatch> ranking_;  // heap with the best match on top; may contain removed ones
 };
 
 PlaceIndex::PlaceIndex(Vocabulary vocabulary)
@@ -140,13 +140,13 @@ void PlaceIndex::add(KeyframeId id, std::span<const Word> words) {
   for (const auto& [word, weight] : bag) postings_[word].push_back({slot, weight});
 }
 
-// Words of the keyframes of a map, one after the other.
+// Words of all keyframes of a map, concatenated.
 struct PlaceIndex::WordsOfMap {
   std::vector<KeyframeId> keyframes;
-  std::vector<std::size_t> ends;  // where each keyframe's words end
+  std::vector<std::size_t> ends;  // end of each keyframe's words
   std::vector<Word> words;
 
-  // Calls visit(slot, word) for each.
+  // Calls visit(slot, word) for each word.
   template <typename Visitor>
   void visit(Visitor visit) const {
     std::size_t next = 0;
@@ -156,12 +156,12 @@ struct PlaceIndex::WordsOfMap {
   }
 };
 
-// The same as add() for each, to the last bit: weights are summed in the order of words there too.
+// Bit-identical to add() for each keyframe: both sum weights in the order of the words.
 void PlaceIndex::add_all(const WordsOfMap& map) {
   for (const KeyframeId id : map.keyframes) entries_[take_slot(id)].keyframe = id;
 
   std::vector<std::uint32_t> counts(postings_.size(), 0);
-  std::vector<std::uint32_t> last_with(postings_.size(), kNoSlot);  // the last slot that was counted
+  std::vector<std::uint32_t> last_with(postings_.size(), kNoSlot);  // the last slot counted for each word
   map.visit([&](std::uint32_t slot, Word word) {
     if (word < counts.size() && std::exchange(last_with[word], slot) != slot) ++counts[word];
   });
@@ -204,8 +204,8 @@ void PlaceIndex::remove(KeyframeId id) {
   --size_;
 }
 
-// Equation 5 of Nister and Stewenius 2006: of the norm of the difference only the words of both matter. For weights
-// that sum to one, 1 - |a - b| / 2 is the sum of the smaller weights.
+// Equation 5 of Nister and Stewenius 2006: only words of both bags contribute. For weights that sum to one, 1 - |a - b|
+// / 2 is the sum of the smaller weights.
 std::vector<float> PlaceIndex::scores_of(const BagOfWords& query) const {
   std::vector<float> scores(entries_.size(), 0.0f);
   for (const auto& [word, weight] : query) {
@@ -247,8 +247,8 @@ PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary) {
   return index;
 }
 
-// Groups are made from the best match on. What a match can come to at most ends it: as if all covisible with it matched
-// as well. That leaves most of a large map alone.
+// Forms groups from the best match downwards. Stops once the upper bound of a group's score, with all its covisible
+// keyframes matching equally well, is too small. Most of a large map is then never grouped.
 std::vector<PlaceCandidate> find_places(const PlaceIndex& index, const MapView& map, std::span<const Word> words,
                                         const PlaceQueryOptions& options,
                                         const std::function<bool(KeyframeId)>& is_excluded) {

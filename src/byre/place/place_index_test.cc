@@ -16,7 +16,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr int kAll = 1000;
-constexpr Word kWordsEach = 40;  // per image
+constexpr Word kWordsEach = 40;  // words per image
 
 MATCHER_P2(PlaceOf, keyframe, score, "") {
   return arg.keyframe == keyframe && std::abs(arg.score - score) < 1e-6f;
@@ -26,7 +26,7 @@ KeyframeId offline(std::uint32_t number) {
   return {Origin::offline, number};
 }
 
-// About a hundred words of different weights.
+// A vocabulary of about a hundred words with different weights.
 Vocabulary random_vocabulary() {
   std::vector<std::vector<Descriptor>> images;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) images.push_back(random_descriptors(100, seed));
@@ -36,7 +36,7 @@ Vocabulary random_vocabulary() {
   return Vocabulary::train(images, options);
 }
 
-// As many words as asked for, all of one weight.
+// A vocabulary of word_count words with equal weights.
 Vocabulary plain_vocabulary(int word_count) {
   std::vector<std::vector<Descriptor>> images;
   for (const Descriptor& descriptor : random_descriptors(word_count, 1)) images.push_back({descriptor});
@@ -63,7 +63,7 @@ class RandomIndex : public testing::Test {
     }
   }
 
-  // What a query must give.
+  // Expected result of a query, by comparison with each keyframe.
   std::vector<PlaceMatch> compare_with_each(const BagOfWords& query) const {
     std::vector<PlaceMatch> matches;
     for (const auto& [id, keyframe_words] : words) {
@@ -139,7 +139,7 @@ TEST_F(RandomIndex, OfAWholeMapIsTheSameToTheLastBit) {
     Keyframe keyframe;
     keyframe.sightings.resize(keyframe_words.size());
     keyframe.words = keyframe_words;
-    keyframe.words.push_back(keyframe.words.front());  // a word that occurs twice, and one of no vocabulary
+    keyframe.words.push_back(keyframe.words.front());  // a repeated word, and one outside the vocabulary
     keyframe.words.push_back(1u << 30);
     keyframe.sightings.resize(keyframe.words.size());
     index.add(map.add_keyframe(keyframe), keyframe.words);
@@ -193,7 +193,7 @@ TEST(PlaceIndexTest, FindsNothingWithoutCommonWords) {
   EXPECT_EQ(index.size(), 2);
 }
 
-// A map of two rooms, three keyframes each; those of a room see the same points.
+// A map of two rooms with three keyframes each; keyframes of a room share points.
 class TwoRooms : public testing::Test {
  protected:
   static constexpr int kFeatures = 4;
@@ -216,7 +216,7 @@ class TwoRooms : public testing::Test {
     return keyframe;
   }
 
-  // Seen by three keyframes.
+  // Adds a point with observations in three keyframes.
   void add_point(int first, int feature) {
     MapPoint point;
     point.reference = {keyframes[static_cast<std::size_t>(first)], feature};
@@ -225,7 +225,7 @@ class TwoRooms : public testing::Test {
       map.add_observation({keyframes[static_cast<std::size_t>(i)], feature}, {id});
   }
 
-  // The other features of the keyframe have words that no vocabulary knows.
+  // The other features of the keyframe get words outside the vocabulary.
   void show(int keyframe, std::vector<Word> words) {
     words.resize(kFeatures, kUnknownWord);
     map.set_words(keyframes[static_cast<std::size_t>(keyframe)], std::move(words));
@@ -303,10 +303,10 @@ TEST_F(TwoRooms, AreIndexedByTheirDescriptorsWhereTheyHaveNoWords) {
               testing::Each(Field(&PlaceMatch::score, testing::FloatEq(1.0f))));
 }
 
-// A long row of keyframes with random words, each covisible with some before it. The words of some are much alike.
+// A sequence of keyframes with random words, each covisible with its predecessors. Some have equal words.
 class Row : public testing::Test {
  protected:
-  static constexpr int kKeyframes = 600;  // so many that several threads index them
+  static constexpr int kKeyframes = 600;  // enough for indexing on several threads
   static constexpr int kNeighbours = 3;
 
   Row() {
@@ -332,7 +332,7 @@ class Row : public testing::Test {
     map.add_observation({id, static_cast<int>(kWordsEach) / 2 + back}, {shared});
   }
 
-  // What must be found: groups of all matches, the best one first, of which the best are kept.
+  // Expected result: groups of all matches, formed from the best match downwards; the best groups are kept.
   std::vector<PlaceCandidate> places_of_all(const PlaceIndex& index, std::vector<PlaceMatch> matches,
                                             const PlaceQueryOptions& options) const {
     std::vector<PlaceCandidate> all;

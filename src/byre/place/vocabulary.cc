@@ -13,12 +13,12 @@
 
 namespace byre {
 
-// A vocabulary file, in a file's memory or our own.
+// The bytes of a vocabulary file, mapped or owned.
 struct Vocabulary::Data {
   std::unique_ptr<const MappedFile> file;
   std::vector<std::byte> own_bytes;
-  std::span<const std::byte> bytes;  // the whole file, in the mapped memory or our own
-  VocabularyView view;               // view of these bytes
+  std::span<const std::byte> bytes;  // the whole file
+  VocabularyView view;               // into `bytes`
 };
 
 namespace {
@@ -28,7 +28,7 @@ std::span<const Descriptor> children_of(const VocabularyView& view, std::uint32_
   return view.centres.subspan(begin, view.first_child[node + 1] - begin);
 }
 
-// The child of an inner node that a word is below.
+// The child of an inner node whose subtree contains the word.
 std::uint32_t child_above(const VocabularyView& view, std::uint32_t node, Word word) {
   const auto begin = view.first_word.begin() + view.first_child[node];
   const auto end = view.first_word.begin() + view.first_child[node + 1];

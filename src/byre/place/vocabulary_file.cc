@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kMagic = "byrevoc\n";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderSize = 64;
-constexpr std::size_t kHeaderChecksumAt = 56;  // place of the checksum of the header's bytes before it
+constexpr std::size_t kHeaderChecksumAt = 56;  // byte offset; checksum of the header's bytes before it
 constexpr std::uint32_t kMaxBranching = 255;
 
 struct Header {
@@ -26,10 +26,10 @@ struct Header {
   std::uint64_t checksum = 0;
 };
 
-// A piece of the file, with its name and place for messages.
+// A section of the file, with its name and offset for messages.
 class Section {
  public:
-  // Fails when the file ends before it does.
+  // Fails if the section reaches beyond the end of the file.
   Section(std::span<const std::byte> file, const std::string& name, const std::string& section, std::size_t begin,
           std::size_t size)
       : place_(name + ": section " + section), begin_(begin) {
@@ -43,7 +43,7 @@ class Section {
   std::size_t end() const { return begin_ + bytes_.size(); }
   ByteReader reader() const { return {bytes_, place_, begin_}; }
 
-  // Precondition: the section begins at a multiple of T's alignment in memory.
+  // Precondition: the section is aligned for T in memory.
   template <typename T>
   std::span<const T> as() const {
     return {reinterpret_cast<const T*>(bytes_.data()), bytes_.size() / sizeof(T)};
@@ -53,7 +53,7 @@ class Section {
     if (checksum(bytes_) != expected) fail(0, "does not have the checksum that the header says");
   }
 
-  // offset: from the section's beginning.
+  // offset: bytes from the start of the section.
   [[noreturn]] void fail(std::size_t offset, const std::string& reason) const {
     throw InputError(place_ + " at byte " + std::to_string(begin_ + offset), reason,
                      "the file is damaged; use a copy, or make it again");
@@ -99,7 +99,7 @@ Header read_header(std::span<const std::byte> file, const std::string& name) {
   return header;
 }
 
-// Every node but the root is the child of one node that comes before it.
+// Requires that every node except the root is the child of exactly one earlier node.
 void require_tree(const Section& section, std::span<const std::uint32_t> first_child) {
   const auto node_count = static_cast<std::uint32_t>(first_child.size() - 1);
   if (first_child.front() != 1) section.fail(0, "the root's children do not begin with node 1");
@@ -121,7 +121,7 @@ void require_weights(const Section& section, std::span<const float> weights) {
   }
 }
 
-// How many levels of nodes there are below the root: a level's children are the next level.
+// Number of levels below the root; a level's children are the next level.
 int depth_of(std::span<const std::uint32_t> first_child) {
   int depth = 0;
   for (std::uint32_t begin = 0, end = 1; first_child[begin] < first_child[end]; ++depth) {

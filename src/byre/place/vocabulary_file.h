@@ -10,34 +10,34 @@
 
 namespace byre {
 
-// The nodes of a vocabulary in breadth-first order, the root first: so the children of a node follow each other, and
-// those of the next node come right after them.
+// Nodes of a vocabulary in breadth-first order from the root: children of a node are contiguous and directly before
+// those of the next node.
 struct VocabularyTree {
   std::vector<Descriptor> centres;         // one per node; the root's is zero
-  std::vector<std::uint32_t> first_child;  // one per node, where its children begin; then the number of nodes
-  std::vector<float> weights;              // one per word, that is, per leaf from left to right
+  std::vector<std::uint32_t> first_child;  // one per node: index of its first child; then the number of nodes
+  std::vector<float> weights;              // one per word, which are the leaves from left to right
 };
 
-// A VocabularyTree read where it lies, and what follows from it.
+// A VocabularyTree as views into a file's bytes, with derived values.
 struct VocabularyView {
   std::span<const Descriptor> centres;
   std::span<const std::uint32_t> first_child;
   std::span<const float> weights;
-  std::vector<std::uint32_t> first_word;  // one per node: the leftmost word below it; a leaf's own word
-  int branching = 0;                      // most children of a node
+  std::vector<std::uint32_t> first_word;  // one per node: the leftmost word below it; for a leaf its own
+  int branching = 0;                      // largest number of children of a node
   int depth = 0;                          // levels below the root
-  std::uint64_t checksum = 0;             // checksum of the header, which holds those of centres, children and weights
+  std::uint64_t checksum = 0;  // checksum of the header, which contains the checksums of centres, children and weights
 };
 
-// One per node: the number of leaves to the left of those below it. Precondition: as in VocabularyTree, and every node
-// comes before its children.
+// One per node: the number of leaves to the left of its subtree. Precondition: as in VocabularyTree, with every node
+// before its children.
 std::vector<std::uint32_t> first_words(std::span<const std::uint32_t> first_child);
 
-// The layout is described in docs/vocabulary_format.md. Equal trees give equal bytes.
+// Format: docs/vocabulary_format.md. Equal trees give equal bytes.
 std::vector<std::byte> write_vocabulary(const VocabularyTree& tree);
 
-// Views into the bytes, which must begin at a multiple of 8 in memory. Throws InputError naming section and byte for
-// any damage, and for a format that is newer than this program's. name: of the file, for messages.
+// Views into the bytes, which must be aligned to 8. Throws InputError naming section and byte for damage or a newer
+// format. name: name of the file in messages.
 VocabularyView read_vocabulary(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace byre

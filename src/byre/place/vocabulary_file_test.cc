@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// The root has a leaf, then a node with two leaves, then a leaf.
+// Children of the root: a leaf, a node with two leaves, a leaf.
 VocabularyTree tree_of_two_levels() {
   VocabularyTree tree;
   tree.centres = {{}, {1, 2, 3, 4}, {5}, {6}, {7}, {8}};
@@ -119,10 +119,10 @@ TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
   EXPECT_THAT(damage_in(std::as_bytes(std::span(text))), HasSubstr("byre vocabulary import"));
 }
 
-// A file may be whole and still be nonsense.
+// A file with correct checksums may still be invalid.
 TEST(VocabularyFile, RefusesTreesThatAreNone) {
   VocabularyTree tree = tree_of_two_levels();
-  tree.first_child = {1, 4, 4, 6, 5, 6, 6};  // goes back
+  tree.first_child = {1, 4, 4, 6, 5, 6, 6};  // descending
   EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 268: gives node 3 children that it cannot have"));
   tree.first_child = {1, 1, 1, 1, 1, 1, 6};  // node 5 is its own child
   EXPECT_THAT(damage_in(tree), HasSubstr("gives node 5 children that it cannot have"));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Descriptors that fall into known clusters, for the tests of this room.
+// Descriptors in given clusters, for the tests of this room.
 
 #include "byre/features.h"
 
@@ -13,7 +13,7 @@ inline Descriptor random_descriptor(std::mt19937_64& random) {
   return {random(), random(), random(), random()};
 }
 
-// With so many bits flipped, each another one.
+// The descriptor with flipped_bits different bits flipped.
 inline Descriptor with_noise(Descriptor descriptor, int flipped_bits, std::mt19937_64& random) {
   Descriptor flips{};
   for (int flipped = 0; flipped < flipped_bits;) {
@@ -35,7 +35,7 @@ inline std::vector<Descriptor> random_descriptors(int count, std::uint64_t seed)
   return descriptors;
 }
 
-// Families of descriptors: those of a family follow each other and differ in less than 40 bits, those of different
+// Families of descriptors. Members of a family are contiguous and differ in less than 40 bits, those of different
 // families in about 128.
 inline std::vector<Descriptor> descriptor_families(int families, int members, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -47,7 +47,7 @@ inline std::vector<Descriptor> descriptor_families(int families, int members, st
   return descriptors;
 }
 
-// Each image shows every centre so often, with so many bits flipped at random.
+// Each image contains every centre `copies` times, with flipped_bits random bits flipped.
 inline std::vector<std::vector<Descriptor>> noisy_images(const std::vector<Descriptor>& centres, int image_count,
                                                          int copies, int flipped_bits, std::uint64_t seed) {
   std::mt19937_64 random(seed);

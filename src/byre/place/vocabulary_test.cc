@@ -22,7 +22,7 @@ using testing::Pair;
 
 constexpr int kFamilies = 4;
 constexpr int kMembers = 4;
-constexpr int kNoise = 1;  // bits, far less than between the members of a family
+constexpr int kNoise = 1;  // bits; much less than the distance between members of a family
 
 VocabularyOptions small_tree() {
   VocabularyOptions options;
@@ -31,7 +31,7 @@ VocabularyOptions small_tree() {
   return options;
 }
 
-// Five images of four families of four: the tree that a branching of four and a depth of two should find.
+// Vocabulary of five images with four families of four descriptors, which a tree of branching 4 and depth 2 separates.
 class Trained : public testing::Test {
  protected:
   const std::vector<Descriptor> centres = descriptor_families(kFamilies, kMembers, 1);
@@ -129,7 +129,7 @@ TEST(Training, WeighsWordsByHowFewImagesHaveThem) {
   ASSERT_EQ(vocabulary.word_count(), 3);
   const std::vector<Word> words = words_of(vocabulary, centres);
 
-  // Three of the four images have the first word, two the second, one the third.
+  // The first word is in three of the four images, the second in two, the third in one.
   const float sum = std::log(4.0f / 3.0f) + std::log(2.0f) + std::log(4.0f);
   for (const auto& [word, weight] : vocabulary.bag_of(words)) {
     const float images_with_word = word == words[0] ? 3.0f : word == words[1] ? 2.0f : 1.0f;
@@ -143,7 +143,7 @@ TEST(Training, CountsImagesAsTheFinishedTreeSortsTheirDescriptors) {
   VocabularyOptions options;
   options.branching = 3;
   options.depth = 3;
-  options.rounds = 1;  // stops before clusters settle
+  options.rounds = 1;  // stops before clusters converge
   const Vocabulary vocabulary = Vocabulary::train(images, options);
 
   std::vector<std::set<Word>> words_of_images;
@@ -196,7 +196,7 @@ TEST(Training, RefusesOptionsOutOfRange) {
 }
 
 TEST_F(Trained, MakesBagsThatAreSortedAndSumToOne) {
-  // Every word of this vocabulary is in every image, so it has no weight: give the images different words.
+  // Every word of this vocabulary is in every image and has zero weight, so the images get different words.
   std::vector<std::vector<Descriptor>> different(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) different[i] = {centres[i], centres[(i + 1) % centres.size()]};
   const Vocabulary weighted = Vocabulary::train(different, small_tree());

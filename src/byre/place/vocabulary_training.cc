@@ -19,14 +19,14 @@ void require_range(const char* option, int value, int min, int max) {
                    "choose " + std::to_string(min) + " to " + std::to_string(max));
 }
 
-// All descriptors in one row, which clustering rearranges so that those of a node follow each other. Within a node they
-// stay in the order of their images.
+// All descriptors. Clustering reorders them so that those of a node are contiguous; within a node they keep the order
+// of the images.
 struct Samples {
   std::vector<Descriptor> descriptors;
   std::vector<std::uint32_t> image_of;
 };
 
-// The samples of a node that is still to be split.
+// The samples of a node that is not yet split.
 struct NodeRange {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -45,8 +45,8 @@ Samples gather(std::span<const std::vector<Descriptor>> descriptors_of_images) {
   return samples;
 }
 
-// Brings the samples of each cluster together, without changing their order otherwise. Returns where each cluster
-// begins in the range, and the range's size.
+// Groups the samples of a range by cluster, in stable order. Returns the start of each cluster relative to the range,
+// then the size of the range.
 std::vector<std::size_t> sort_by_cluster(Samples& samples, const NodeRange& range, const Clusters& clusters) {
   std::vector<std::size_t> begin_of(clusters.centres.size() + 1, 0);
   for (const int cluster : clusters.cluster_of) ++begin_of[static_cast<std::size_t>(cluster) + 1];
@@ -66,7 +66,7 @@ std::vector<std::size_t> sort_by_cluster(Samples& samples, const NodeRange& rang
   return begin_of;
 }
 
-// In how many images the samples of the range are. They are in the order of their images.
+// Number of images with samples in the range, which is in the order of the images.
 int count_images(const Samples& samples, const NodeRange& range) {
   int count = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -75,7 +75,7 @@ int count_images(const Samples& samples, const NodeRange& range) {
   return count;
 }
 
-// Grows the tree node by node, in breadth-first order.
+// Builds the tree node by node in breadth-first order.
 class TreeGrowth {
  public:
   TreeGrowth(Samples samples, const VocabularyOptions& options, const std::function<void(double)>& progress)
@@ -84,7 +84,7 @@ class TreeGrowth {
     tree_.centres.emplace_back();
   }
 
-  // image_count: all images, for the weights.
+  // image_count: number of all images, for the weights.
   VocabularyTree run(std::size_t image_count) {
     for (std::size_t node = 0; node < ranges_.size(); ++node) {
       tree_.first_child.push_back(static_cast<std::uint32_t>(ranges_.size()));
@@ -100,7 +100,7 @@ class TreeGrowth {
     return static_cast<std::size_t>(options_.depth - range.level);
   }
 
-  // Appends the children of a node; false where it is to be a leaf.
+  // Appends the children of a node; false if it is a leaf.
   bool split(const NodeRange range) {
     if (range.level == options_.depth || range.size() < 2) return false;
     const auto descriptors = std::span(samples_.descriptors).subspan(range.begin, range.size());
@@ -121,7 +121,7 @@ class TreeGrowth {
     if (progress_ && assigned > 0) progress_(static_cast<double>(assigned_) / static_cast<double>(all));
   }
 
-  // The inverse document frequency: of a word that is in every image, zero.
+  // Inverse document frequency; zero for a word in every image.
   void weigh(std::size_t image_count) {
     const std::vector<std::uint32_t> first_word = first_words(tree_.first_child);
     for (std::size_t node = 0; node < ranges_.size(); ++node) {
@@ -138,7 +138,7 @@ class TreeGrowth {
   std::mt19937_64 random_;
   VocabularyTree tree_;
   std::vector<NodeRange> ranges_;  // one per node
-  std::size_t assigned_ = 0;       // samples given a node, counted once per level
+  std::size_t assigned_ = 0;       // samples assigned to nodes, counted once per level
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// What Vocabulary::train says.
+// Implements Vocabulary::train.
 VocabularyTree train_tree(std::span<const std::vector<Descriptor>> descriptors_of_images,
                           const VocabularyOptions& options, const std::function<void(double)>& progress);
 
