@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// The camera that took a keyframe's image, and how it lies to the rectified one that the map sees by.
+// The camera of a keyframe's original image, and its pose relative to the rectified camera of the map.
 struct OriginalCamera {
   const Camera& camera;
   Pose original_from_rectified;
@@ -33,14 +33,13 @@ std::uint64_t point_id(PointId id) {
   return std::uint64_t{id.number} + 1;
 }
 
-// Where the original image shows what the rectified one shows at a pixel. Rectified images show nothing else, but
-// rounding may put a pixel of the border beyond it.
+// Original pixel of a rectified one. Empty if rounding puts a pixel of the border outside the original image.
 std::optional<Eigen::Vector2d> original_pixel(const OriginalCamera& original, const Rig& rig,
                                               const Eigen::Vector2d& rectified_pixel) {
   return original.camera.project(original.original_from_rectified.rotation * rig.ray(rectified_pixel));
 }
 
-// Key points of the model, and which of them each feature is.
+// Key points of an image in the model, and the key point of each feature.
 struct ImageKeypoints {
   std::vector<ColmapKeypoint> keypoints;
   std::vector<std::optional<std::uint32_t>> of_feature;
@@ -81,7 +80,7 @@ double error_in_pixels(const Map& map, const Keyframe& keyframe, const Sighting&
   return (rig.project(point_in_camera).head<2>() - sighting.pixel.cast<double>()).norm();
 }
 
-// The grey value of the patch that defines the point; black where there is none.
+// Grey value of the reference patch of the point; black without a patch.
 std::array<std::uint8_t, 3> colour_of(const Map& map, const MapPoint& point) {
   const Keyframe& keyframe = *map.find_keyframe(point.reference.keyframe);
   const Patch* const patch = keyframe.frame.features->find_patch(point.reference.feature);

@@ -59,8 +59,7 @@ TEST_F(ExportedModel, HasThePointsOfTwoViewsWhereTheMapHasThem) {
   }
 }
 
-// The key points of the model must be those of the original images, not of the rectified ones, which differ by tens of
-// pixels.
+// Key points of the model are in original images. Those in rectified images differ by tens of pixels.
 TEST_F(ExportedModel, ProjectsItsPointsOntoItsKeypoints) {
   const Camera& camera = stored_.recordings.front().calibration.left;
   std::vector<double> errors;

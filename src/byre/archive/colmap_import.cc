@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An image of the model that is to become a keyframe.
+// An image of the model that becomes a keyframe.
 struct NamedImage {
   std::uint32_t id = 0;
   std::string name;
@@ -38,8 +38,8 @@ std::vector<NamedImage> images_by_time(const ColmapModel& model) {
   return images;
 }
 
-// The cameras of a model that have images, in the order in which they come. What extracts features is kept for the last
-// one only: it is large, and a model may have a camera for every image.
+// Cameras of the model that have images, in order of appearance. Keeps only the last extractor: it is large, and a
+// model may have a camera per image.
 class Cameras {
  public:
   Cameras(const ColmapModel& model, const std::string& model_name, const ColmapImportOptions& options)
@@ -76,11 +76,11 @@ class Cameras {
   std::map<std::uint32_t, int> index_of_;
   std::vector<Calibration> calibrations_;
   std::vector<Rig> rigs_;
-  std::optional<Extractor> extractor_;  // extractor for the camera used_
+  std::optional<Extractor> extractor_;  // for the camera used_
   int used_ = -1;
 };
 
-// Empty, with a warning added, when the image is not there as the camera took it.
+// Empty, with a warning added, if the image cannot be read or has another size than its camera.
 std::optional<Image> read_as_taken(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
   std::optional<Image> image = read_image(path);
   if (!image) {
@@ -93,7 +93,7 @@ std::optional<Image> read_as_taken(const fs::path& path, const Camera& camera, s
   return std::nullopt;
 }
 
-// The model in byre's terms, and which of COLMAP's images and points its own are.
+// The model in byre's types, with COLMAP's ids of its images and points.
 struct ConvertedModel {
   SfmModel model;
   std::vector<std::uint32_t> image_ids;
@@ -135,7 +135,8 @@ void convert_points(const ColmapModel& colmap, double scale, ConvertedModel& con
   }
 }
 
-// Pixels from where a point projects to where its features were measured. The reference is where it projects.
+// Reprojection errors of a keyframe's features, pixels; without references, which are at their projections by
+// definition.
 std::vector<double> errors_of(const Map& map, const Keyframe& keyframe, KeyframeId id) {
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   std::vector<double> errors;
@@ -162,7 +163,7 @@ ImportedImage describe_image(const Map& map, KeyframeId id, const ColmapImage& i
   return described;
 }
 
-// A recording for each camera that has images, so that each keeps its lens.
+// Adds one recording per camera with images, so that each keeps its calibration.
 void add_recordings(const std::vector<Calibration>& calibrations, const SfmModel& model, const std::string& model_name,
                     StoredMap& stored) {
   for (std::size_t camera = 0; camera < calibrations.size(); ++camera) {
@@ -203,10 +204,10 @@ std::vector<double> reprojection_errors(const ColmapModel& model, const std::str
   return errors;
 }
 
-// Refuses a model whose poses are of another state of the reconstruction than its points.
+// Rejects a model whose poses and points are from different states of the reconstruction.
 void require_agreement(const ColmapModel& model, const std::string& name) {
   constexpr double kLargestMedian = 8.0;  // pixels; a finished model has about 0.5
-  constexpr double kShareOfWidth = 0.01;  // bound for large images
+  constexpr double kShareOfWidth = 0.01;  // larger bound for large images
   std::vector<double> errors = reprojection_errors(model, name);
   if (errors.empty()) return;
   std::ranges::sort(errors);

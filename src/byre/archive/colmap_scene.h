@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// The map of the rendered recording's every third frame at its true pose, as it is kept.
+// Map of every third frame of the rendered recording, at true poses.
 inline StoredMap rendered_map() {
   const RenderedFixture& rendered = RenderedFixture::shared();
   const auto recording = open_recording(rendered.folder(), {.stride = 3});

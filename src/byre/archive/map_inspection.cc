@@ -80,7 +80,7 @@ std::optional<BoundingBox> bounding_box(const Map& map) {
   return box;
 }
 
-// A pair says so in its calibration; without one, it was a depth camera that gave the keyframes' rigs a baseline.
+// A stereo calibration has a right camera. Without one, a baseline in the keyframes' rigs indicates a depth camera.
 std::vector<std::string> cameras_of_recordings(const StoredMap& stored) {
   std::vector<std::string> cameras;
   for (const SourceRecording& recording : stored.recordings) {
@@ -95,7 +95,7 @@ std::vector<std::string> cameras_of_recordings(const StoredMap& stored) {
   return cameras;
 }
 
-// Recordings by themselves: between two of them the robot was carried, or it is another robot.
+// Summed per recording, because the motion between recordings is unknown.
 double path_of_keyframes(const StoredMap& stored) {
   std::vector<Trajectory> paths(stored.recordings.size());
   for (const KeyframeId id : stored.map.keyframe_ids()) {
@@ -119,7 +119,7 @@ std::size_t covisible_count(const Map& map) {
   return covisible;
 }
 
-// The contents of the containers, without what they keep in reserve.
+// Size of the containers' elements, without spare capacity.
 std::vector<PartSize> memory_of(const Map& map, const MapCounts& counts) {
   const auto size = [](int number, std::size_t bytes) { return static_cast<std::size_t>(number) * bytes; };
   std::size_t words = 0;

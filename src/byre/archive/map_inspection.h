@@ -19,11 +19,11 @@ struct MapCounts {
   int patches = 0;
 };
 
-// How far observations are from where their points are projected to.
+// Distances between observations and projections of their points.
 struct ReprojectionErrors {
   Distribution pixel;      // pixels, of all observations
-  Distribution disparity;  // pixels, of those that have one
-  int behind_camera = 0;   // observations of a point that is not in front of its camera; in neither of them
+  Distribution disparity;  // pixels, of observations with a disparity
+  int behind_camera = 0;   // observations of a point not in front of its camera; excluded from both distributions
 };
 
 struct BoundingBox {
@@ -41,9 +41,9 @@ struct MapInspection {
   std::vector<std::string> cameras_of_recordings;  // stereo, rgbd or mono
   Distribution observations_per_point;
   ReprojectionErrors errors;
-  std::optional<BoundingBox> points_in_world;  // none without points
-  double path_length = 0.0;                    // metres, way of the body from keyframe to keyframe, over all recordings
-  std::vector<PartSize> memory;                // memory of the map once it is loaded, by what is kept
+  std::optional<BoundingBox> points_in_world;  // empty without points
+  double path_length = 0.0;                    // metres along the keyframes' body poses, summed over recordings
+  std::vector<PartSize> memory;                // size of the loaded map, per kind of data
   std::vector<std::string> faults;
 };
 

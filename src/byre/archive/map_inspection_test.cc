@@ -15,7 +15,7 @@ using testing::IsEmpty;
 constexpr double kRadius = 2.0;  // metres
 constexpr double kPixelSigma = 0.5;
 
-// One lap in a room of 10 x 8 x 4 m.
+// One circle in a room of 10 x 8 x 4 m.
 StoredMap simulated_map(int keyframes = 60) {
   SimulationOptions options;
   options.pixel_sigma = kPixelSigma;
@@ -26,7 +26,7 @@ StoredMap simulated_map(int keyframes = 60) {
 }
 
 TEST(Inspect, CountsWhatTheMapHolds) {
-  const StoredMapScene scene(4, 9);  // keyframes: three see 8 points, the fourth 8 others, one more has no features
+  const StoredMapScene scene(4, 9);  // keyframes: three observe 8 points, the fourth 8 others, a fifth has no features
   const MapInspection inspection = inspect(scene.stored());
   EXPECT_EQ(inspection.counts.keyframes, 5);
   EXPECT_EQ(inspection.counts.keyframes_with_words, 2);
@@ -46,7 +46,7 @@ TEST(Inspect, MeasuresTheErrorsThatWereSimulated) {
   EXPECT_EQ(errors.pixel.count, inspection.counts.observations);
   EXPECT_GT(errors.disparity.count, 0);
   EXPECT_LE(errors.disparity.count, errors.pixel.count);
-  // The median of a Rayleigh distribution is 1.18 sigmas, of octaves up to 3.6 times as coarse.
+  // The median of a Rayleigh distribution is 1.18 sigmas; features of coarser octaves have up to 3.6 times the sigma.
   EXPECT_GT(errors.pixel.p50, 1.18 * kPixelSigma);
   EXPECT_LT(errors.pixel.p50, 3.6 * 1.18 * kPixelSigma);
   EXPECT_LT(errors.pixel.p50, errors.pixel.p95);

@@ -30,7 +30,7 @@ TEST(PointCloud, HoldsEveryPoint) {
 }
 
 TEST(PointCloud, ColoursPointsByTheirObservations) {
-  const StoredMap stored = StoredMapScene(4, 9).stored();  // point 0 is seen three times, point 15 once
+  const StoredMap stored = StoredMapScene(4, 9).stored();  // point 0 has three observations, point 15 one
   const std::vector<std::byte> bytes = point_cloud(stored.map);
   constexpr std::size_t kVertexBytes = 19;
   const auto blue_of = [&bytes](std::size_t point) {

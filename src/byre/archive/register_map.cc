@@ -49,7 +49,7 @@ void require_scale_known(const PlanScale& scale, const std::string& picks) {
                    "without --fix-scale the map keeps its scale");
 }
 
-// A position is of the map that it was picked in. Before a second correction nobody knows which of the two that was.
+// Positions refer to the map in which they were picked. After an earlier correction it is ambiguous which map that is.
 void require_unambiguous(const StoredMap& stored, const std::filesystem::path& picks) {
   if (!gives_positions(picks)) return;
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {

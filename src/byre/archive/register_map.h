@@ -17,32 +17,32 @@ struct RegisterOptions {
   PlanRegistrationOptions registration;
 };
 
-// What became of an attempt to find a map on a floor plan.
+// Result of the registration of a map on a floor plan.
 struct Registering {
   std::vector<PlanCorrespondence> correspondences;
   PlanFit fit;
-  double largest_path_sigma = 0.0;  // metres: how well the plan knows the place of the path where it knows it worst
-  std::optional<PlanScale> measured_scale;  // scale by the picks, of a map that was metric before
-  bool has_baseline = false;                // whether the map has a baseline, where its scale is from
+  double largest_path_sigma = 0.0;          // metres, position on the plan; largest along the path
+  std::optional<PlanScale> measured_scale;  // scale by the picks, for a metric map
+  bool has_baseline = false;                // whether the map's scale comes from a stereo baseline
 };
 
-// A map whose scale was to be mended, and where it lies then.
+// A map after correction of its scale, and its registration.
 struct MendedMap {
   StoredMap stored;
-  Registering registering;  // place of the mended map; but its scale is as measured before
-  double factor = 1.0;      // length now over length before; 1 where there was nothing to mend
+  Registering registering;  // result for the corrected map; measured_scale is that before the correction
+  double factor = 1.0;      // new over old length; 1 without a correction
 };
 
-// Throws InputError, naming the file of the picks or of the map, for what cannot be registered.
+// Throws InputError naming the file of the picks or of the map if the registration is impossible.
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options);
 
-// Registers the map, which becomes as large as the picks say, with its baselines, where it differs by more than the
-// uncertainty of that explains. Throws InputError also where no baseline tells the map's scale, or the picks do not.
+// Registers the map and corrects its scale and baselines by the picks if the difference is significant. Throws
+// InputError also if the map's scale does not come from a baseline, or the picks do not determine it.
 MendedMap mend_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
                      const std::filesystem::path& picks, const RegisterOptions& options);
 
-// A line for people: where the map's origin lies on the plan.
+// Text line with the position of the map's origin on the plan.
 std::string describe_origin(const PlanRegistration& registration);
 
 }  // namespace byre

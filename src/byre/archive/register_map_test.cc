@@ -78,7 +78,7 @@ TEST_F(RegisterMap, MendsTheScaleAndLaysTheMendedMapOnThePlan) {
   EXPECT_DOUBLE_EQ(baseline_factor(mended.stored, 0), mended.factor);
 }
 
-// Picks that name keyframes stay what they are when the map is scaled; those that give positions do not.
+// Picks by keyframe remain valid after a correction of the scale; picks by position do not.
 TEST_F(RegisterMap, FindsNothingToMendTheSecondTime) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);

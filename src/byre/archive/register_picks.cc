@@ -25,7 +25,7 @@ constexpr std::array kPlanMetres = {"plan_x_m"sv, "plan_y_m"sv};
 constexpr std::array kPlanPixel = {"plan_column_px"sv, "plan_row_px"sv};
 constexpr std::array kPoint = {"point"sv};
 constexpr std::array kPosition = {"map_x_m"sv, "map_y_m"sv, "map_z_m"sv};
-constexpr std::array kPositionOfPoint = {"point_x_m"sv, "point_y_m"sv, "point_z_m"sv};  // another name for the same
+constexpr std::array kPositionOfPoint = {"point_x_m"sv, "point_y_m"sv, "point_z_m"sv};  // aliases of kPosition
 constexpr std::array kBody = {"time_s"sv};
 constexpr std::array kImagePixel = {"time_ns"sv, "u_px"sv, "v_px"sv};
 
@@ -40,7 +40,7 @@ std::vector<std::string_view> all_columns() {
   return all;
 }
 
-// A row that is being read.
+// The row that is parsed.
 class Pick {
  public:
   Pick(const CsvTable& table, const CsvTable::Row& row) : table_(table), row_(row) {}
@@ -54,7 +54,7 @@ class Pick {
                                [this](std::string_view column) { return table_.find(row_, column).has_value(); });
   }
 
-  // One of several ways to say something, each in columns of its own.
+  // Requires exactly one of several alternatives, each with columns of its own.
   void require_one(std::initializer_list<Columns> ways, const std::string& what, const std::string& remedy) const {
     const auto count = std::ranges::count_if(ways, [this](Columns columns) { return has(columns); });
     if (count == 0) fail("does not give " + what, remedy);
@@ -100,7 +100,7 @@ std::string seconds_text(Timestamp time) {
   return std::to_string(whole) + "." + digits.substr(1);
 }
 
-// The one whose time is nearest; there must be but one that is so near.
+// The keyframe nearest in time; fails unless exactly one is within kNearestKeyframe.
 const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const Map& map) {
   const Keyframe* nearest = nullptr;
   int count = 0;

@@ -9,18 +9,18 @@
 namespace byre {
 
 struct PickOptions {
-  double sigma = PlanCorrespondence{}.sigma;  // metres, for picks that say nothing else
-  double positions_scale = 1.0;               // lengths in the map now over those when its positions were picked
+  double sigma = PlanCorrespondence{}.sigma;  // metres, for picks without a sigma
+  double positions_scale = 1.0;               // current length over length at the time of picking positions
 };
 
-// Correspondences of a map and a plan from a table (CSV) whose first line names its columns: docs/floor_plan.md has the
-// list. Throws InputError naming the line for a row that does not say one place on the plan and one in the map, and for
-// points, keyframes and pixels that the map knows nothing of.
+// Correspondences of a map and a plan from a table (CSV) with column names in its first line; docs/floor_plan.md lists
+// the columns. Throws InputError naming the line for a row without exactly one position on the plan and one in the map,
+// and for points, keyframes and pixels that do not exist in the map.
 std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem::path& path, const FloorPlan& plan,
                                                           const StoredMap& stored, const PickOptions& options);
 
-// Whether a row gives a position in the map, which is not one in a map of another scale. Throws InputError as above for
-// a file that is no table.
+// Whether any row gives a position in the map, which becomes invalid when the map's scale changes. Throws InputError
+// like read_plan_correspondences if the file is not a table.
 bool gives_positions(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -16,7 +16,7 @@ using testing::SizeIs;
 
 constexpr double kPickSigma = 0.05;
 
-// A keyframe a second, and one point that is known to a decimetre.
+// A map with one keyframe per second, and one point with a sigma of 0.1 m.
 StoredMap small_map() {
   Map map(Origin::offline);
   map.add_rig({320, 240, 188.0, 158.0, 119.0, 0.11, {}});

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// The driven barn as a map to keep.
+// The driven barn as a stored map.
 inline StoredMap driven_barn(FloorPlanScene& scene) {
   const Camera camera{CameraModel::pinhole, 320, 240, 188.0, 188.0, 158.0, 119.0, {}};
   StoredMap stored;
@@ -19,7 +19,7 @@ inline StoredMap driven_barn(FloorPlanScene& scene) {
   return stored;
 }
 
-// The picks as a file has them.
+// The picks as the text of a file.
 inline std::string picks_csv(const std::vector<PlanCorrespondence>& correspondences) {
   std::string text = "#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n";
   for (const PlanCorrespondence& each : correspondences) {
@@ -29,7 +29,7 @@ inline std::string picks_csv(const std::vector<PlanCorrespondence>& corresponden
   return text;
 }
 
-// The body at every tenth keyframe of the driven barn, by its time, as picks.
+// Body positions at every tenth keyframe of the driven barn as picks by time.
 inline std::string keyframe_picks_csv(const FloorPlanScene& scene, const StoredMap& stored) {
   std::string text = "time_s,plan_x_m,plan_y_m\n";
   for (const KeyframeId id : stored.map.keyframe_ids()) {
@@ -41,7 +41,7 @@ inline std::string keyframe_picks_csv(const FloorPlanScene& scene, const StoredM
   return text;
 }
 
-// A PGM image, white all over.
+// A white PGM image.
 inline std::string plan_image(int width, int height) {
   return fmt::format("P5\n{} {}\n255\n", width, height) + std::string(static_cast<std::size_t>(width * height), '\xff');
 }

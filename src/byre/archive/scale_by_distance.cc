@@ -15,7 +15,7 @@
 namespace byre {
 namespace {
 
-// The whole text as a number; empty when it is none.
+// The whole text as a number; empty if it is not a number.
 template <typename Number>
 std::optional<Number> parse(std::string_view text) {
   Number number{};

@@ -6,19 +6,19 @@
 
 namespace byre {
 
-// A place of a map as a command line names it: "x,y,z", a position in units of the map; "point:N", a map point by its
-// number; or "time:SECONDS", the camera at the keyframe whose time is nearest, which must be within a second.
-// Throws InputError naming the text where it is none of these, or where the map holds no such thing.
+// Position in a map from a command line argument: "x,y,z" in units of the map; "point:N", a map point by number; or
+// "time:SECONDS", the camera at the nearest keyframe, at most one second away. Throws InputError naming the text if it
+// is none of these or does not exist in the map.
 Eigen::Vector3d find_place(const StoredMap& stored, const std::string& text);
 
 struct ScaledMap {
   StoredMap stored;       // metric
-  double factor = 1.0;    // metres of a unit of the map before
+  double factor = 1.0;    // metres per unit of the map before
   double distance = 0.0;  // between the two places, units of the map before
 };
 
-// The map with so many metres between two places. Throws InputError where they are one place, or where the map's rigs
-// have a baseline, so that its scale is known.
+// The map scaled so that the distance between two positions is `metres`. Throws InputError if the positions coincide,
+// or if the map's rigs have a baseline, which determines the scale.
 ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, const std::string& second,
                             double metres);
 

@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-// Made by one camera, on a quarter of a circle; keyframes at 0, 0.4, 0.8 s and so on.
+// A monocular map of a quarter circle; keyframes at 0, 0.4, 0.8 s and so on.
 const StoredMap& unscaled() {
   static const StoredMap stored = [] {
     Rig rig = simulated_rig();
